@@ -1,0 +1,97 @@
+"""The bodies of both equation sets, in exact rationals and body axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from verify.scenes import tensors
+from verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A rigid body about a fixed point or its centre of mass.
+
+    ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
+    components, I_12 = -int xy dm); ``moment`` is constant in body axes.
+    """
+
+    inertia: Matrix
+    moment: Vector = ZERO_VECTOR
+
+    @cached_property
+    def inverse_inertia(self) -> Matrix:
+        """K = I^-1, so that omega = K H."""
+        return tensors.inverse(self.inertia)
+
+    @property
+    def is_free(self) -> bool:
+        return not any(self.moment)
+
+
+@dataclass(frozen=True)
+class ImmersedBody:
+    """A solid in an ideal fluid: T = x.A x/2 + x.B y + y.C y/2, 21 coefficients.
+
+    A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
+    and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
+    constant in body axes.
+    """
+
+    linear: Matrix
+    coupling: Matrix
+    angular: Matrix
+    force: Vector = ZERO_VECTOR
+    couple: Vector = ZERO_VECTOR
+
+    @property
+    def is_free(self) -> bool:
+        return not any(self.force) and not any(self.couple)
+
+    @cached_property
+    def energy_matrix(self) -> Matrix:
+        """The 6x6 matrix [[A, B], [B^T, C]]: (U, Omega) = energy_matrix (x, y)."""
+        return tensors.blocks(self.linear, self.coupling, self.angular)
+
+    @cached_property
+    def clebsch(self) -> Clebsch | None:
+        """The six coefficients of Clebsch's form about axis 3, or None if T is not of that form."""
+        a, b, c = self.linear, self.coupling, self.angular
+        six = Clebsch(
+            p=a[0][0], p_prime=a[2][2], q=b[0][0], q_prime=b[2][2], r=c[0][0], r_prime=c[2][2]
+        )
+        form = six.body()
+        is_clebsch = (a, b, c) == (form.linear, form.coupling, form.angular)
+        return six if is_clebsch else None
+
+
+@dataclass(frozen=True)
+class Clebsch:
+    """T = p/2 (x1^2 + x2^2) + p'/2 x3^2 + q (x1 y1 + x2 y2) + q' x3 y3 + r/2 (y1^2 + y2^2) + r'/2 y3^2.
+
+    Hydromechanics 49 (1); the axis of symmetry is body axis 3.
+    """
+
+    p: Fraction
+    p_prime: Fraction
+    q: Fraction
+    q_prime: Fraction
+    r: Fraction
+    r_prime: Fraction
+
+    def body(self, force: Vector = ZERO_VECTOR, couple: Vector = ZERO_VECTOR) -> ImmersedBody:
+        """The same energy as 21 coefficients, with the loads given."""
+        return ImmersedBody(
+            linear=tensors.diagonal((self.p, self.p, self.p_prime)),
+            coupling=tensors.diagonal((self.q, self.q, self.q_prime)),
+            angular=tensors.diagonal((self.r, self.r, self.r_prime)),
+            force=force,
+            couple=couple,
+        )
+
+
+Body = RigidBody | ImmersedBody
+
+__all__ = ["ZERO_MATRIX", "ZERO_VECTOR", "Body", "Clebsch", "ImmersedBody", "RigidBody"]

@@ -1,0 +1,71 @@
+"""How a body moves: its exact initial state, the instants it is asked at, and its sampled motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from verify.scenes.tensors import ZERO_VECTOR, Vector
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
+IDENTITY: Quaternion = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
+
+
+@dataclass(frozen=True)
+class Spin:
+    """The initial state of a rigid body.
+
+    ``omega`` is in body axes. ``attitude`` is a quaternion, scalar first, body to space, any norm but
+    zero: whoever uses it divides by the norm, because the quotient is rarely rational.
+    """
+
+    omega: Vector
+    attitude: Quaternion = IDENTITY
+
+
+@dataclass(frozen=True)
+class Impulse:
+    """The initial state of a solid in a fluid: x and y in body axes, the origin in space axes."""
+
+    linear: Vector
+    angular: Vector
+    attitude: Quaternion = IDENTITY
+    centre: Vector = ZERO_VECTOR
+
+
+State = Spin | Impulse
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The time of the initial state and the instants asked for, strictly monotonic."""
+
+    start: Fraction
+    instants: tuple[Fraction, ...]
+
+    @property
+    def elapsed(self) -> tuple[Fraction, ...]:
+        """Time since the initial state. The equations are autonomous: this alone enters them."""
+        return tuple(instant - self.start for instant in self.instants)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion sampled at n instants, as NumPy object arrays of mpmath numbers.
+
+    ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
+    ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
+    ``radius`` (n,) bounds the error of every vector and matrix of a row in the Frobenius norm,
+    relative to its norm (absolute where that is zero); zeros where the numbers are held exactly.
+    """
+
+    quantities: Mapping[str, np.ndarray[Any, Any]]
+    radius: np.ndarray[Any, Any]
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        return self.quantities[quantity]

@@ -1,0 +1,86 @@
+"""The precision ladder: f32, f64, f80, f128 and mpN, and the one rounding that leads onto a rung."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+LADDER = ("f32", "f64", "f80", "f128", "mp237")
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A binary floating-point format: ``bits`` of significand, exponents from ``emin`` to ``emax``.
+
+    The largest number is below 2^(emax + 1), the smallest normal one is 2^emin. MPFR's exponent
+    range is so wide that it counts as unbounded (None).
+    """
+
+    name: str
+    bits: int
+    emin: int | None = None
+    emax: int | None = None
+
+    @property
+    def unit_roundoff(self) -> Fraction:
+        """u = 2^-bits: the largest relative error of one rounding to nearest."""
+        return Fraction(1, 2**self.bits)
+
+    def round(self, value: Fraction) -> Fraction:
+        """The nearest number of this format, ties to even; subnormals as IEEE 754 has them.
+
+        Raises OverflowError where the format has no such number.
+        """
+        if value == 0:
+            return value
+        exponent = floor_log2(value)
+        if self.emin is not None:
+            exponent = max(exponent, self.emin)
+        quantum = power_of_two(exponent - self.bits + 1)
+        nearest = round(value / quantum) * quantum
+        if self.emax is not None and abs(nearest) >= power_of_two(self.emax + 1):
+            raise OverflowError(f"{float_text(value)} is outside the range of {self.name}")
+        return nearest
+
+    def holds(self, value: Fraction) -> bool:
+        """Whether the value is a number of this format."""
+        return self.round(value) == value
+
+
+_IEEE = {
+    "f32": Rung("f32", 24, -126, 127),
+    "f64": Rung("f64", 53, -1022, 1023),
+    "f80": Rung("f80", 64, -16382, 16383),
+    "f128": Rung("f128", 113, -16382, 16383),
+}
+
+
+def rung(name: str) -> Rung:
+    """The rung of that name; ValueError for a name that is not on the ladder."""
+    if name in _IEEE:
+        return _IEEE[name]
+    match = re.fullmatch(r"mp([1-9][0-9]{1,4})", name)
+    if match is None or int(match[1]) < 24:
+        raise ValueError(
+            f"expected a rung f32, f64, f80, f128 or mpN with 24 <= N <= 99999 bits, got {name!r}"
+        )
+    return Rung(name, int(match[1]))
+
+
+def power_of_two(exponent: int) -> Fraction:
+    return Fraction(2**exponent) if exponent >= 0 else Fraction(1, 2**-exponent)
+
+
+def floor_log2(value: Fraction) -> int:
+    """The largest e with 2^e <= |value|, for a value that is not zero."""
+    size = abs(value)
+    estimate = size.numerator.bit_length() - size.denominator.bit_length()
+    return estimate if power_of_two(estimate) <= size else estimate - 1
+
+
+def float_text(value: Fraction) -> str:
+    """A short decimal for messages, also where a double cannot hold the value."""
+    from mpmath import libmp
+
+    return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
