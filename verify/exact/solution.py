@@ -1,0 +1,118 @@
+"""An exact solution, and what it takes before one of its numbers is believed.
+
+The truth is independent of what it judges: nothing here imports models, solvers or the judge.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final, final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from verify.scenes.motion import Motion
+from verify.scenes.scene import Scene
+
+Quantities = Mapping[str, np.ndarray[Any, Any]]
+
+ROUTES: Final = ("mpmath", "taylor")
+NO_CLOSED_FORM: Final = "no closed form"
+
+_FIRST_GUARD_DIGITS = 12
+_STEP_DIGITS = 20
+_ATTEMPTS = 12
+
+
+class NoClosedForm(Exception):
+    """The scene tracks something for which no closed form is implemented; the text says what."""
+
+
+class Unsettled(ArithmeticError):
+    """Raising the precision did not make two evaluations agree: there is no truth to compare with."""
+
+
+class Solution(ABC):
+    """The exact motion of one scene.
+
+    ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
+    ``route`` is the arithmetic: ``mpmath`` (closed form) or ``taylor``.
+    """
+
+    regime: str
+    route: str
+
+    @abstractmethod
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The tracked quantities at these times since the start, computed once at that precision.
+
+        Object arrays of mpf shaped as in Motion. An evaluation makes no claim about its error.
+        """
+
+    @final
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The motion to ``digits`` significant digits of every vector and matrix.
+
+        Two evaluations at precisions (for the Taylor route also orders and steps) that differ by
+        twenty digits must agree to the digits asked for; until they do, both precisions rise. The
+        difference is the error of the poorer one; the better one is returned.
+
+        Raises Unsettled when a dozen rises do not suffice.
+        """
+        working = digits + _FIRST_GUARD_DIGITS
+        poorer = self.evaluate(elapsed, working)
+        for _ in range(_ATTEMPTS):
+            better = self.evaluate(elapsed, working + _STEP_DIGITS)
+            with mp.workdps(working + _STEP_DIGITS):
+                radius = _largest_difference(poorer, better)
+                worst = max(radius, default=mpf(0))
+                # Written so that a NaN is not agreement.
+                if worst <= mpf(10) ** -digits:
+                    return Motion(better, radius)
+            poorer, working = better, working + _STEP_DIGITS
+        raise Unsettled(
+            f"two evaluations of the exact solution at {working - _STEP_DIGITS} and {working} digits "
+            f"do not agree to {digits} digits"
+        )
+
+
+def _largest_difference(poorer: Quantities, better: Quantities) -> np.ndarray[Any, Any]:
+    """Row by row, the largest relative Frobenius distance over the quantities."""
+    by_quantity = [
+        [_distance(p, b) for p, b in zip(poorer[name], better[name], strict=True)]
+        for name in better
+    ]
+    return np.array([max(row) for row in zip(*by_quantity, strict=True)], dtype=object)
+
+
+def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:
+    size = mp.norm(list(b.flat))
+    return mp.norm(list((p - b).flat)) / (size if size > 0 else 1)
+
+
+def solution(scene: Scene, route: str | None = None) -> Solution:
+    """The exact solution of a scene: the closed form where every tracked quantity has one, else Taylor.
+
+    With ``route="mpmath"`` only the closed form is accepted, and NoClosedForm is raised where it is
+    missing; ``route="taylor"`` takes the Taylor recursion in any case.
+    """
+    from verify.exact.taylor import TaylorSolution
+
+    if route == "taylor":
+        return TaylorSolution(scene)
+    try:
+        return _closed_form(scene.model)(scene)
+    except NoClosedForm:
+        if route is not None:
+            raise
+        return TaylorSolution(scene)
+
+
+def _closed_form(model: str) -> Callable[[Scene], Solution]:
+    if model == "euler":
+        from verify.exact.euler.jacobi import closed_form
+    else:
+        from verify.exact.kirchhoff.jacobi import closed_form
+    return closed_form
