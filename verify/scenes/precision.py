@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 LADDER = ("f32", "f64", "f80", "f128", "mp237")
 
@@ -77,6 +78,13 @@ def floor_log2(value: Fraction) -> int:
     size = abs(value)
     estimate = size.numerator.bit_length() - size.denominator.bit_length()
     return estimate if power_of_two(estimate) <= size else estimate - 1
+
+
+def held_exactly(value: Fraction) -> Any:
+    """The mpf that equals a dyadic rational, whatever the ambient precision of mpmath."""
+    from mpmath import libmp, mp
+
+    return mp.make_mpf(libmp.from_man_exp(value.numerator, 1 - value.denominator.bit_length()))
 
 
 def float_text(value: Fraction) -> str:

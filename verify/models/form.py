@@ -1,0 +1,103 @@
+"""The form of a system of equations: which states and which parameters it has, and nothing numeric.
+
+Two scenes with the same form share one compiled integrator. A parameter that is zero is no
+parameter, an untracked attitude no state: `for_scene` builds only what the scene requires.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from verify.models.algebra import ABSENT
+from verify.models.euler import angular_velocity, momentum_rate
+from verify.models.frame import attitude_rate, centre_rate
+from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
+
+CLEBSCH_NAMES = ("p", "p'", "q", "q'", "r", "r'")
+
+
+class Named(dict[str, Any]):
+    """Symbols by name; a name that the form does not have is an absent term."""
+
+    def __missing__(self, name: str) -> int:
+        return ABSENT
+
+    def vector(self, letter: str) -> list[Any]:
+        return [self[f"{letter}{i}"] for i in (1, 2, 3)]
+
+    def matrix(self, letter: str) -> list[list[Any]]:
+        return [[self[f"{letter}{i}{j}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+
+    def symmetric(self, letter: str) -> list[list[Any]]:
+        """A matrix of which the upper triangle alone is named."""
+        return [[self[f"{letter}{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+
+    def quaternion(self) -> list[Any]:
+        return [self[f"e{i}"] for i in range(4)]
+
+
+Equations = Callable[[Named], Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Form:
+    """Equations together with the names of the states and parameters that enter them.
+
+    States: H1 H2 H3 (Euler) or x1 x2 x3 y1 y2 [y3] (Kirchhoff), then e0..e3 (attitude quaternion) and
+    c1 c2 c3 (centre) where they are tracked.
+    """
+
+    equations: Equations
+    states: tuple[str, ...]
+    parameters: tuple[str, ...]
+
+    def rates(self, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+        """d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent."""
+        named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True))
+        rates = self.equations(named)
+        return [rates[name] for name in self.states]
+
+
+def euler_equations(n: Named) -> dict[str, Any]:
+    """H' = H x K H + M, and the attitude where it is tracked."""
+    H, K = n.vector("H"), n.symmetric("K")
+    rates = _named("H", momentum_rate(H, K, n.vector("M")))
+    return rates | _frame_rates(n, angular_velocity(H, K), U=None)
+
+
+def kirchhoff_equations(n: Named) -> dict[str, Any]:
+    """48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
+    x, y = n.vector("x"), n.vector("y")
+    U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
+    x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
+    return _named("x", x_rate) | _named("y", y_rate) | _frame_rates(n, Omega, U)
+
+
+def clebsch_equations(n: Named) -> dict[str, Any]:
+    """Clebsch's T about axis 3; y3 is a state only where a couple turns it."""
+    x, y = n.vector("x"), n.vector("y")
+    six = [n[name] for name in CLEBSCH_NAMES]
+    x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
+    p, p_prime, q, q_prime, r, r_prime = six
+    U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
+    return _named("x", x_rate) | _named("y", y_rate) | _frame_rates(n, Omega, U)
+
+
+def _frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
+    rates: dict[str, Any] = {}
+    if "e0" in n:
+        attitude = attitude_rate(n.quaternion(), omega)
+        rates |= {f"e{i}": rate for i, rate in enumerate(attitude)}
+    if "c1" in n and U is not None:
+        rates |= _named("c", centre_rate(n.quaternion(), U))
+    return rates
+
+
+def _named(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
+    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+
+
+def _axial(transverse: Any, axial: Any) -> list[list[Any]]:
+    return [[transverse, 0, 0], [0, transverse, 0], [0, 0, axial]]

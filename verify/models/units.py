@@ -1,0 +1,106 @@
+"""Units in which a problem has size one: exact powers of two, so that changing them rounds nothing.
+
+heyoka's error control is absolute below one and relative above; in these units it is relative to
+the motion itself, whatever units the scene uses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.scenes import tensors
+from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.motion import Impulse, Spin
+from verify.scenes.precision import floor_log2, power_of_two
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import Vector
+
+
+@dataclass(frozen=True)
+class Units:
+    """scaled value x unit = physical value; each unit is a power of two.
+
+    ``momentum`` is that of H (Euler) or y (Kirchhoff), ``impulse`` that of x.
+    """
+
+    time: Fraction
+    momentum: Fraction
+    impulse: Fraction = Fraction(1)
+
+    @property
+    def inverse_inertia(self) -> Fraction:
+        """Unit of K and C: Omega = C y is measured in 1/time."""
+        return 1 / (self.momentum * self.time)
+
+    @property
+    def coupling(self) -> Fraction:
+        """Unit of B: Omega = B^T x."""
+        return 1 / (self.impulse * self.time)
+
+    @property
+    def inverse_mass(self) -> Fraction:
+        """Unit of A: x x A x is a couple, measured in momentum/time."""
+        return self.momentum / (self.impulse**2 * self.time)
+
+    @property
+    def length(self) -> Fraction:
+        """Unit of the centre: U = B y, times time."""
+        return self.momentum / self.impulse
+
+
+def natural_units(scene: Scene) -> Units:
+    """The units in which the initial state and the fastest rate are of order one."""
+    if isinstance(scene.body, RigidBody):
+        assert isinstance(scene.initial, Spin)
+        return _euler_units(scene.body, scene.initial, _span(scene))
+    assert isinstance(scene.initial, Impulse)
+    return _kirchhoff_units(scene.body, scene.initial, _span(scene))
+
+
+def _euler_units(body: RigidBody, initial: Spin, span: Fraction) -> Units:
+    momentum = tensors.apply(body.inertia, initial.omega)
+    unit = _size(momentum) or _binary(_size(body.moment) * span) or Fraction(1)
+    rate = _largest(body.inverse_inertia) * unit
+    return Units(time=1 / _binary(rate), momentum=unit)
+
+
+def _kirchhoff_units(body: ImmersedBody, initial: Impulse, span: Fraction) -> Units:
+    """x keeps its norm without a force; y may start at zero and take up all the energy."""
+    state = initial.linear + initial.angular
+    doubled_energy = tensors.dot(state, tensors.apply(body.energy_matrix, state))
+    spun_up = _root(doubled_energy / _largest(body.angular)) if doubled_energy else Fraction(0)
+    impulse = _size(initial.linear) or _binary(_size(body.force) * span)
+    momentum = max(_size(initial.angular), spun_up) or _binary(_size(body.couple) * span)
+    impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
+    rate = max(
+        _largest(body.linear) * impulse**2 / momentum,
+        _largest(body.coupling) * impulse,
+        _largest(body.angular) * momentum,
+    )
+    return Units(time=1 / _binary(rate), momentum=momentum, impulse=impulse)
+
+
+def _span(scene: Scene) -> Fraction:
+    return max(abs(t) for t in scene.clock.elapsed)
+
+
+def _largest(matrix: Iterable[Vector]) -> Fraction:
+    return max(abs(entry) for row in matrix for entry in row)
+
+
+def _size(vector: Vector) -> Fraction:
+    """A power of two within a factor of two of the norm; 0 for the zero vector."""
+    squared = tensors.dot(vector, vector)
+    return _root(squared) if squared else Fraction(0)
+
+
+def _root(squared: Fraction) -> Fraction:
+    """A power of two within a factor of two of the square root."""
+    return power_of_two(floor_log2(squared) // 2)
+
+
+def _binary(value: Fraction) -> Fraction:
+    """The power of two just below the value; 0 for 0."""
+    return power_of_two(floor_log2(value)) if value else Fraction(0)

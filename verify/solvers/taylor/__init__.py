@@ -1,0 +1,1 @@
+"""heyoka's adaptive Taylor integrator, driven so that it cannot be silently wrong."""

@@ -1,0 +1,59 @@
+"""Where heyoka keeps compiled code: with the user's other caches, one folder per processor type.
+
+heyoka's key for compiled code does not name the processor, so a cache carried to another machine
+(a home directory on a network, a CI cache, a container layer) could run instructions that the
+processor does not have. The folder's name does.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import tempfile
+from pathlib import Path
+
+import heyoka as hy
+from platformdirs import user_cache_path
+
+
+def use_own_cache() -> None:
+    """Point heyoka's disk cache at this processor's folder, or run uncached where none can be made.
+
+    HEYOKA_CACHE_DIR, where set, is the folder in which the processor's own is made.
+    """
+    # heyoka prints its warnings on stdout, which belongs to the command's own output.
+    hy.set_logger_level_error()
+    base = os.environ.get("HEYOKA_CACHE_DIR")
+    parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
+    folder = parent / processor_key()
+    if _is_writable(folder):
+        hy.llvm_state.set_diskcache_path(str(folder))
+    else:
+        hy.llvm_state.set_diskcache_enabled(False)
+
+
+def processor_key() -> str:
+    """A name that differs between processors with different instruction sets."""
+    features = _processor_features()
+    digest = hashlib.sha256(features.encode()).hexdigest()[:12]
+    return f"{platform.machine() or 'unknown'}-{digest}"
+
+
+def _processor_features() -> str:
+    """Model and instruction-set flags as Linux lists them; elsewhere what the platform names."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return f"{platform.processor()} {platform.platform()}"
+    wanted = ("model name", "cpu family", "model\t", "flags", "Features", "CPU part")
+    return "\n".join(sorted({line for line in lines if line.startswith(wanted)}))
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False

@@ -1,0 +1,143 @@
+"""heyoka's Taylor integrator as a solver: typed, scaled, step-capped, bounded and checked.
+
+What heyoka does silently by itself and why it cannot happen here:
+a coefficient rounded to a double      all coefficients are parameters of the rung's own type
+a state far from size one              the problem is posed in units of its own size
+a small component lost beside a large  no step is longer than half a radian of the fastest rate
+an endless or a broken run             the number of steps is bounded and the outcome is read
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from time import perf_counter
+from typing import Any, final
+
+import heyoka as hy
+import numpy as np
+
+from verify.models.algebra import is_absent
+from verify.models.form import Form
+from verify.models.problem import Problem
+from verify.models.rates import rate_bound
+from verify.scenes.precision import Rung
+from verify.solvers.solver import Solver
+from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.numbers import arithmetic, unavailable
+from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+
+# Half a radian: heyoka's own step on a regular orbit is shorter, so the cap costs nothing there; a
+# start close to an unstable axis, where the step would grow with the logarithm of the distance, is
+# what it is for.
+_LONGEST_STEP = 0.5
+# A regular orbit takes about three steps per radian and a close passage a few times more.
+_STEPS_PER_RADIAN = 64
+# A load can only be bounded ahead by assuming that all of it spins the body up, so a loaded body's
+# bound is renewed this many times.
+_LOADED_SEGMENTS = 25
+# Beyond this many states straight-line code compiles longer than it runs.
+_LARGEST_STRAIGHT_LINE = 5
+
+_OUTCOMES = {
+    hy.taylor_outcome.time_limit: Outcome.FINISHED,
+    hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
+    hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
+}
+
+
+@final
+@dataclass(frozen=True)
+class Taylor(Solver):
+    """heyoka at the tolerance of the rung's own roundoff."""
+
+    name: str = "taylor"
+    setting: str = ""
+
+    def unavailable(self, rung: Rung) -> str:
+        return unavailable(rung)
+
+    def solve(self, problem: Problem) -> Trajectory:
+        began = perf_counter()
+        integrator = _integrator(problem.form, problem.rung)
+        compiled = perf_counter()
+        outcome, steps, rows = _propagate(integrator, problem)
+        seconds = perf_counter() - compiled
+        numbers = arithmetic(problem.rung)
+        quantities = {}
+        if outcome is Outcome.FINISHED:
+            exact = [[numbers.exact(value) for value in row] for row in rows]
+            quantities = from_scaled(problem, exact)
+        return Trajectory(
+            outcome=outcome,
+            quantities=quantities,
+            steps=steps,
+            evaluations=steps * int(integrator.order),
+            seconds=seconds,
+            compile_seconds=compiled - began,
+        )
+
+
+@lru_cache(maxsize=64)
+def _integrator(form: Form, rung: Rung) -> Any:
+    """One compiled integrator per form and rung; parameters and states are filled in per problem."""
+    use_own_cache()
+    numbers = arithmetic(rung)
+    zero = numbers.number(Fraction(0))
+    states = hy.make_vars(*form.states)
+    rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
+    system = [
+        (state, hy.expression(0.0) if is_absent(rate) else rate)
+        for state, rate in zip(states, rates, strict=True)
+    ]
+    return hy.taylor_adaptive(
+        system,
+        state=np.array([zero] * len(states), dtype=numbers.fp_type),
+        time=zero,
+        pars=np.array([zero] * len(form.parameters), dtype=numbers.fp_type),
+        fp_type=numbers.fp_type,
+        compact_mode=numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
+    )
+
+
+def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[Any]]:
+    """Sample the problem's times; the outcome is FINISHED only if every row is there and finite."""
+    numbers = arithmetic(problem.rung)
+    integrator.time = numbers.number(Fraction(0))
+    integrator.state[:] = numbers.array(problem.initial)
+    integrator.pars[:] = numbers.array(problem.parameters)
+    bound = rate_bound(problem)
+    # The grid starts at the integrator's own time, asked for or not.
+    grid = problem.times if problem.times[0] == 0 else (Fraction(0), *problem.times)
+    rows, total_steps, outcome = [integrator.state.copy()], 0, Outcome.FINISHED
+    for first, last in _segments(len(grid), is_free=bound.is_free):
+        span = float(grid[last] - grid[first])
+        rate = bound.ahead([float(value) for value in integrator.state], span)
+        status, _, _, steps, _, reached = integrator.propagate_grid(
+            numbers.array(grid[first : last + 1]),
+            max_delta_t=numbers.number(problem.rung.round(Fraction(_LONGEST_STEP / rate))),
+            max_steps=1000 + int(_STEPS_PER_RADIAN * rate * abs(span)),
+        )
+        rows.extend(reached[1:])
+        total_steps += int(steps)
+        outcome = _OUTCOMES.get(status, Outcome.INTERRUPTED)
+        if outcome is Outcome.FINISHED and not _are_finite(reached):
+            outcome = Outcome.NON_FINITE
+        if outcome is not Outcome.FINISHED:
+            return outcome, total_steps, []
+    if len(rows) != len(grid):
+        return Outcome.INTERRUPTED, total_steps, []
+    return outcome, total_steps, rows[len(grid) - len(problem.times) :]
+
+
+def _segments(instants: int, *, is_free: bool) -> list[tuple[int, int]]:
+    """Stretches of the grid with one step cap each: the whole span, or for a loaded body pieces."""
+    pieces = 1 if is_free else min(instants - 1, _LOADED_SEGMENTS)
+    ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)})
+    return list(zip(ends, ends[1:], strict=False))
+
+
+def _are_finite(rows: np.ndarray[Any, Any]) -> bool:
+    """x - x is 0 for a finite number of any type, and NaN for all others."""
+    return all(bool(value - value == 0) for value in rows.flat)

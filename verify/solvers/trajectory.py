@@ -1,0 +1,106 @@
+"""What a solver answers: how it ended, and where it put the body, in exactly held numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from verify.models.frame import rotation
+from verify.models.problem import Problem
+from verify.scenes import tensors
+from verify.scenes.bodies import RigidBody
+from verify.scenes.motion import Impulse, Motion
+from verify.scenes.precision import held_exactly
+
+
+class Outcome(Enum):
+    """How a solver ended; the value is the sentence that is shown."""
+
+    FINISHED = "reached the last sample"
+    NON_FINITE = "stopped: a state or derivative was not finite"
+    STEP_LIMIT = "stopped: the bound on the number of steps was reached"
+    INTERRUPTED = "stopped before the last sample"
+    NOT_REPRESENTABLE = "not started: the rung cannot hold the scene"
+    MISSHAPEN = "answered with an array of the wrong shape"
+    RAISED = "ended with an error"
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The answer of one solver to one problem.
+
+    ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse``, ``centre`` (n, 3) and
+    ``quaternion`` (n, 4; body to space, any sign, nearly unit) to object arrays of mpf that hold the
+    solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED.
+    ``evaluations`` counts derivatives of the whole state, ``seconds`` the propagation alone and
+    ``compile_seconds`` what came before it.
+    """
+
+    outcome: Outcome
+    quantities: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+    detail: str = ""
+    steps: int = 0
+    evaluations: int = 0
+    seconds: float = 0.0
+    compile_seconds: float = 0.0
+
+    def motion(self, bits: int) -> Motion:
+        """The same as a Motion: attitude matrices are formed with ``bits`` of precision."""
+        quantities = {k: v for k, v in self.quantities.items() if k != "quaternion"}
+        if "quaternion" in self.quantities:
+            with mp.workprec(bits):
+                quantities["attitude"] = np.array(
+                    [_rotation_matrix(q) for q in self.quantities["quaternion"]], dtype=object
+                )
+        samples = len(next(iter(quantities.values())))
+        return Motion(quantities, np.array([mp.zero] * samples, dtype=object))
+
+
+def _rotation_matrix(q: np.ndarray[Any, Any]) -> list[list[Any]]:
+    squared_norm = sum(component * component for component in q)
+    return [[entry / squared_norm for entry in row] for row in rotation(q)]
+
+
+def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
+    """The quantities of states in the problem's own form and units, formed exactly.
+
+    omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
+    """
+    columns = dict(zip(problem.form.states, zip(*rows, strict=True), strict=True))
+    units, given = problem.units, problem.given
+    quantities = {}
+    if isinstance(given.body, RigidBody):
+        K = tensors.inverse(given.body.inertia)
+        momenta = _vectors(columns, "H", units.momentum)
+        quantities["omega"] = [tensors.apply(K, H) for H in momenta]
+    else:
+        if "y3" not in columns:
+            constant = problem.parameter.get("y3", Fraction(0))
+            columns["y3"] = (constant,) * len(rows)
+        quantities["linear_impulse"] = _vectors(columns, "x", units.impulse)
+        quantities["angular_impulse"] = _vectors(columns, "y", units.momentum)
+    if "e0" in columns:
+        quantities["quaternion"] = list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
+    if "c1" in columns:
+        assert isinstance(given.initial, Impulse)
+        start = given.initial.centre
+        quantities["centre"] = [
+            tensors.plus(start, c) for c in _vectors(columns, "c", units.length)
+        ]
+    return {
+        name: np.array([[held_exactly(entry) for entry in row] for row in vectors], dtype=object)
+        for name, vectors in quantities.items()
+    }
+
+
+def _vectors(
+    columns: Mapping[str, Sequence[Fraction]], letter: str, unit: Fraction
+) -> list[tensors.Vector]:
+    triple = zip(*(columns[f"{letter}{i}"] for i in (1, 2, 3)), strict=True)
+    return [tensors.scaled(unit, vector) for vector in triple]
