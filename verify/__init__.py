@@ -1,0 +1,27 @@
+"""The reference that rigid-body and ideal-fluid simulations are measured against.
+
+    load(scene)                  a scene file or shipped scene, in exact numbers
+    exact(scene, times, digits)  the exact motion
+    run(scene, solver, rung)     solve, compare with the exact motion, judge
+    check(scene, solve)          judge a solver of one's own
+
+Every name is imported when it is first used, so that `import verify` costs nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+# These modules are callable, because a room and the function it is for share a name.
+_CALLABLE = ("check", "exact", "run")
+
+__all__ = ["check", "exact", "load", "run"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "load":
+        return import_module("verify.scenes.reader").load
+    if name in _CALLABLE:
+        return import_module(f"verify.{name}")
+    raise AttributeError(f"module 'verify' has no attribute {name!r}")

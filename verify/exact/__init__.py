@@ -1,0 +1,37 @@
+"""The truth: exact motions, conserved quantities and the condition of an orbit.
+
+The room is callable: `verify.exact(scene, times, digits)`. It imports nothing of models, solvers or
+judge, because what it is compared with must not be part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from verify.callable_module import make_callable
+
+if TYPE_CHECKING:
+    from verify.scenes.motion import Motion
+    from verify.scenes.scene import Scene
+
+
+def exact(
+    scene: Scene | str, times: Sequence[Any], digits: int = 30, route: str | None = None
+) -> Motion:
+    """The exact motion at absolute times, to ``digits`` significant digits of every vector.
+
+    Times are Fractions, integers or decimal text. ``route`` is ``mpmath`` (closed form) or
+    ``taylor``; by default the closed form where there is one. Raises exact.solution.NoClosedForm
+    where the route asks for a closed form that is missing.
+    """
+    from verify.exact.route import solution
+    from verify.scenes.reader import load
+
+    scene = load(scene) if isinstance(scene, str) else scene
+    elapsed = [Fraction(time) - scene.clock.start for time in times]
+    return solution(scene, route).motion(elapsed, digits)
+
+
+make_callable(__name__, exact)

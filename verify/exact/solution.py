@@ -6,7 +6,7 @@ The truth is independent of what it judges: nothing here imports models, solvers
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final, final
 
@@ -14,11 +14,9 @@ import numpy as np
 from mpmath import mp, mpf
 
 from verify.scenes.motion import Motion
-from verify.scenes.scene import Scene
 
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 
-ROUTES: Final = ("mpmath", "taylor")
 NO_CLOSED_FORM: Final = "no closed form"
 
 _FIRST_GUARD_DIGITS = 12
@@ -90,29 +88,3 @@ def _largest_difference(poorer: Quantities, better: Quantities) -> np.ndarray[An
 def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:
     size = mp.norm(list(b.flat))
     return mp.norm(list((p - b).flat)) / (size if size > 0 else 1)
-
-
-def solution(scene: Scene, route: str | None = None) -> Solution:
-    """The exact solution of a scene: the closed form where every tracked quantity has one, else Taylor.
-
-    With ``route="mpmath"`` only the closed form is accepted, and NoClosedForm is raised where it is
-    missing; ``route="taylor"`` takes the Taylor recursion in any case.
-    """
-    from verify.exact.taylor import TaylorSolution
-
-    if route == "taylor":
-        return TaylorSolution(scene)
-    try:
-        return _closed_form(scene.model)(scene)
-    except NoClosedForm:
-        if route is not None:
-            raise
-        return TaylorSolution(scene)
-
-
-def _closed_form(model: str) -> Callable[[Scene], Solution]:
-    if model == "euler":
-        from verify.exact.euler.jacobi import closed_form
-    else:
-        from verify.exact.kirchhoff.jacobi import closed_form
-    return closed_form

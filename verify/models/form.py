@@ -6,6 +6,7 @@ parameter, an untracked attitude no state: `for_scene` builds only what the scen
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,7 @@ from verify.models.algebra import ABSENT
 from verify.models.euler import angular_velocity, momentum_rate
 from verify.models.frame import attitude_rate, centre_rate
 from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
+from verify.models.symbol import Symbol
 
 CLEBSCH_NAMES = ("p", "p'", "q", "q'", "r", "r'")
 
@@ -58,6 +60,18 @@ class Form:
         named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True))
         rates = self.equations(named)
         return [rates[name] for name in self.states]
+
+
+    def text(self) -> tuple[str, ...]:
+        """The equations as they are built, one line a state, zero terms and all that is absent gone."""
+        symbols = [Symbol(name) for name in self.states]
+        rates = self.rates(symbols, [Symbol(name) for name in self.parameters])
+        return tuple(f"{name}' = {rate}" for name, rate in zip(self.states, rates, strict=True))
+
+    def entering(self) -> tuple[str, ...]:
+        """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""
+        written = set(re.findall(r"[A-Za-z]\d*'?", " ".join(self.text())))
+        return tuple(name for name in self.parameters if name in written)
 
 
 def euler_equations(n: Named) -> dict[str, Any]:

@@ -94,7 +94,8 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         # The centre is integrated from the origin and its start added exactly afterwards.
         numbers |= _indexed("c", (Fraction(0),) * 3)
         states += ["c1", "c2", "c3"]
-    parameters = tuple(name for name, value in numbers.items() if name not in states and value)
+    present = tuple(name for name, value in numbers.items() if name not in states and value)
+    parameters = Form(equations, tuple(states), present).entering()
     return Problem(
         scene=scene,
         rung=rung,

@@ -3,7 +3,7 @@
 What heyoka does silently by itself and why it cannot happen here:
 a coefficient rounded to a double      all coefficients are parameters of the rung's own type
 a state far from size one              the problem is posed in units of its own size
-a small component lost beside a large  no step is longer than half a radian of the fastest rate
+a small component lost beside a large  no step is longer than half the fastest linear time scale
 an endless or a broken run             the number of steps is bounded and the outcome is read
 """
 
@@ -12,6 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
+from math import isfinite
 from time import perf_counter
 from typing import Any, final
 
@@ -21,22 +23,21 @@ import numpy as np
 from verify.models.algebra import is_absent
 from verify.models.form import Form
 from verify.models.problem import Problem
-from verify.models.rates import rate_bound
+from verify.models.rates import fastest_rate
 from verify.scenes.precision import Rung
 from verify.solvers.solver import Solver
 from verify.solvers.taylor.cache import use_own_cache
 from verify.solvers.taylor.numbers import arithmetic, unavailable
 from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 
-# Half a radian: heyoka's own step on a regular orbit is shorter, so the cap costs nothing there; a
-# start close to an unstable axis, where the step would grow with the logarithm of the distance, is
-# what it is for.
+# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
+# a start close to an unstable axis, where the step would grow with the logarithm of the distance,
+# is what the cap is for.
 _LONGEST_STEP = 0.5
-# A regular orbit takes about three steps per radian and a close passage a few times more.
+# The rate is looked at again this many times along the way, and the fastest seen so far counts.
+_SEGMENTS = 24
+# A regular orbit takes three to five steps in the time of one radian, a close passage some more.
 _STEPS_PER_RADIAN = 64
-# A load can only be bounded ahead by assuming that all of it spins the body up, so a loaded body's
-# bound is renewed this many times.
-_LOADED_SEGMENTS = 25
 # Beyond this many states straight-line code compiles longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
 
@@ -107,17 +108,17 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[An
     integrator.time = numbers.number(Fraction(0))
     integrator.state[:] = numbers.array(problem.initial)
     integrator.pars[:] = numbers.array(problem.parameters)
-    bound = rate_bound(problem)
     # The grid starts at the integrator's own time, asked for or not.
     grid = problem.times if problem.times[0] == 0 else (Fraction(0), *problem.times)
-    rows, total_steps, outcome = [integrator.state.copy()], 0, Outcome.FINISHED
-    for first, last in _segments(len(grid), is_free=bound.is_free):
-        span = float(grid[last] - grid[first])
-        rate = bound.ahead([float(value) for value in integrator.state], span)
+    rows, total_steps, outcome, rate = [integrator.state.copy()], 0, Outcome.FINISHED, 0.0
+    for first, last in _segments(len(grid)):
+        rate = max(rate, fastest_rate(problem, [float(value) for value in integrator.state]))
+        if not isfinite(rate):
+            return Outcome.NON_FINITE, total_steps, []
         status, _, _, steps, _, reached = integrator.propagate_grid(
             numbers.array(grid[first : last + 1]),
             max_delta_t=numbers.number(problem.rung.round(Fraction(_LONGEST_STEP / rate))),
-            max_steps=1000 + int(_STEPS_PER_RADIAN * rate * abs(span)),
+            max_steps=1000 + int(_STEPS_PER_RADIAN * rate * float(abs(grid[last] - grid[first]))),
         )
         rows.extend(reached[1:])
         total_steps += int(steps)
@@ -131,11 +132,11 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[An
     return outcome, total_steps, rows[len(grid) - len(problem.times) :]
 
 
-def _segments(instants: int, *, is_free: bool) -> list[tuple[int, int]]:
-    """Stretches of the grid with one step cap each: the whole span, or for a loaded body pieces."""
-    pieces = 1 if is_free else min(instants - 1, _LOADED_SEGMENTS)
-    ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)})
-    return list(zip(ends, ends[1:], strict=False))
+def _segments(instants: int) -> list[tuple[int, int]]:
+    """Stretches of the grid, as first and last index, with one step cap each."""
+    pieces = min(instants - 1, _SEGMENTS)
+    ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)}) if pieces else []
+    return list(pairwise(ends))
 
 
 def _are_finite(rows: np.ndarray[Any, Any]) -> bool:

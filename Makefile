@@ -1,0 +1,47 @@
+# The first interpreter that fits; name another one with `make PYTHON=...`.
+FITS = import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info < (3, 15))
+PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$python -c '$(FITS)' 2>/dev/null && echo $$python && break; done)
+BIN = .venv/bin
+PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
+INSTALLED = .venv/.installed
+
+.PHONY: help verify test test-all reports lint clean
+
+help:  ## Print this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+
+verify: $(INSTALLED)  ## Run the standard set of scenes and print its verdicts (writes to reports/local)
+	@$(BIN)/taylor-verify run --out reports/local
+
+test: lint  ## Check style and types, then run all but the slow tests
+	@$(BIN)/python -m pytest -n 2 -m 'not slow'
+
+test-all: lint  ## The same with the slow tests
+	@$(BIN)/python -m pytest -n 2
+
+reports: $(INSTALLED)  ## Rewrite what is published: reports/data, and the tables, plots and pages made from it
+	@$(BIN)/taylor-verify run --out reports/data
+	@$(BIN)/taylor-verify publish
+
+lint: $(INSTALLED)  ## Check style and types only
+	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check
+	@$(BIN)/mypy
+
+clean:  ## Remove the environment, the caches and the local reports
+	rm -rf .venv .hypothesis .mypy_cache .pytest_cache .ruff_cache dist reports/local reports/site
+	find verify tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The stamp is written last: an environment that was only half made has none, and is made again.
+$(INSTALLED): requirements.txt pyproject.toml
+	@'$(PYTHON)' -c '$(FITS)' 2>/dev/null || { \
+		found="$$('$(or $(PYTHON),python3)' --version 2>&1 | tail -n 1)"; \
+		echo "expected Python 3.11 to 3.14 with venv (on Debian the package python3-venv)," \
+			"got $$found; name another interpreter with make PYTHON=..." >&2; exit 2; }
+	@echo 'setting up .venv (once)' >&2
+	@rm -rf .venv
+	@'$(PYTHON)' -m venv .venv
+	@$(PIP) install --require-hashes -r requirements.txt
+	@$(PIP) install --no-deps --no-build-isolation -e .
+	@touch $@

@@ -1,0 +1,27 @@
+"""What every test is held to: it leaves the precision of mpmath and python-flint as it found it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import flint
+import pytest
+from hypothesis import settings
+from mpmath import mp
+
+# An example has no deadline: the first use of an integrator compiles it, and machines are shared.
+settings.register_profile("house", deadline=None)
+settings.load_profile("house")
+
+
+@pytest.fixture(autouse=True)
+def ambient_precision() -> Iterator[None]:
+    """Fail a test that changes a global precision, and restore it for the next one."""
+    before = mp.prec, flint.ctx.prec
+    yield
+    after = mp.prec, flint.ctx.prec
+    mp.prec, flint.ctx.prec = before
+    assert after == before, (
+        f"expected mp.prec and flint.ctx.prec as before the test, {before}, got {after}; "
+        "scope a precision with mp.workprec, mp.workdps or flint.ctx.workprec"
+    )

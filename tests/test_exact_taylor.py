@@ -1,0 +1,254 @@
+"""The Taylor recursion solves the equations of both texts, loads and all, to the digits asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import libmp, mp, mpf
+
+from verify.exact.route import solution
+from verify.exact.solution import Unsettled
+from verify.exact.taylor import TaylorSolution, arcs
+from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.motion import Clock, Impulse, Motion, Spin
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector, diagonal
+
+Array = np.ndarray[Any, Any]
+
+
+def vector(*entries: float | str) -> Vector:
+    """Exact numbers from their decimal text."""
+    return tuple(Fraction(str(entry)) for entry in entries)
+
+
+TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
+MOMENT = vector("0.1", "-0.2", "0.05")
+FORCE, COUPLE = vector("0.1", "0.05", "-0.1"), vector("0.02", "-0.1", "0.05")
+GENERAL = ImmersedBody(
+    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
+    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
+    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
+)
+LOADED = replace(GENERAL, force=FORCE, couple=COUPLE)
+QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
+
+
+def euler(body: RigidBody, *track: str, omega: Vector = vector("0.3", 1, "0.2")) -> Scene:
+    return scene("euler", body, Spin(omega, QUATERNION), track)
+
+
+def kirchhoff(body: ImmersedBody, *track: str) -> Scene:
+    start = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
+    return scene("kirchhoff", body, start, track)
+
+
+def scene(
+    model: str, body: RigidBody | ImmersedBody, start: Spin | Impulse, track: Sequence[str]
+) -> Scene:
+    clock = Clock(Fraction(0), (Fraction(1),))
+    return Scene("test", "test", model, frozenset(track), body, start, clock)
+
+
+EVERYTHING = [
+    euler(RigidBody(TENSOR), "attitude"),
+    euler(RigidBody(TENSOR, MOMENT), "attitude"),
+    kirchhoff(GENERAL, "attitude", "centre"),
+    kirchhoff(LOADED, "attitude", "centre"),
+]
+each_scene = pytest.mark.parametrize(
+    "scene", EVERYTHING, ids=["euler", "euler loaded", "kirchhoff", "kirchhoff loaded"]
+)
+
+
+def matrix(rows: Matrix) -> Array:
+    return np.array([[mp.convert(entry) for entry in row] for row in rows], dtype=object)
+
+
+def rates(scene: Scene, motion: Motion, row: int) -> dict[str, Array]:
+    """The right-hand sides of the texts, written with cross products of whole vectors."""
+    found: dict[str, Array] = {}
+    if isinstance(scene.body, RigidBody):
+        inertia, moment = matrix(scene.body.inertia), matrix((scene.body.moment,))[0]
+        omega = motion["omega"][row]
+        torque = np.cross(inertia @ omega, omega) + moment
+        found["omega"] = np.array(list(mp.lu_solve(mp.matrix(inertia.tolist()), list(torque))))
+    else:
+        body = scene.body
+        x, y = motion["linear_impulse"][row], motion["angular_impulse"][row]
+        velocity = matrix(body.linear) @ x + matrix(body.coupling) @ y
+        omega = matrix(body.coupling).T @ x + matrix(body.angular) @ y
+        found["linear_impulse"] = np.cross(x, omega) + matrix((body.force,))[0]
+        found["angular_impulse"] = (
+            np.cross(y, omega) + np.cross(x, velocity) + matrix((body.couple,))[0]
+        )
+        found["centre"] = motion["attitude"][row] @ velocity
+    found["attitude"] = motion["attitude"][row] @ np.cross(omega, np.eye(3, dtype=int)).T
+    return found
+
+
+def largest(values: Array) -> mpf:
+    return max(abs(value) for value in values.flat)
+
+
+def rational(value: mpf) -> Fraction:
+    """The exact value of an mpf; its tuple has the sign, which man_exp has not."""
+    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
+
+
+@each_scene
+def test_motion_obeys_the_equations(scene: Scene) -> None:
+    """Central differences of the solution equal the equations' right-hand sides."""
+    step, digits = Fraction(1, 10**20), 70
+    times = [2 - step, Fraction(2), 2 + step]
+    motion = TaylorSolution(scene).motion(times, digits)
+    with mp.workdps(digits):
+        for name, rate in rates(scene, motion, 1).items():
+            slope = (motion[name][2] - motion[name][0]) / (2 * mp.convert(step))
+            # The difference's own error is step^2/6 times a third derivative of some tens.
+            assert largest(slope - rate) <= mpf(10) ** -37
+
+
+def test_motion_agrees_with_odefun() -> None:
+    """mpmath's own integrator, given the same equations, arrives at the same state."""
+    scene = kirchhoff(LOADED)
+
+    def right(_: mpf, z: Sequence[mpf]) -> list[mpf]:
+        row = {"linear_impulse": np.array([z[:3]]), "angular_impulse": np.array([z[3:]])}
+        row["attitude"] = np.array([np.eye(3, dtype=int)])
+        found = rates(scene, Motion(row, np.zeros(1)), 0)
+        return [*found["linear_impulse"], *found["angular_impulse"]]
+
+    initial = scene.initial
+    assert isinstance(initial, Impulse)
+    truth = TaylorSolution(scene).motion([Fraction(1)], 25)
+    with mp.workdps(20):
+        start = [mp.convert(entry) for entry in initial.linear + initial.angular]
+        end = mp.odefun(right, 0, start)(1)
+        found = [*truth["linear_impulse"][0], *truth["angular_impulse"][0]]
+        # odefun asks eight guard digits of itself; two digits are left to it.
+        assert largest(np.array(found) - np.array(end)) <= mpf(10) ** -18
+
+
+@pytest.mark.parametrize("span", [Fraction(7, 2), Fraction(-7, 2)], ids=["later", "earlier"])
+def test_a_restarted_motion_continues(span: Fraction) -> None:
+    """The flow is a group: from the state at t, the time s leads to the state at t + s."""
+    scene = kirchhoff(LOADED)
+    whole = TaylorSolution(scene).motion([Fraction(5, 2), Fraction(5, 2) + span], 50)
+    middle = Impulse(
+        tuple(rational(entry) for entry in whole["linear_impulse"][0]),
+        tuple(rational(entry) for entry in whole["angular_impulse"][0]),
+    )
+    rest = arcs(scene, [middle], [span], 45)
+    with mp.workdps(60):
+        for name in rest.quantities:
+            # 50 digits at the restart, and an orbit that makes less than 10^5 of them.
+            assert largest(rest[name][0] - whole[name][1]) <= mpf(10) ** -45
+
+
+def test_arcs_are_motions_of_their_own() -> None:
+    """Row k of arcs is the motion from the k-th state alone, after the k-th span."""
+    scene = euler(RigidBody(TENSOR, MOMENT), "attitude")
+    starts = [Spin(vector(1, 0, "0.5"), QUATERNION), Spin(vector("0.2", -1, 0))]
+    spans = [Fraction(3, 2), Fraction(-1, 3)]
+    together = arcs(scene, starts, spans, 30)
+    for k, (start, span) in enumerate(zip(starts, spans, strict=True)):
+        alone = TaylorSolution(replace(scene, initial=start)).motion([span], 30)
+        with mp.workdps(50):
+            for name in together.quantities:
+                assert largest(together[name][k] - alone[name][0]) <= mpf(10) ** -30
+
+
+def test_times_come_in_any_order() -> None:
+    """Rows follow the times asked for: of both signs, unsorted, repeated, zero."""
+    times = [Fraction(2), Fraction(-1), Fraction(0), Fraction(1, 3), Fraction(2)]
+    exact = TaylorSolution(euler(RigidBody(TENSOR)))
+    together = exact.motion(times, 30)["omega"]
+    with mp.workdps(50):
+        for row, time in zip(together, times, strict=True):
+            assert largest(row - exact.motion([time], 30)["omega"][0]) <= mpf(10) ** -30
+        start = np.array([mp.convert(entry) for entry in vector("0.3", 1, "0.2")])
+        assert largest(together[2] - start) <= mpf(10) ** -40
+
+
+def test_spherical_body_under_a_moment() -> None:
+    """With equal moments of inertia omega = omega0 + M t / J, and no step is too long for it."""
+    body = RigidBody(diagonal(vector(3, 3, 3)), MOMENT)
+    time = Fraction(10**6, 7)
+    found = TaylorSolution(euler(body)).motion([time], 40)["omega"][0]
+    with mp.workdps(60):
+        expected = [
+            mp.convert(w + m * time / 3)
+            for w, m in zip(vector("0.3", 1, "0.2"), MOMENT, strict=True)
+        ]
+        assert largest(found - np.array(expected)) <= mpf(10) ** -40 * max(map(abs, expected))
+
+
+@each_scene
+def test_attitude_stays_a_rotation(scene: Scene) -> None:
+    """R^T R = 1 and det R = 1, though every entry is integrated for itself."""
+    turns = TaylorSolution(scene).motion([Fraction(0), Fraction(4)], 40)["attitude"]
+    with mp.workdps(50):
+        for turn in turns:
+            assert largest(turn.T @ turn - np.eye(3, dtype=int)) <= mpf(10) ** -39
+            assert abs(mp.det(mp.matrix(turn.tolist())) - 1) <= mpf(10) ** -39
+
+
+def test_a_quaternion_stands_for_a_direction() -> None:
+    """Its norm does not matter, and it turns body components into space components."""
+    quarter = Spin(vector(0, 0, 0), (Fraction(5), Fraction(0), Fraction(0), Fraction(5)))
+    scene = replace(euler(RigidBody(TENSOR), "attitude"), initial=quarter)
+    turn = TaylorSolution(scene).motion([Fraction(1)], 20)["attitude"][0]
+    # A quarter turn about axis 3 takes body axis 1 to space axis 2.
+    assert [float(entry) for entry in turn[:, 0]] == [0, 1, 0]
+
+
+@pytest.mark.parametrize("digits", [32, 52, 72])
+def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
+    """Two evaluations that are compared share neither precision nor order nor the ratio of both."""
+    exact = TaylorSolution(euler(RigidBody(TENSOR)))
+    one, other = exact._grid(digits), exact._grid(digits + 20)
+    assert one.bits < other.bits
+    assert one.order != other.order
+    # A step is radius / 2^(bits/order): unequal ratios make unequal steps.
+    assert one.orders_per_bit != other.orders_per_bit
+
+
+def test_small_blocks_are_resolved() -> None:
+    """A motion 10^-30 of the usual size has as many significant digits."""
+    small = tuple(entry / 10**30 for entry in vector("0.3", 1, "0.2"))
+    tiny = TaylorSolution(euler(RigidBody(TENSOR), omega=small)).evaluate([Fraction(10**30)], 40)
+    usual = TaylorSolution(euler(RigidBody(TENSOR))).evaluate([Fraction(1)], 40)
+    with mp.workdps(60):
+        # omega(t) scales with its inverse time: the same digits, thirty places lower.
+        assert largest(tiny["omega"] * mpf(10) ** 30 - usual["omega"]) <= mpf(10) ** -40
+
+
+def test_endless_work_is_refused() -> None:
+    """A span of more than a million steps is refused at once, with the number of steps."""
+    with pytest.raises(Unsettled, match="steps"):
+        TaylorSolution(euler(RigidBody(TENSOR))).evaluate([Fraction(10**9)], 20)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        euler(RigidBody(TENSOR)),
+        kirchhoff(Clebsch(*vector(1, 2, 0, 0, 1, "0.5")).body()),
+    ],
+    ids=["euler", "clebsch"],
+)
+def test_both_routes_agree(scene: Scene) -> None:
+    """The closed form and the recursion are one motion."""
+    times = [Fraction(-3), Fraction(1, 7), Fraction(20)]
+    closed, taylor = (solution(scene, route).motion(times, 40) for route in ("mpmath", "taylor"))
+    with mp.workdps(60):
+        for name in taylor.quantities:
+            assert largest(closed[name] - taylor[name]) <= 2 * mpf(10) ** -40 * largest(
+                taylor[name]
+            )

@@ -1,0 +1,406 @@
+"""The shape of the tree: who may import whom, who may print, and what a file may be called."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import graphlib
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import pytest
+
+pytest_plugins = ["pytester"]
+
+PACKAGE: Final = Path(__file__).resolve().parents[1] / "verify"
+
+Sources = Mapping[str, str]
+"""Module name to source text; a package goes by its own name, as in an import."""
+
+
+# What a module imports
+
+
+class Import(NamedTuple):
+    """One imported name in full, such as ``verify.judge.verdict.Verdict``."""
+
+    target: str
+    line: int
+    for_types_only: bool
+
+
+@functools.cache
+def imports(source: str) -> tuple[Import, ...]:
+    """Every import of a module: at its top, inside functions, and import_module of a literal."""
+    return tuple(_imports_below(ast.parse(source), for_types_only=False))
+
+
+def _imports_below(node: ast.AST, for_types_only: bool) -> Iterator[Import]:
+    for target in _imported(node):
+        yield Import(target, node.lineno, for_types_only)
+    guarded = node.body if isinstance(node, ast.If) and _is_type_checking(node.test) else []
+    for child in ast.iter_child_nodes(node):
+        yield from _imports_below(child, for_types_only or child in guarded)
+
+
+def _imported(node: ast.AST) -> list[str]:
+    match node:
+        case ast.Import(names=names):
+            return [alias.name for alias in names]
+        case ast.ImportFrom(module=module, names=names, level=level):
+            # A relative import keeps its dots, which no rule below allows.
+            base = "." * level + (module or "")
+            return [f"{base}.{alias.name}" for alias in names]
+        case ast.Call(func=function, args=[ast.Constant(value=str(name)), *_]):
+            return [name] if _last_name(function) in {"import_module", "__import__"} else []
+    return []
+
+
+def _is_type_checking(test: ast.expr) -> bool:
+    return _last_name(test) == "TYPE_CHECKING"
+
+
+def _last_name(node: ast.AST) -> str:
+    match node:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+    return ""
+
+
+# The rules: each takes (module name, source text) and yields what is wrong, with its place
+
+
+Rule = Callable[[str, str], Iterator[str]]
+
+# Rooms that a room knows nothing of. The truth must not lean on what it judges, nor the reverse.
+WALLS: Final = {
+    "exact": {"models", "solvers", "judge", "publish", "controls"},
+    "models": {"exact", "judge", "solvers"},
+    "solvers": {"exact", "judge"},
+}
+
+
+def within(name: str, *roots: str) -> bool:
+    """Whether a dotted name is one of these modules or something inside one."""
+    return any(name == root or name.startswith(f"{root}.") for root in roots)
+
+
+def room(module: str) -> str:
+    """The room of a module: ``exact`` for ``verify.exact.euler.jacobi``, empty at the top level."""
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else ""
+
+
+def keeps_its_walls(module: str, source: str) -> Iterator[str]:
+    """exact, models and solvers import nothing from the rooms they are walled off from."""
+    forbidden = [f"verify.{other}" for other in WALLS.get(room(module), ())]
+    for target, line, _ in imports(source):
+        if within(target, *forbidden):
+            yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
+
+
+def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
+    """scenes imports nothing of verify but scenes."""
+    if room(module) == "scenes":
+        yield from _beyond(["verify.scenes"], module, source)
+
+
+def publish_reads_verdicts(module: str, source: str) -> Iterator[str]:
+    """publish imports judge.verdict and judge.record only, and scenes for its type hints."""
+    if room(module) == "publish":
+        readable = ["verify.publish", "verify.judge.verdict", "verify.judge.record"]
+        yield from _beyond(readable, module, source, for_types=["verify.scenes"])
+
+
+def stands_in_its_own_environment(module: str, source: str) -> Iterator[str]:
+    """A program in solvers/outside imports nothing of verify: its environment has no verify."""
+    if within(module, "verify.solvers.outside"):
+        yield from _beyond([], module, source)
+
+
+def _beyond(
+    allowed: list[str], module: str, source: str, for_types: Iterable[str] = ()
+) -> Iterator[str]:
+    """What a module imports of verify beyond these; type hints may use ``for_types`` too."""
+    for target, line, for_types_only in imports(source):
+        readable = [*allowed, *for_types] if for_types_only else allowed
+        if within(target, "verify") and not within(target, *readable):
+            expected = " or ".join(readable) or "nothing of verify"
+            yield f"expected {expected}, got {target} @ {module}:{line}"
+
+
+def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
+    """heyoka is imported only in models and in solvers/taylor."""
+    placed = within(module, "verify.models") or module.startswith("verify.solvers.taylor")
+    for target, line, _ in imports(source):
+        if within(target, "heyoka") and not placed:
+            yield f"expected heyoka in models or solvers/taylor, got {target} @ {module}:{line}"
+
+
+def is_silent(module: str, source: str) -> Iterator[str]:
+    """Printing is for cli and progress, and for the programs in solvers/outside."""
+    if within(module, "verify.cli", "verify.progress", "verify.solvers.outside"):
+        return
+    for target, line, _ in imports(source):
+        if within(target, "rich", "sys.stdout", "sys.stderr"):
+            yield f"expected printing in cli only, got {target} @ {module}:{line}"
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Call(func=ast.Name(id="print")):
+                yield f"expected printing in cli only, got print() @ {module}:{node.lineno}"
+            case ast.Attribute(value=ast.Name(id="sys"), attr="stdout" | "stderr"):
+                yield f"expected printing in cli only, got sys.{node.attr} @ {module}:{node.lineno}"
+
+
+def imports_in_full(module: str, source: str) -> Iterator[str]:
+    """No import is relative, and none takes everything."""
+    for target, line, _ in imports(source):
+        if target.startswith(".") or target.endswith(".*"):
+            yield f"expected an import of a full name, got {target} @ {module}:{line}"
+
+
+def names_a_noun(module: str, source: str) -> Iterator[str]:
+    """No file or folder is called utils, core, common or helpers."""
+    for part in module.split("."):
+        if part in {"utils", "core", "common", "helpers"}:
+            yield f"expected a name that says what is returned, got {part} @ {module}"
+
+
+def says_what_it_is(module: str, source: str) -> Iterator[str]:
+    """Every module with something in it has a docstring."""
+    if source.strip() and not ast.get_docstring(ast.parse(source)):
+        yield f"expected a docstring, got none @ {module}"
+
+
+def is_small(module: str, source: str) -> Iterator[str]:
+    """A file has at most 400 lines; beyond that a noun is missing."""
+    lines = len(source.splitlines())
+    if not lines <= 400:
+        yield f"expected at most 400 lines, got {lines} @ {module}"
+
+
+RULES: Final = (
+    keeps_its_walls,
+    scenes_stand_alone,
+    publish_reads_verdicts,
+    heyoka_has_its_place,
+    is_silent,
+    stands_in_its_own_environment,
+    imports_in_full,
+    names_a_noun,
+    says_what_it_is,
+    is_small,
+)
+
+
+# The rules about all modules together
+
+
+def import_graph(sources: Sources) -> dict[str, set[str]]:
+    """Which modules each module imports when it runs, function bodies included."""
+    return {
+        module: {
+            owner
+            for target, _, for_types_only in imports(source)
+            if not for_types_only and (owner := _owner(target, sources)) not in {None, module}
+        }
+        for module, source in sources.items()
+    }
+
+
+def _owner(target: str, sources: Iterable[str]) -> str | None:
+    """The module that an imported name belongs to: its longest prefix that is a module."""
+    parts = target.split(".")
+    prefixes = (".".join(parts[:n]) for n in range(len(parts), 0, -1))
+    return next((prefix for prefix in prefixes if prefix in sources), None)
+
+
+def circle(sources: Sources) -> list[str]:
+    """One circle of imports, from a module back to itself; empty where there is none."""
+    try:
+        graphlib.TopologicalSorter(import_graph(sources)).prepare()
+    except graphlib.CycleError as error:
+        # graphlib lists it in the order of being imported.
+        return list(reversed(error.args[1]))
+    return []
+
+
+def detours(sources: Sources) -> Iterator[str]:
+    """Walls that are passed by way of a third room."""
+    graph = import_graph(sources)
+    for module in sources:
+        forbidden = WALLS.get(room(module), set())
+        for reached in sorted(_reachable(module, graph)):
+            if room(reached) in forbidden:
+                yield f"expected no way to {room(reached)}, got {reached} @ {module}"
+
+
+def _reachable(module: str, graph: Mapping[str, set[str]]) -> set[str]:
+    seen: set[str] = set()
+    waiting = [module]
+    while waiting:
+        found = graph[waiting.pop()] - seen
+        seen |= found
+        waiting.extend(found)
+    return seen
+
+
+# The tree itself
+
+
+def read_package() -> dict[str, str]:
+    files = sorted(PACKAGE.rglob("*.py"))
+    return {_module_name(file): file.read_text(encoding="utf-8") for file in files}
+
+
+def _module_name(file: Path) -> str:
+    parts = file.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(part for part in parts if part != "__init__")
+
+
+TREE: Final = read_package()
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+def test_the_tree_keeps_the_rule(rule: Rule) -> None:
+    """No module under verify/ breaks the rule."""
+    assert [fault for module, source in TREE.items() for fault in rule(module, source)] == []
+
+
+def test_no_import_circle() -> None:
+    """No module imports itself by way of others, imports inside functions included."""
+    assert " imports ".join(circle(TREE)) == ""
+
+
+def test_no_detour_round_a_wall() -> None:
+    """What exact, models and solvers import does not lead to a forbidden room either."""
+    assert list(detours(TREE)) == []
+
+
+@pytest.mark.parametrize("name", ["scenes", *WALLS])
+def test_the_walls_have_something_behind_them(name: str) -> None:
+    """Each room with a wall has code in it: no rule holds for want of modules."""
+    assert any(source for module, source in TREE.items() if room(module) == name)
+
+
+# The checker must catch what is planted
+
+
+PLANTED = [
+    (keeps_its_walls, "verify.exact.theta", "from verify.models.euler import field", "models"),
+    (keeps_its_walls, "verify.exact.theta", "from verify import solvers", "solvers"),
+    (keeps_its_walls, "verify.exact.theta", "import verify.judge.errors as e", "judge"),
+    (keeps_its_walls, "verify.exact.euler.theta", "def f():\n import verify.publish", "publish"),
+    (keeps_its_walls, "verify.exact", "import_module('verify.controls.signs')", "controls"),
+    (keeps_its_walls, "verify.models.euler", "from verify.exact.theta import q", "exact"),
+    (keeps_its_walls, "verify.solvers.taylor", "from verify.judge import errors", "judge"),
+    (scenes_stand_alone, "verify.scenes.reader", "from verify.run import run", "verify.run"),
+    (publish_reads_verdicts, "verify.publish.plots", "from verify.judge import gates", "gates"),
+    (publish_reads_verdicts, "verify.publish.plots", "import verify.scenes.scene", "scenes"),
+    (heyoka_has_its_place, "verify.judge.errors", "import heyoka as hy", "heyoka"),
+    (heyoka_has_its_place, "verify.solvers.scipy", "from heyoka import par", "heyoka.par"),
+    (is_silent, "verify.judge.errors", "print(1)", "print()"),
+    (is_silent, "verify.run", "from rich.console import Console", "rich.console"),
+    (is_silent, "verify.run", "import sys\nsys.stderr.write('')", "sys.stderr"),
+    (
+        stands_in_its_own_environment,
+        "verify.solvers.outside.julia",
+        "from verify.scenes import scene",
+        "verify.scenes",
+    ),
+    (imports_in_full, "verify.exact.theta", "from ..models import euler", "..models"),
+    (imports_in_full, "verify.exact.theta", "from mpmath import *", "mpmath.*"),
+    (names_a_noun, "verify.exact.utils", "", "utils"),
+    (names_a_noun, "verify.core.exact", "", "core"),
+    (says_what_it_is, "verify.exact.theta", "x = 1", "docstring"),
+    (is_small, "verify.exact.theta", "x = 1\n" * 401, "401"),
+]
+
+
+@pytest.mark.parametrize(("rule", "module", "source", "named"), PLANTED)
+def test_a_planted_fault_is_named(rule: Rule, module: str, source: str, named: str) -> None:
+    """A rule finds one fault in a module that breaks it, and says which name and where."""
+    (fault,) = rule(module, source)
+    assert named in fault
+    assert fault.rpartition(" @ ")[2].partition(":")[0] == module
+
+
+def test_every_rule_has_a_planted_fault() -> None:
+    """Each rule has been seen to fail."""
+    assert {rule for rule, *_ in PLANTED} == set(RULES)
+
+
+@pytest.mark.parametrize(
+    ("module", "source"),
+    [
+        ("verify.exact.theta", "from verify.scenes.scene import Scene"),
+        ("verify.models.euler", "import heyoka as hy"),
+        ("verify.solvers.taylor.step", "from heyoka import par"),
+        ("verify.publish.plots", "from verify.judge.verdict import Verdict"),
+        ("verify.publish.plots", "if TYPE_CHECKING:\n from verify.scenes.scene import Scene"),
+        ("verify.judge.errors", "from verify.modelscope import x"),
+        ("verify.cli", "from rich.console import Console\nprint(1)"),
+        ("verify.exact.theta", "x = 1\n" * 399),
+    ],
+)
+def test_a_sound_module_passes(module: str, source: str) -> None:
+    """No rule objects to a module that keeps all of them."""
+    described = f'"""What it is."""\n{source}'
+    assert [fault for rule in RULES for fault in rule(module, described)] == []
+
+
+def test_a_circle_is_found_through_a_function() -> None:
+    """An import inside a function closes a circle, and the circle is named in importing order."""
+    sources = {
+        "verify.a": "from verify.b import x",
+        "verify.b": "def f():\n from verify.c import y",
+        "verify.c": "import verify.a",
+    }
+    found = circle(sources)
+    assert set(found) == set(sources)
+    graph = import_graph(sources)
+    assert all(target in graph[module] for module, target in itertools.pairwise(found))
+
+
+def test_a_type_hint_closes_no_circle() -> None:
+    """An import for type hints alone is not executed, so it is no part of a circle."""
+    sources = {
+        "verify.a": "from verify.b import x",
+        "verify.b": "if TYPE_CHECKING:\n from verify.a import y",
+    }
+    assert circle(sources) == []
+
+
+def test_a_detour_is_found() -> None:
+    """exact may not reach models by way of a room that may import both."""
+    sources = {
+        "verify.exact.theta": "from verify.trade.front import x",
+        "verify.trade.front": "from verify.models.euler import y",
+        "verify.models.euler": "",
+    }
+    assert [fault.partition(", got ")[2] for fault in detours(sources)] == [
+        "verify.models.euler @ verify.exact.theta"
+    ]
+
+
+@pytest.mark.parametrize(
+    "leak", ["mpmath.mp.dps = 50", "mpmath.mp.prec += 1", "flint.ctx.prec = 200"]
+)
+def test_a_leaked_precision_fails_its_test(pytester: pytest.Pytester, leak: str) -> None:
+    """A test that leaves a global precision changed is an error, and the next one starts afresh."""
+    pytester.makeconftest(Path(__file__).with_name("conftest.py").read_text(encoding="utf-8"))
+    pytester.makepyfile(
+        f"""
+        import flint, mpmath
+        before = mpmath.mp.prec, flint.ctx.prec
+        def test_leaks():
+            {leak}
+        def test_after():
+            assert (mpmath.mp.prec, flint.ctx.prec) == before
+        """
+    )
+    result = pytester.runpytest_inprocess("-p", "no:xdist", "-p", "no:cacheprovider")
+    result.assert_outcomes(passed=2, errors=1)
+    result.stdout.fnmatch_lines(["*scope a precision with*"])

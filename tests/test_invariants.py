@@ -1,0 +1,245 @@
+"""What a free motion conserves is conserved, and loads change it by their work and impulse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import libmp, mp, mpf
+
+from verify.exact.invariants import Invariant, invariants
+from verify.exact.taylor import TaylorSolution
+from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.motion import Clock, Impulse, Motion, Spin
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import Matrix, Vector
+
+Array = np.ndarray[Any, Any]
+
+
+def vector(*entries: float | str) -> Vector:
+    """Exact numbers from their decimal text."""
+    return tuple(Fraction(str(entry)) for entry in entries)
+
+
+TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
+MOMENT = vector("0.1", "-0.2", "0.05")
+FORCE, COUPLE = vector("0.1", "0.05", "-0.1"), vector("0.02", "-0.1", "0.05")
+GENERAL = ImmersedBody(
+    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
+    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
+    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
+)
+CLEBSCH = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5")).body()
+QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
+SPIN = Spin(vector("0.3", 1, "0.2"), QUATERNION)
+IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
+
+
+def scene(
+    body: RigidBody | ImmersedBody, *track: str, start: Spin | Impulse | None = None
+) -> Scene:
+    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
+    initial = start or (SPIN if model == "euler" else IMPULSE)
+    clock = Clock(Fraction(0), (Fraction(1),))
+    return Scene("test", "test", model, frozenset(track), body, initial, clock)
+
+
+def named(scene: Scene) -> dict[str, Invariant]:
+    return {invariant.name: invariant for invariant in invariants(scene)}
+
+
+def sampled(scene: Scene, times: Sequence[Fraction], digits: int = 40) -> Motion:
+    return TaylorSolution(scene).motion(times, digits)
+
+
+def largest(values: Array) -> mpf:
+    return max(abs(value) for value in values.flat)
+
+
+@pytest.mark.parametrize(
+    ("scene", "names"),
+    [
+        (scene(RigidBody(TENSOR)), "T H2"),
+        (scene(RigidBody(TENSOR), "attitude"), "T H2 H_space"),
+        (scene(GENERAL), "T F2 FG"),
+        (scene(CLEBSCH), "T F2 FG y3"),
+        (scene(GENERAL, "attitude"), "T F2 FG x_space"),
+        (scene(GENERAL, "attitude", "centre"), "T F2 FG x_space y_space"),
+        (scene(CLEBSCH, "attitude", "centre"), "T F2 FG y3 x_space y_space"),
+    ],
+)
+def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
+    """Each quantity that the tracking allows is there, and constant to the digits of the truth."""
+    found = named(scene)
+    assert list(found) == names.split()
+    motion = sampled(scene, [Fraction(0), Fraction(3), Fraction(-2), Fraction(11, 2)])
+    with mp.workdps(60):
+        for invariant in found.values():
+            value = invariant.value(motion)
+            # The rows hold 40 digits; twice that error for products, and a norm or two.
+            assert largest(value - value[0]) <= 10 * mpf(10) ** -40 * invariant.scale(motion)
+
+
+def test_they_tell_one_motion_from_another() -> None:
+    """A motion of a slightly different body does not conserve them: none is constant by its form."""
+    rigid, solid = (
+        scene(RigidBody(TENSOR, MOMENT), "attitude"),
+        scene(replace(CLEBSCH, force=FORCE, couple=COUPLE), "attitude", "centre"),
+    )
+    for loaded in (rigid, solid):
+        motion = sampled(loaded, [Fraction(0), Fraction(1)])
+        for invariant in invariants(loaded):
+            value = invariant.value(motion)
+            # The loads are some tenths: in one unit of time they change each by more than 10^-3.
+            assert largest(value[1:] - value[:1]) >= invariant.scale(motion) / 1000
+
+
+def test_y3_of_a_loaded_clebsch_body() -> None:
+    """For a body of Clebsch's form y3 grows by the axial couple alone: y3 = y3(0) + N t."""
+    loaded = scene(replace(CLEBSCH, force=FORCE, couple=COUPLE))
+    motion = sampled(loaded, [Fraction(4)])
+    with mp.workdps(50):
+        expected = mp.convert(Fraction(1) + 4 * COUPLE[2])
+        assert abs(named(loaded)["y3"].value(motion)[0] - expected) <= mpf(10) ** -39
+
+
+def test_energy_grows_by_the_work_of_a_moment() -> None:
+    """T(t) - T(0) is the integral of M . omega, and R I omega grows by the integral of R M."""
+    loaded = scene(RigidBody(TENSOR, MOMENT), "attitude")
+    moment = [float_free(entry) for entry in MOMENT]
+
+    def work(motion: Motion) -> Array:
+        return motion["omega"] @ moment
+
+    def impulse(motion: Motion) -> Array:
+        return motion["attitude"] @ moment
+
+    assert_balance(loaded, "T", work)
+    assert_balance(loaded, "H_space", impulse)
+
+
+def test_impulse_grows_by_the_loads() -> None:
+    """T by X.U + L.Omega; R x by R X; R y + c x R x by R L + c x R X: the balances of 48 (7), (9)."""
+    loaded = scene(replace(GENERAL, force=FORCE, couple=COUPLE), "attitude", "centre")
+    force = np.array([float_free(entry) for entry in FORCE])
+    couple = np.array([float_free(entry) for entry in COUPLE])
+    energy = np.array([[float_free(e) for e in row] for row in GENERAL.energy_matrix])
+
+    def work(motion: Motion) -> Array:
+        both = np.hstack([motion["linear_impulse"], motion["angular_impulse"]])
+        return both @ energy.T @ np.hstack([force, couple])
+
+    def moment(motion: Motion) -> Array:
+        turned = motion["attitude"] @ force
+        return motion["attitude"] @ couple + np.cross(motion["centre"], turned)
+
+    assert_balance(loaded, "T", work)
+    assert_balance(loaded, "x_space", lambda motion: motion["attitude"] @ force)
+    assert_balance(loaded, "y_space", moment)
+
+
+def float_free(value: Fraction) -> mpf:
+    """An exact number at 60 digits."""
+    with mp.workdps(60):
+        return mp.convert(value)
+
+
+def assert_balance(scene: Scene, name: str, rate: Callable[[Motion], Array]) -> None:
+    """Q(1) - Q(0) is the integral of the rate over [0, 1]."""
+    with mp.workdps(40):
+        nodes, weights = legendre(28)
+        inner = sampled(scene, [rational((1 + node) / 2) for node in nodes], 30)
+        ends = sampled(scene, [Fraction(0), Fraction(1)], 30)
+        value = named(scene)[name].value(ends)
+        integral = np.array(weights) @ rate(inner) / 2
+        # 28 nodes integrate polynomials of degree 55 exactly; the motion has its next singularity
+        # at least a unit of time away, so the rest is below (1/4)^56 = 10^-33.
+        assert largest(np.atleast_1d(value[1] - value[0] - integral)) <= mpf(10) ** -29
+
+
+def legendre(count: int) -> tuple[list[mpf], list[mpf]]:
+    """Gauss-Legendre nodes and weights on [-1, 1] at the ambient precision."""
+    guesses = np.polynomial.legendre.leggauss(count)[0]
+    roots = [mp.findroot(lambda s: mp.legendre(count, s), mpf(guess)) for guess in guesses]
+    slopes = [count * mp.legendre(count - 1, s) / (1 - s**2) for s in roots]
+    weights = [2 / ((1 - s**2) * slope**2) for s, slope in zip(roots, slopes, strict=True)]
+    return roots, weights
+
+
+def rational(value: mpf) -> Fraction:
+    """The exact value of an mpf; its tuple has the sign, which man_exp has not."""
+    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [scene(RigidBody(TENSOR), "attitude"), scene(CLEBSCH, "attitude", "centre")],
+    ids=["euler", "kirchhoff"],
+)
+def test_sensitivity_is_the_norm_of_the_derivative(scene: Scene) -> None:
+    """Difference quotients of the value, block by block, have the norms that sensitivity states."""
+    with mp.workdps(50):
+        motion = sampled(scene, [Fraction(0), Fraction(2)])
+        for invariant in invariants(scene):
+            stated = invariant.sensitivity(motion)
+            for block in blocks(scene):
+                columns = [
+                    (invariant.value(nudged(scene, motion, block, j)) - invariant.value(motion))
+                    / STEP
+                    for j in range(3)
+                ]
+                jacobian = np.stack([c.reshape(2, -1) for c in columns], axis=2).astype(float)
+                measured = np.linalg.norm(jacobian, 2, axis=(1, 2))
+                expected = [float(norm) for norm in stated.get(block, [0, 0])]
+                # The quotient is right to STEP, the norms are float64.
+                assert np.abs(measured - expected).max() <= 1e-12 * max(1, *expected)
+
+
+STEP = Fraction(1, 10**20)
+
+
+def blocks(scene: Scene) -> tuple[str, ...]:
+    if scene.model == "euler":
+        return ("momentum", "attitude")
+    return ("linear_impulse", "angular_impulse", "attitude", "centre")
+
+
+def nudged(scene: Scene, motion: Motion, block: str, j: int) -> Motion:
+    """The motion with one component of a block moved by STEP in every row."""
+    moved = {name: rows.copy() for name, rows in motion.quantities.items()}
+    step = mp.convert(STEP)
+    if block == "attitude":
+        axis = np.array([int(i == j) for i in range(3)])
+        moved["attitude"] = moved["attitude"] + step * np.stack(
+            [np.cross(axis, turn, axisb=0, axisc=0) for turn in moved["attitude"]]
+        )
+    elif block == "momentum":
+        assert isinstance(scene.body, RigidBody)
+        inverse = [mp.convert(row[j]) for row in scene.body.inverse_inertia]
+        moved["omega"] = moved["omega"] + step * np.array(inverse)
+    else:
+        moved[block][:, j] += step
+    return Motion(moved, motion.radius)
+
+
+def test_scales_do_not_vanish() -> None:
+    """x.y = 0 leaves FG a scale, y3 = 0 leaves y3 one, and a body at rest has scale 1 for all."""
+    crossed = Impulse(vector(1, 0, 0), vector(0, 2, 0))
+    motion = sampled(scene(CLEBSCH, start=crossed), [Fraction(0)])
+    found = named(scene(CLEBSCH))
+    assert found["FG"].value(motion)[0] == 0 and found["FG"].scale(motion) == 2
+    assert found["y3"].value(motion)[0] == 0 and found["y3"].scale(motion) == 2
+    nowhere = Impulse(vector(0, 0, 0), vector(0, 0, 0))
+    for resting in (
+        scene(CLEBSCH, "attitude", "centre", start=nowhere),
+        scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0))),
+    ):
+        motion = sampled(resting, [Fraction(0), Fraction(1)])
+        assert [invariant.scale(motion) for invariant in invariants(resting)] == [1] * len(
+            invariants(resting)
+        )

@@ -1,0 +1,408 @@
+"""What a scene file means: exact numbers, defaults, instants, and the scenes that are shipped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from hashlib import sha256
+from itertools import pairwise, permutations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from verify.exact.route import solution
+from verify.scenes import library, tensors
+from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.body_reader import obeys_triangle_inequality
+from verify.scenes.faults import Refused
+from verify.scenes.motion import IDENTITY, Impulse, Spin
+from verify.scenes.reader import load, read
+from verify.scenes.scene import Scene
+from verify.scenes.table import LARGEST_EXPONENT, exact_number
+from verify.scenes.tensors import Matrix, Vector
+
+ORDERS = tuple(permutations(range(3)))
+INTEGERS = st.integers(-(10**12), 10**12)
+
+
+def euler(
+    body: str = "inertia = [1, 2, 3]", time: str = "end = 10\nsamples = 11", **more: str
+) -> Scene:
+    """A free body of the model euler, with parts of its text replaced."""
+    return read(
+        f'title = "x"\nmodel = "euler"\n{more.get("top", "")}\n[body]\n{body}\n'
+        f"[initial]\nomega = [0.1, 1, 0.3]\n{more.get('initial', '')}\n[time]\n{time}\n",
+        "a test",
+    )
+
+
+def kirchhoff(top: str = "") -> Scene:
+    """Clebsch's body, with lines put at the top of its text."""
+    return read(
+        f'title = "x"\nmodel = "kirchhoff"\n{top}\n[body]\n'
+        "clebsch = { p = 1, p_prime = 2, q = 0.1, q_prime = 0.2, r = 1, r_prime = 0.5 }\n"
+        "[initial]\nlinear_impulse = [0.1, 0.2, 1]\nangular_impulse = [0.3, 0, 1]\n"
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+
+
+# Numbers
+
+
+def test_a_decimal_is_the_rational_it_writes() -> None:
+    """0.1 is one tenth, and not the binary number beside it."""
+    assert euler().initial.omega == (Fraction(1, 10), Fraction(1), Fraction(3, 10))
+
+
+@given(INTEGERS, st.integers(1, 10**12))
+def test_a_fraction_in_a_string_is_exact(a: int, b: int) -> None:
+    """``"a/b"`` is a divided by b."""
+    assert exact_number(f"{a}/{b}") == Fraction(a, b)
+
+
+@given(INTEGERS, st.integers(-LARGEST_EXPONENT, LARGEST_EXPONENT - 13))
+def test_an_exponent_shifts_the_decimal_point(digits: int, exponent: int) -> None:
+    """``12e-3`` is 12/1000, in a string as well as bare, up to the largest exponent allowed."""
+    expected = digits * Fraction(10) ** exponent
+    scene = euler(body=f"inertia = [1, 2, 3]\nmoment = [{digits}e{exponent}, 0, 0]")
+    assert isinstance(scene.body, RigidBody)
+    assert scene.body.moment[0] == expected == exact_number(f"{digits}e{exponent}")
+
+
+# Defaults
+
+
+def test_omega_or_the_impulse_alone_is_tracked_by_default() -> None:
+    """A scene that does not say ``track``, or names only what is always there, requires no more."""
+    assert euler().track == euler(top='track = ["omega"]').track == frozenset()
+    assert kirchhoff().track == kirchhoff('track = ["impulse"]').track == frozenset()
+
+
+def test_the_centre_brings_the_attitude() -> None:
+    """The centre moves by R U, so that tracking it tracks R."""
+    assert kirchhoff('track = ["centre"]').track == {"attitude", "centre"}
+
+
+def test_what_is_left_out_is_free_at_the_origin_and_not_turned() -> None:
+    """No moment, force or couple; identity attitude; centre 0; start 0; no source."""
+    rigid, immersed = euler(), kirchhoff()
+    assert rigid.body.is_free
+    assert immersed.body.is_free
+    assert isinstance(immersed.initial, Impulse)
+    assert rigid.initial.attitude == immersed.initial.attitude == IDENTITY
+    assert immersed.initial.centre == (0, 0, 0)
+    assert rigid.clock.start == 0
+    assert rigid.source == ""
+
+
+def test_a_quaternion_is_kept_as_written() -> None:
+    """The reader does not normalise: a norm is seldom rational, and the quotient would round."""
+    initial = euler(initial="attitude = [1, 2, -1, 3]").initial
+    assert isinstance(initial, Spin)
+    assert initial.attitude == (1, 2, -1, 3)
+
+
+# Instants
+
+
+def test_samples_are_equally_spaced_and_exact() -> None:
+    """Three samples a third apart are exact thirds, both ends included."""
+    clock = euler(time="end = 1\nsamples = 4").clock
+    assert clock.instants == (0, Fraction(1, 3), Fraction(2, 3), 1)
+
+
+@given(INTEGERS, INTEGERS.filter(bool), st.integers(2, 50))
+def test_samples_begin_at_the_start_and_end_at_the_end(start: int, span: int, samples: int) -> None:
+    """Whatever the sign of the span, the first sample is the start, the last one the end."""
+    clock = euler(time=f"start = {start}\nend = {start + span}\nsamples = {samples}").clock
+    assert len(clock.instants) == samples
+    assert (clock.instants[0], clock.instants[-1]) == (start, start + span)
+    assert clock.elapsed[-1] == span
+
+
+def test_listed_instants_are_taken_as_they_are() -> None:
+    """``at`` lists absolute instants, with or without the start, forward or backward."""
+    assert euler(time='at = ["1/3", 0.5, 7]').clock.instants == (Fraction(1, 3), Fraction(1, 2), 7)
+    assert euler(time="start = 1\nat = [1, 2]").clock.elapsed == (0, 1)
+    assert euler(time="start = 1\nat = [0.5, 0, -1]").clock.elapsed == (Fraction(-1, 2), -1, -2)
+
+
+# The triangle inequality
+
+
+def has_real_moments(a: Fraction, b: Fraction, c: Fraction) -> bool:
+    return a <= b + c and b <= c + a and c <= a + b
+
+
+MOMENT = st.fractions(Fraction(1, 100), 100)
+MOMENTS = st.tuples(MOMENT, MOMENT, MOMENT)
+FLAT = st.builds(lambda a, b: (a, b, a + b), MOMENT, MOMENT)
+
+
+@given(st.one_of(MOMENTS, FLAT), st.tuples(INTEGERS, INTEGERS, INTEGERS, INTEGERS).filter(any))
+def test_the_triangle_inequality_is_decided_in_any_axes(
+    moments: tuple[Fraction, Fraction, Fraction], q: tuple[int, int, int, int]
+) -> None:
+    """Turned by any rational rotation a tensor gives the answer of its principal moments, the flat
+    plate, which just obeys, included."""
+    turned = rotated(tensors.diagonal(moments), q)
+    assert obeys_triangle_inequality(turned) is has_real_moments(*moments)
+
+
+def rotated(tensor: Matrix, q: tuple[int, int, int, int]) -> Matrix:
+    """R I R^T for the rotation of an integer quaternion."""
+    s, *v = (Fraction(entry) for entry in q)
+    norm = s * s + sum(entry * entry for entry in v)
+    rotation = tensors.transpose(
+        tuple(turned(e, s, tuple(v), norm) for e in tensors.diagonal((1, 1, 1)))
+    )
+    return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
+
+
+def turned(e: Vector, s: Fraction, v: Vector, norm: Fraction) -> Vector:
+    """q e q^-1 = e + 2 (s v x e + v x (v x e)) / |q|^2."""
+    once = tensors.cross(v, e)
+    both = tensors.plus(tensors.scaled(s, once), tensors.cross(v, once))
+    return tensors.plus(e, tensors.scaled(2 / norm, both))
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_an_impossible_solid_is_a_warning_in_any_order_of_its_axes(order: tuple[int, ...]) -> None:
+    """Moments 1, 2, 4 are warned of, 1, 2, 3 (a flat plate) are not, and neither is refused."""
+    for moments, count in (((1, 2, 4), 1), ((1, 2, 3), 0)):
+        scene = euler(body=f"inertia = {[moments[i] for i in order]}")
+        assert len(scene.warnings) == count
+
+
+# Bodies
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_principal_moments_are_the_diagonal_tensor(order: tuple[int, ...]) -> None:
+    """Three moments and the diagonal matrix of the same three are one body, in every order."""
+    moments = [(2, 3, 4)[i] for i in order]
+    matrix = [[moments[i] if i == j else 0 for j in range(3)] for i in range(3)]
+    assert euler(body=f"inertia = {moments}").body == euler(body=f"inertia = {matrix}").body
+
+
+def test_clebschs_form_is_the_energy_it_abbreviates() -> None:
+    """T of 49 (1), written out in six coefficients, is T by the 6x6 matrix, at any x and y."""
+    body = kirchhoff().body
+    assert isinstance(body, ImmersedBody)
+    x, y = (Fraction(2), Fraction(-3), Fraction(5)), (Fraction(7), Fraction(1, 2), Fraction(-4))
+    # p = 1, p' = 2, q = 1/10, q' = 1/5, r = 1, r' = 1/2, as in the text above.
+    by_hand = (
+        (x[0] ** 2 + x[1] ** 2) / 2
+        + x[2] ** 2
+        + (x[0] * y[0] + x[1] * y[1]) / 10
+        + x[2] * y[2] / 5
+        + (y[0] ** 2 + y[1] ** 2) / 2
+        + y[2] ** 2 / 4
+    )
+    assert tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2 == by_hand
+
+
+def test_the_energy_of_the_remus_is_the_inverse_of_its_inertia() -> None:
+    """[[A, B], [B^T, C]] times the inertia in Prestero's tables is the identity,
+    and the initial impulses are that inertia times the velocities that the file names."""
+    scene = load("kirchhoff/remus-100")
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    inertia = remus_inertia()
+    ones = tensors.diagonal((Fraction(1),) * 6)
+    assert tensors.product(scene.body.energy_matrix, inertia) == ones
+    velocities = tuple(Fraction(v) for v in ("1.5", "0.1", "-0.2", "0.5", "0.3", "0.2"))
+    assert tensors.apply(inertia, velocities) == scene.initial.linear + scene.initial.angular
+
+
+def remus_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r: inertia minus added terms."""
+    mass, roll, pitch = Fraction("30.48"), Fraction("0.177"), Fraction("3.45")
+    added = {
+        **{(0, 0): "-0.930", (1, 1): "-35.5", (2, 2): "-35.5"},  # Xu', Yv', Zw'
+        **{(3, 3): "-0.0704", (4, 4): "-4.88", (5, 5): "-4.88"},  # Kp', Mq', Nr'
+        **{(1, 5): "1.93", (2, 4): "-1.93"},  # Yr', Zq'
+        **{(4, 2): "-1.93", (5, 1): "1.93"},  # Mw', Nv'
+    }
+    solid = (mass, mass, mass, roll, pitch, pitch)
+    return tuple(
+        tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
+        for i in range(6)
+    )
+
+
+# The shipped scenes
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_every_shipped_scene_loads_without_a_warning(name: str) -> None:
+    """It is read under its own name, as its folder's model, with a digest of its text."""
+    scene = load(name)
+    assert scene.name == name
+    assert scene.model == name.split("/")[0]
+    assert scene.warnings == ()
+    assert scene.digest == sha256(library.find(name).read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_every_shipped_scene_says_why_it_is_there(name: str) -> None:
+    """The first line begins with ``# Why:``, and the reason is a sentence."""
+    lines = library.find(name).read_text().splitlines()
+    comment = " ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+    assert lines[0].startswith("# Why: ")
+    assert comment.endswith(".")
+
+
+def test_every_shipped_scene_is_in_the_table_of_the_readme() -> None:
+    """cases/README.md has a row for each scene of the standard set, and for nothing else."""
+    readme = (library.cases_directory() / "README.md").read_text()
+    rows = [line.split("`")[1] for line in readme.splitlines() if line.startswith(("| `e", "| `k"))]
+    assert sorted(row for row in rows if "/" in row) == sorted(library.names())
+
+
+@pytest.mark.parametrize("folder", ["euler", "kirchhoff"])
+def test_there_are_enough_shipped_scenes(folder: str) -> None:
+    """At least seven of each model, so that an empty folder cannot pass for a suite."""
+    assert sum(name.startswith(f"{folder}/") for name in library.names()) >= 7
+
+
+def test_the_separatrix_is_exact() -> None:
+    """H^2 = 2T J2 holds in rationals, and K and H are dyadic, so that it holds on every rung."""
+    scene = load("euler/separatrix")
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    omega, inverse = scene.initial.omega, scene.body.inverse_inertia
+    momentum = tensors.apply(scene.body.inertia, omega)
+    middle = sorted(scene.body.inertia[i][i] for i in range(3))[1]
+    assert tensors.dot(momentum, momentum) == tensors.dot(momentum, omega) * middle
+    assert all(is_dyadic(entry) for row in (momentum, *inverse) for entry in row)
+
+
+def is_dyadic(value: Fraction) -> bool:
+    return value.denominator & (value.denominator - 1) == 0
+
+
+def test_the_brick_ends_where_the_simulations_of_nasa_did() -> None:
+    """After 30 s the rates of check case 2 are those of the report, to the 0.004 deg/s within which
+    its own simulations agree; a wrong inertia, rate or sign of the gyroscopic term is far off."""
+    scene = load("euler/nesc-brick")
+    assert scene.clock.instants[-1] == 30
+    omega = solution(scene, "taylor").motion([Fraction(30)], 12)["omega"][0]
+    reported = (12.618, -17.397, 31.120)
+    for rate, degrees in zip(omega, reported, strict=True):
+        assert abs(math.degrees(rate) - degrees) <= 0.004
+
+
+ORBITS: dict[str, Callable[[Fraction], bool]] = {
+    "euler/generic": lambda excess: excess < 0,
+    "euler/about-max-axis": lambda excess: excess > 0,
+    "euler/tennis-racket": lambda excess: 0 < excess < Fraction(1, 1000),
+}
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_each_orbit_lies_on_the_side_that_its_reason_says(name: str) -> None:
+    """H^2/(2T) - J2 is negative round the least axis, positive round the greatest, small by the
+    separatrix."""
+    scene = load(name)
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    momentum = tensors.apply(scene.body.inertia, scene.initial.omega)
+    middle = sorted(scene.body.inertia[i][i] for i in range(3))[1]
+    ratio = tensors.dot(momentum, momentum) / tensors.dot(momentum, scene.initial.omega)
+    assert ORBITS[name](ratio - middle)
+
+
+# Degree of the polynomial and number of its real roots.
+REGIMES = {
+    "kirchhoff/four-real-roots": (4, 4),
+    "kirchhoff/two-real-roots": (4, 2),
+    "kirchhoff/cubic": (3, 3),
+}
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_each_clebsch_regime_has_its_real_roots(name: str) -> None:
+    """The polynomial under the root of 49 (9) has as many real roots as the file says, by Sturm."""
+    polynomial = nutation_polynomial(load(name))
+    assert (len(polynomial) - 1, real_roots(polynomial)) == REGIMES[name]
+
+
+def nutation_polynomial(scene: Scene) -> list[Fraction]:
+    """r X3 of 49 (8) as a polynomial of z = x3, highest power first."""
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    c, x, y = scene.body.clebsch, scene.initial.linear, scene.initial.angular
+    assert c is not None
+    ff, fg, y3, z = tensors.dot(x, x), tensors.dot(x, y), y[2], x[2]
+    quadratic, linear = c.p - c.p_prime, 2 * (c.q - c.q_prime) * y3
+    constant = c.r * (y[0] ** 2 + y[1] ** 2) - quadratic * z**2 - linear * z
+    # (F^2 - z^2)(quadratic z^2 + linear z + constant) - r (FG - y3 z)^2
+    coefficients = [
+        -quadratic,
+        -linear,
+        ff * quadratic - constant - c.r * y3**2,
+        ff * linear + 2 * c.r * fg * y3,
+        ff * constant - c.r * fg**2,
+    ]
+    return coefficients if coefficients[0] else coefficients[1:]
+
+
+def real_roots(polynomial: list[Fraction]) -> int:
+    """Distinct real roots by Sturm's sequence, exactly."""
+    degree = len(polynomial) - 1
+    sequence = [polynomial, [a * (degree - i) for i, a in enumerate(polynomial[:-1])]]
+    while len(sequence[-1]) > 1:
+        sequence.append([-entry for entry in remainder(sequence[-2], sequence[-1])])
+    right = [p[0] for p in sequence if p]
+    left = [p[0] * (-1) ** (len(p) - 1) for p in sequence if p]
+    return changes(left) - changes(right)
+
+
+def remainder(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+    while len(a) >= len(b):
+        factor = a[0] / b[0]
+        a = [p - factor * q for p, q in zip(a, b + [Fraction(0)] * (len(a) - len(b)), strict=True)][
+            1:
+        ]
+    while a and a[0] == 0:
+        a = a[1:]
+    return a
+
+
+def changes(signs: list[Fraction]) -> int:
+    return sum(a * b < 0 for a, b in pairwise(signs))
+
+
+def test_a_path_is_a_path_and_a_name_a_name() -> None:
+    """The same scene by path and by name is the same question under another name."""
+    path = str(library.find("euler/generic"))
+    by_path, by_name = load(path), load("euler/generic")
+    assert by_path.name == path
+    assert (by_path.body, by_path.initial, by_path.clock) == (
+        by_name.body,
+        by_name.initial,
+        by_name.clock,
+    )
+    assert by_path.digest == by_name.digest
+
+
+def test_the_cases_must_exist(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a folder of cases there is an error, and not a green run of no scenes."""
+    monkeypatch.setattr(library, "__file__", "/nowhere/verify/scenes/library.py")
+    with pytest.raises(FileNotFoundError, match="cases"):
+        library.names()
+
+
+def test_the_model_must_be_known_before_its_body_is_read() -> None:
+    """With no model the other parts are still read, and each of their faults is reported."""
+    with pytest.raises(Refused, match="@ model") as caught:
+        read("[body]\nanything = 1\n[initial]\nomega = 1\n[time]\nend = 0\nsamples = 1\n", "x")
+    assert [line.split(" @ ")[1].split()[0] for line in caught.value.faults] == [
+        "title",
+        "model",
+        "time.samples",
+    ]

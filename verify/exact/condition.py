@@ -1,0 +1,336 @@
+"""The condition of an orbit: how far a small error, made at one instant, is carried to another.
+
+The transition matrix comes from differences of the exact solution at high precision, so it shares
+nothing with the equations the solver was given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf
+from typing import Any, Final
+
+import numpy as np
+from mpmath import libmp, mp, mpf
+
+from verify.exact.route import solution
+from verify.exact.solution import Quantities, Unsettled
+from verify.scenes import tensors
+from verify.scenes.bodies import RigidBody
+from verify.scenes.motion import Spin
+from verify.scenes.precision import floor_log2, power_of_two
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import Matrix, Vector
+
+Array = np.ndarray[Any, Any]
+FloatArray = np.ndarray[Any, np.dtype[np.float64]]
+
+# (e, digits): momenta are changed by 10^-e of their size. A perturbed orbit may lie 10^-e beside a
+# degenerate one, where a closed form can lose 3e digits; the Taylor recursion loses none.
+_CLOSED_FORM_DIGITS: Final = ((25, 110), (50, 220), (100, 440))
+_TAYLOR_DIGITS: Final = ((15, 40), (30, 70), (60, 130))
+# Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
+_VOLUME_ERROR: Final = mpf("1e-6")
+
+
+@dataclass(frozen=True)
+class Transition:
+    """How errors travel along one orbit between the instants ``elapsed`` (times since the start).
+
+    The state is the momentum z (H, or the impulses x and y), in body axes; the attitude, as a
+    rotation vector in space axes (R becomes exp([theta]x) R); and the centre, in space axes.
+    ``table`` holds what ``norms`` returns.
+    """
+
+    elapsed: tuple[Fraction, ...]
+    table: Mapping[tuple[str, str], FloatArray]
+
+    def norms(self, out: str, into: str) -> FloatArray:
+        """Entry [i, k]: the spectral norm of d out(t_i) / d into(t_k) for k <= i; zero for k > i.
+
+        Shape (n, n). ``into`` is ``momentum`` or ``attitude`` (euler), ``linear_impulse``,
+        ``angular_impulse``, ``attitude`` or ``centre`` (kirchhoff); ``out`` is one of the same, or
+        ``omega`` = K momentum. What the scene does not track raises KeyError. A norm outside
+        the range of float64 is inf.
+        """
+        return self.table[out, into]
+
+
+def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
+    """The transition norms between these times, which are sorted away from the start.
+
+    With D, A, C the derivatives of momentum, attitude and centre by the initial momentum, and c the
+    centre, the derivatives by the initial state are
+
+        momentum <- momentum  D
+        attitude <- momentum  A     attitude <- attitude  1
+        centre   <- momentum  C     centre   <- attitude  -[c - c(0)]x     centre <- centre  1
+
+    since a rotation of the start turns the whole path about its start, and a shift moves it. This
+    matrix at t_i, times the inverse of the one at t_k, is
+
+        momentum <- momentum  D_i D_k^-1
+        attitude <- momentum  (A_i - A_k) D_k^-1
+        centre   <- momentum  (C_i - C_k + [c_i - c_k]x A_k) D_k^-1
+        centre   <- attitude  -[c_i - c_k]x, of norm |c_i - c_k|
+
+    and 1 or 0 elsewhere. Both flows conserve volume, det D = 1, loads or not; a false digit in D
+    shows in det D as it does in D_i D_k^-1, so precision rises until det D = 1 to six digits.
+    Raises Unsettled if it never is.
+    """
+    exact = solution(scene)
+    ladder = _TAYLOR_DIGITS if exact.route == "taylor" else _CLOSED_FORM_DIGITS
+    for exponent, digits in ladder:
+        found = derivatives(scene, elapsed, exponent, digits)
+        if found.volume_error() <= _VOLUME_ERROR:
+            return Transition(tuple(elapsed), dict(_norms(found)))
+    raise Unsettled(
+        f"differences of the exact solution at {digits} digits do not conserve volume along the "
+        f"orbit of {scene.name}: its transition matrix is not known"
+    )
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """The orbit's derivatives by its initial momentum, as object arrays of mpf.
+
+    ``momentum`` (n, d, d), d = 3 or 6, ``others`` (n, 3, d) by name (omega, attitude, centre as
+    tracked) and the ``centre`` itself (n, 3), empty where untracked. Momenta are measured in
+    ``units``, one power of two near the size of each component's block, in ``momentum``; everything
+    else is in the scene's units. The centre counts from its place at the start.
+    """
+
+    digits: int
+    units: Vector
+    momentum: Array
+    others: Mapping[str, Array]
+    centre: Array
+
+    def volume_error(self) -> mpf:
+        """The largest |det D - 1|."""
+        with mp.workdps(self.digits):
+            return max(abs(mp.det(mp.matrix(d.tolist())) - 1) for d in self.momentum)
+
+
+def derivatives(
+    scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
+) -> Derivatives:
+    """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
+    units, start = _units(scene), _momentum(scene)
+    step = Fraction(1, 10**exponent)
+    with mp.workdps(digits):
+        here = solution(scene).evaluate(elapsed, digits)
+        columns: list[dict[str, Array]] = []
+        for j, unit in enumerate(units):
+            moved = tuple(z + step * unit * (i == j) for i, z in enumerate(start))
+            there = solution(_started(scene, moved)).evaluate(elapsed, digits)
+            columns.append(_difference(scene, here, there, mp.convert(step)))
+        stacked = {
+            name: np.stack([column[name] for column in columns], axis=2) for name in columns[0]
+        }
+        return Derivatives(
+            digits=digits,
+            units=units,
+            momentum=stacked.pop("momentum") / _real((units,)).T,
+            others=stacked,
+            centre=_path(scene, here),
+        )
+
+
+def _difference(scene: Scene, here: Quantities, there: Quantities, step: mpf) -> dict[str, Array]:
+    """The change of every quantity per step, momenta first and under one name."""
+    change = {name: (there[name] - here[name]) / step for name in here}
+    found: dict[str, Array] = {}
+    if isinstance(scene.body, RigidBody):
+        found["momentum"] = change["omega"] @ _real(scene.body.inertia).T
+        found["omega"] = change["omega"]
+    else:
+        both = [change["linear_impulse"], change["angular_impulse"]]
+        found["momentum"] = np.concatenate(both, axis=1)
+    if "attitude" in here:
+        turns = there["attitude"] @ here["attitude"].transpose(0, 2, 1)
+        found["attitude"] = _rotation_vectors(turns) / step
+    if "centre" in here:
+        found["centre"] = change["centre"]
+    return found
+
+
+def _rotation_vectors(turns: Array) -> Array:
+    """The rotation vector of small rotations: the antisymmetric part of their matrices."""
+    j, k = [1, 2, 0], [2, 0, 1]
+    return (turns[:, k, j] - turns[:, j, k]) / 2
+
+
+def _path(scene: Scene, here: Quantities) -> Array:
+    """The centre from its place at the start; no rows where it is not tracked."""
+    if "centre" not in here or isinstance(scene.initial, Spin):
+        return np.empty((0, 3), dtype=object)
+    return here["centre"] - _real((scene.initial.centre,))
+
+
+# The initial momentum and its perturbation, exactly.
+
+
+def _momentum(scene: Scene) -> Vector:
+    initial = scene.initial
+    if isinstance(initial, Spin):
+        return tensors.apply(_rigid(scene).inertia, initial.omega)
+    return initial.linear + initial.angular
+
+
+def _started(scene: Scene, momentum: Vector) -> Scene:
+    """The same scene with another initial momentum."""
+    initial = scene.initial
+    if isinstance(initial, Spin):
+        omega = tensors.apply(_rigid(scene).inverse_inertia, momentum)
+        return replace(scene, initial=replace(initial, omega=omega))
+    moved = replace(initial, linear=momentum[:3], angular=momentum[3:])
+    return replace(scene, initial=moved)
+
+
+def _rigid(scene: Scene) -> RigidBody:
+    """The body of a scene whose initial state is a Spin."""
+    if not isinstance(scene.body, RigidBody):
+        raise TypeError(f"expected a rigid body with a spin, got {type(scene.body).__name__}")
+    return scene.body
+
+
+def _units(scene: Scene) -> Vector:
+    """For each component of the momentum a power of two near the size of its block.
+
+    A block that is zero takes the size that would hold the kinetic energy; 1 in a body at rest.
+    """
+    momentum = _momentum(scene)
+    if isinstance(scene.body, RigidBody):
+        energy, stiffness = [scene.body.inverse_inertia], scene.body.inverse_inertia
+    else:
+        energy, stiffness = [scene.body.linear, scene.body.angular], scene.body.energy_matrix
+    twice_energy = tensors.dot(momentum, tensors.apply(stiffness, momentum))
+    units: Vector = ()
+    for index, matrix in enumerate(energy):
+        block = momentum[3 * index : 3 * index + 3]
+        trace = sum((matrix[i][i] for i in range(3)), Fraction(0))
+        square = tensors.dot(block, block) or twice_energy / trace or Fraction(1)
+        units += (power_of_two(floor_log2(square) // 2),) * 3
+    return units
+
+
+# Norms. The products are of Python's integers, which NumPy multiplies as objects: they count
+# 2^-bits of each quantity's size, a power of two.
+
+
+def _norms(found: Derivatives) -> Iterator[tuple[tuple[str, str], FloatArray]]:
+    """Every entry of the table."""
+    blocks = ("momentum",) if len(found.units) == 3 else ("linear_impulse", "angular_impulse")
+    sizes = {block: floor_log2(found.units[3 * j]) for j, block in enumerate(blocks)}
+    sizes.update({name: _log2_size(rows) for name, rows in found.others.items()})
+    if "attitude" in found.others:
+        sizes["attitude"] = 0
+    if "centre" in found.others:
+        sizes["centre"] = _log2_size(found.others["centre"], found.centre)
+    if "attitude" in found.others:
+        yield from _from_place(found, blocks, sizes)
+    table = _from_momentum(found, sizes)
+    for row, out in enumerate((*blocks, *found.others)):
+        for column, into in enumerate(blocks):
+            part = table[:, :, 3 * row : 3 * row + 3, 3 * column : 3 * column + 3]
+            yield (out, into), _ldexp(_spectral_norms(part), sizes[out] - sizes[into])
+
+
+def _from_momentum(found: Derivatives, sizes: Mapping[str, int]) -> FloatArray:
+    """d (momentum, others)(t_i) / d momentum(t_k), shape (n, n, rows, d), zero for k > i."""
+    count, d, _ = found.momentum.shape
+    with mp.workdps(found.digits):
+        bits = mp.prec
+        others = [rows * mp.ldexp(1, -sizes[name]) for name, rows in found.others.items()]
+        rows = _integers(np.concatenate([found.momentum, *others], axis=1), bits)
+        inverses = _integers(np.array([_inverse(m) for m in found.momentum]), bits)
+        arms = _integers(found.centre * mp.ldexp(1, -sizes.get("centre", 0)), bits)
+    # omega depends on the momentum of the moment; attitude and centre add up from the start.
+    place = d + 3 * ("omega" in found.others)
+    table = np.zeros((count, count, rows.shape[1], d))
+    for k in range(count):
+        product = (rows[k:].reshape(-1, d) @ inverses[k]).reshape(count - k, -1, d)
+        turn = product[0, place : place + 3].copy()
+        product[:, place:] -= product[0, place:].copy()
+        if len(arms):
+            product[:, place + 3 :] += _cross(arms[k:] - arms[k], turn) >> bits
+        table[k:, k] = _floats(product, 2 * bits)
+    return table
+
+
+def _from_place(
+    found: Derivatives, blocks: Sequence[str], sizes: Mapping[str, int]
+) -> Iterator[tuple[tuple[str, str], FloatArray]]:
+    """What a turn or a shift of the body does: it moves the later path as a whole."""
+    count = len(found.momentum)
+    alone, nothing = np.tril(np.ones((count, count))), np.zeros((count, count))
+    places = [name for name in found.others if name != "omega"]
+    for into in places:
+        for out in (*blocks, *found.others):
+            yield (out, into), alone if out == into else nothing
+    if "centre" in places:
+        with mp.workdps(found.digits):
+            bits = mp.prec
+            path = _integers(found.centre * mp.ldexp(1, -sizes["centre"]), bits)
+        arms = _floats(path[:, None] - path[None, :], bits)
+        lengths = np.tril(np.linalg.norm(arms, axis=2))
+        yield ("centre", "attitude"), _ldexp(lengths, sizes["centre"])
+
+
+def _inverse(matrix: Array) -> list[list[mpf]]:
+    inverted: list[list[mpf]] = mp.inverse(mp.matrix(matrix.tolist())).tolist()
+    return inverted
+
+
+def _cross(arms: Array, turn: Array) -> Array:
+    """a x (each column of turn), for every row a of arms: (n, 3, d)."""
+    j, k = [1, 2, 0], [2, 0, 1]
+    across: Array = arms[:, j, None] * turn[None, k] - arms[:, k, None] * turn[None, j]
+    return across
+
+
+def _real(matrix: Matrix) -> Array:
+    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
+
+
+def _log2_size(*arrays: Array) -> int:
+    """The binary exponent of the largest entry, 0 if all are zero."""
+    largest = max(abs(value) for array in arrays for value in array.flat)
+    return int(mp.mag(largest)) if largest else 0
+
+
+def _integers(values: Array, bits: int) -> Array:
+    """Python integers that count 2^-bits."""
+    fixed = [int(libmp.to_fixed(value._mpf_, bits)) for value in values.flat]
+    return np.array(fixed, dtype=object).reshape(values.shape)
+
+
+def _floats(counts: Array, bits: int) -> FloatArray:
+    unit = 1 << bits
+    return np.array([_quotient(count, unit) for count in counts.flat]).reshape(counts.shape)
+
+
+def _quotient(count: int, unit: int) -> float:
+    """count / unit rounded once; inf, of either sign, beyond float64."""
+    try:
+        return count / unit
+    except OverflowError:
+        return inf if count > 0 else -inf
+
+
+def _spectral_norms(matrices: FloatArray) -> FloatArray:
+    """The largest singular value over the last two axes; inf where an entry is."""
+    size: FloatArray = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
+    # Divided by their size, because entries up to 1e308 would overflow when squared.
+    moderate = np.where(np.isfinite(size), matrices, 0.0) / np.where(size > 0, size, 1.0)
+    norms = np.linalg.norm(moderate, 2, axis=(-2, -1))
+    return np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
+
+
+def _ldexp(values: FloatArray, exponent: int) -> FloatArray:
+    """values * 2^exponent; beyond float64 that is inf, and no warning."""
+    with np.errstate(over="ignore", under="ignore"):
+        return np.ldexp(values, exponent)

@@ -1,0 +1,95 @@
+"""Jacobi's elliptic functions of a real argument, from the two complementary parameters m and m'.
+
+Legend: m is the parameter, k = sqrt(m) the modulus; m' = 1 - m and k' = sqrt(m'); K is the quarter
+period; a_n, b_n, c_n are the three sequences of the arithmetic-geometric mean (DLMF 22.20), and
+k_n = c_n/a_n, k'_n = b_n/a_n the moduli of a descending Landen chain. Both parameters are taken
+because each is needed to full *relative* accuracy where it is small: m' near a separatrix, m near a
+stable equilibrium.
+"""
+
+from __future__ import annotations
+
+from mpmath import mp, mpf
+
+Triple = tuple[mpf, mpf, mpf]
+
+
+def complete_k(m_prime: mpf) -> mpf:
+    """K = pi / (2 agm(1, k')), for m' > 0."""
+    return mp.pi / (2 * mp.agm(1, mp.sqrt(m_prime)))
+
+
+def jacobi(u: mpf, m: mpf, m_prime: mpf) -> Triple:
+    """(sn, cn, dn)(u | m) to the working precision, for real u and 0 <= m < 1.
+
+    Of m and m' the smaller one is taken as it stands and the other formed from it, so that the
+    answer is that of one parameter even where u spans so many periods that m needs more digits than
+    it has. Raises ValueError where m < 0 or m' <= 0.
+    """
+    u = mp.convert(u)
+    # u = 1e12 is some 1e12/4K periods: what is lost in reducing it is its magnitude.
+    with mp.extraprec(10 + mp.mag(1 + abs(u))):
+        values = Landen(*_complementary(m, m_prime)).jacobi(u)
+    return _rounded(values)
+
+
+class Landen:
+    """The descending Landen chain of one parameter, at the precision at which it was made.
+
+    Made once, it evaluates (sn, cn, dn) anywhere; whoever makes it allows for the log10 |u| digits
+    that are lost far from the origin.
+    Raises ValueError unless m >= 0 and m' > 0 (at m = 1 the functions are hyperbolic).
+    """
+
+    def __init__(self, m: mpf, m_prime: mpf) -> None:
+        if not (m >= 0 and m_prime > 0):
+            raise ValueError(f"expected 0 <= m and 0 < m', got {mp.nstr(m)}, {mp.nstr(m_prime)}")
+        a, b, c_squared = mpf(1), mp.sqrt(m_prime), mp.convert(m)
+        self._k_prime = b
+        self._moduli: list[tuple[mpf, mpf]] = []  # of step n: k_{n+1} and (k'_n)^2
+        # At the foot of the chain sn, cn are sin, cos up to k_N^2, and a_N is the mean up to k_N^2.
+        negligible = mp.ldexp(1, -mp.prec - 4)
+        while c_squared > negligible * a**2:
+            a_next = (a + b) / 2
+            c = c_squared / (4 * a_next)  # not (a - b)/2: no difference of nearly equal numbers
+            self._moduli.append((c / a_next, (b / a) ** 2))
+            a, b, c_squared = a_next, mp.sqrt(a * b), c**2
+        self._mean = a
+        self.quarter_period = mp.pi / (2 * a)
+
+    def jacobi(self, u: mpf) -> Triple:
+        """(sn, cn, dn)(u | m), by u = r + 2nK and, beyond K/2, by the argument K - |r|."""
+        K = self.quarter_period
+        half_turns = int(mp.nint(u / (2 * K)))
+        r = u - 2 * half_turns * K
+        sn, cn, dn = self._octant(abs(r)) if 2 * abs(r) <= K else self._beyond(K - abs(r))
+        if r < 0:
+            sn = -sn
+        return (-sn, -cn, dn) if half_turns % 2 else (sn, cn, dn)
+
+    def _beyond(self, v: mpf) -> Triple:
+        """The three functions at K - v, for 0 <= v <= K/2."""
+        sn, cn, dn = self._octant(v)
+        return cn / dn, self._k_prime * sn / dn, self._k_prime / dn
+
+    def _octant(self, v: mpf) -> Triple:
+        """The three functions for 0 <= v <= K/2: only positive terms are added on the way up."""
+        cn, sn = mp.cos_sin(self._mean * v)
+        dn = one = mpf(1)
+        for k, m_prime in reversed(self._moduli):
+            denominator = one + k * sn * sn  # products, because mpf powers cost twice as much
+            cn = cn * dn / denominator
+            sn = (sn + k * sn) / denominator
+            dn = mp.sqrt(cn * cn + m_prime * sn * sn)  # 1 - m sn^2 would cancel where m' is small
+        return sn, cn, dn
+
+
+def _complementary(m: mpf, m_prime: mpf) -> tuple[mpf, mpf]:
+    m, m_prime = mp.convert(m), mp.convert(m_prime)
+    return (m, 1 - m) if m <= m_prime else (1 - m_prime, m_prime)
+
+
+def _rounded(values: Triple) -> Triple:
+    """To the precision of the caller."""
+    sn, cn, dn = values
+    return +sn, +cn, +dn

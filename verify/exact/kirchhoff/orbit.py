@@ -1,0 +1,183 @@
+"""One nutating motion of Clebsch's body, Hydromechanics 49 (1)-(22), as numbers of one precision.
+
+Legend: z = x3; F = |x|, FG = x.y; f(z) = z'^2 is the quartic; A^2 = F^2 - z^2, so that
+x1 + i x2 = A e^{i chi}. Derived from x' = x x Omega alone:
+
+    chi' = (r - r') y3 - (q' - q) z + (r/2) (FG - F y3)/(F - z) - (r/2) (FG + F y3)/(F + z)
+    y1 + i y2 = e^{i chi} (FG - y3 z + i z'/r)/A
+
+A has a sign, which it changes where the orbit passes a pole x3 = +-F; chi is smooth there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from mpmath import mp, mpc, mpf
+
+from verify.exact.kirchhoff.quartic import Nutation
+from verify.exact.kirchhoff.regime import TurningPoints, turning_points
+from verify.exact.kirchhoff.wave import CosineWave, Place, SquareWave, Swing, Wave
+from verify.scenes.motion import Impulse
+
+Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes
+
+
+def transverse(vector: Sequence[Fraction]) -> mpc:
+    """v1 + i v2."""
+    return mpc(mp.convert(vector[0]), mp.convert(vector[1]))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """x and y turned back about axis 3 by chi: A, x3, and (y1 + i y2) e^{-i chi}."""
+
+    amplitude: mpf
+    z: mpf
+    partner: mpc
+
+
+@dataclass(frozen=True)
+class Pole:
+    """The pole x3 = side F: its distances from z1, z2, FG - side F y3, and whether it is reached.
+
+    The pull is zero exactly where the pole is a root of f, and only then can it be reached.
+    """
+
+    side: int
+    from_1: mpf
+    from_2: mpf
+    pull: mpf
+    reached: bool
+
+    def root(self, swing: Swing, weight: mpf) -> tuple[mpf, mpf]:
+        """sqrt(F - side x3), signed if the pole is reached, and root_b (side -1: root_a) over it.
+
+        The quotient is finite also where both vanish, at the pole itself.
+        """
+        size = swing.b + weight * swing.a
+        vanishing = swing.root_b if self.side > 0 else swing.root_a
+        if self.reached:
+            scale = mp.sqrt((self.from_1 if self.side > 0 else weight * self.from_2) / size)
+            return scale * vanishing, 1 / scale
+        root = mp.sqrt((self.from_1 * swing.b + weight * self.from_2 * swing.a) / size)
+        return root, vanishing / root
+
+    def pull_on(self, root: mpf) -> mpf:
+        """(FG - side F y3)/sqrt(F - side x3)."""
+        return self.pull / root if self.pull != 0 else self.pull
+
+
+def _poles(nutation: Nutation, points: TurningPoints) -> tuple[Pole, Pole]:
+    """The upper and the lower pole."""
+    up_1, down_1 = _distances(nutation.F2, points.z1)
+    up_2, down_2 = _distances(nutation.F2, points.z2)
+    FG, F_y3 = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2)) * mp.convert(nutation.y3)
+    pulls = [FG - F_y3, FG + F_y3]
+    # Their product is rational: the smaller one comes from it without cancellation.
+    smaller = 0 if FG * F_y3 > 0 else 1
+    if pulls[1 - smaller] != 0:
+        product = mp.convert(nutation.FG**2 - nutation.F2 * nutation.y3**2)
+        pulls[smaller] = product / pulls[1 - smaller]
+    zero = mpf(0)
+    return (
+        Pole(1, up_1, zero if points.at_top else up_2, pulls[0], points.at_top),
+        Pole(-1, zero if points.at_bottom else down_1, down_2, pulls[1], points.at_bottom),
+    )
+
+
+def _distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
+    """(F - z, F + z), of which the smaller from their product, which is rational."""
+    F = mp.sqrt(mp.convert(F2))
+    larger = F + abs(mp.convert(z))
+    smaller = mp.convert(F2 - z**2) / larger
+    return (smaller, larger) if z >= 0 else (larger, smaller)
+
+
+@final
+class Advance:
+    """One term of chi - chi(0) beyond the linear ones: bend times int a/(b + beta a) du."""
+
+    def __init__(self, bend: mpf, beta: mpf, wave: Wave) -> None:
+        self.beta = beta
+        self._bend = bend
+        self._integral = wave.integral(beta)
+        self._at_start = self._integral.at(wave.place(wave.start))
+
+    def at(self, place: Place) -> mpf:
+        return self._bend * (self._integral.at(place) - self._at_start)
+
+
+class Orbit:
+    """One nutating motion, with numbers of one precision; to be used at that precision."""
+
+    def __init__(self, nutation: Nutation, start: Impulse, digits: int) -> None:
+        points = turning_points(nutation, digits)
+        self._wave: Wave = (SquareWave if points.pair is None else CosineWave)(nutation, points)
+        self._r, self._y3 = mp.convert(nutation.body.r), mp.convert(nutation.y3)
+        self._z1, self._width = mp.convert(points.z1), mp.convert(points.z2 - points.z1)
+        self._poles = _poles(nutation, points)
+        self._linear, self._advances = self._phase(nutation)
+        self._turn = self._first_turn(start)
+
+    def state(self, t: mpf) -> tuple[Axial, Axial]:
+        """x and y at the time t since the start."""
+        place = self._wave.place(self._wave.start + self._wave.rate * t)
+        shape = self._shape(self._wave.swing(place))
+        chi = self._linear * t + sum(term.at(place) for term in self._advances)
+        turn = self._turn * mp.expj(chi)
+        return (turn * shape.amplitude, shape.z), (turn * shape.partner, self._y3)
+
+    def lost_digits(self, t: mpf) -> int:
+        """An estimate of the digits lost by the time t >= 0.
+
+        It saves repetitions; whether it was enough is what two precisions decide.
+        """
+        losses = [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + abs(self._linear) * t]
+        losses += [term.beta + 1 / term.beta for term in self._advances]
+        return sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
+
+    def _phase(self, nutation: Nutation) -> tuple[mpf, list[Advance]]:
+        """chi - chi(0) = linear t + sum of advances; only the terms that are not zero are kept."""
+        body, wave = nutation.body, self._wave
+        linear = mp.convert((body.r - body.r_prime) * nutation.y3)
+        # x3 = z1 + width w a/(b + w a), and 1/(F -+ z) by the same with the pole's own weight.
+        per_integral = self._width * wave.weight / wave.rate
+        advances: list[Advance] = []
+        if body.q_prime != body.q:
+            pace = mp.convert(body.q - body.q_prime)
+            linear += pace * self._z1
+            advances.append(Advance(pace * per_integral, wave.weight, wave))
+        for pole in self._poles:
+            if pole.pull != 0:
+                pace = pole.side * self._r / 2 * pole.pull / pole.from_1
+                linear += pace
+                bend = pace * pole.side * per_integral / pole.from_1
+                advances.append(Advance(bend, wave.weight * pole.from_2 / pole.from_1, wave))
+        return linear, advances
+
+    def _shape(self, swing: Swing) -> Shape:
+        """The motion without its turning about axis 3."""
+        top, bottom = self._poles
+        w = self._wave.weight
+        size = swing.b + w * swing.a
+        z = self._z1 + self._width * w * swing.a / size
+        up, up_slope = top.root(swing, w)
+        down, down_slope = bottom.root(swing, w)
+        # dx3/dt = slope root_a root_b, and the roots stand in the two quotients already.
+        slope = 2 * self._wave.rate * self._width * w * swing.dn / size**2
+        if z >= 0:
+            radial = (top.pull_on(up) + self._y3 * up) / down
+        else:
+            radial = (bottom.pull_on(down) - self._y3 * down) / up
+        return Shape(up * down, z, mpc(radial, slope * up_slope * down_slope / self._r))
+
+    def _first_turn(self, start: Impulse) -> mpc:
+        """e^{i chi} at the start, from x, or from y where x lies in the axis."""
+        shape = self._shape(self._wave.swing(self._wave.place(self._wave.start)))
+        x = transverse(start.linear)
+        turn = x * mp.sign(shape.amplitude) if x != 0 else transverse(start.angular) / shape.partner
+        return turn / abs(turn)

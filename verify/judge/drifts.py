@@ -1,0 +1,104 @@
+"""Drift of the conserved quantities, and for a loaded body the balances that take their place.
+
+Both are one sum over the samples. With Q a quantity and flow the exact motion over the time between
+two samples,
+
+    drift(t_n) = | sum over k < n of Q(state_k+1) - Q(flow(state_k)) |.
+
+Without loads Q(flow(state)) = Q(state) and the sum telescopes to Q(state_n) - Q(start). With loads
+Q(flow(state)) - Q(state) is the work, or impulse, done along the arc, and the sum is the balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from verify.exact.invariants import Invariant, invariants
+from verify.exact.taylor import arcs
+from verify.judge.errors import Errors, norms
+from verify.scenes.motion import Motion, State
+from verify.scenes.scene import Scene
+
+Column = np.ndarray[Any, Any]
+
+_STATE_FIELDS = {
+    "omega": "omega",
+    "linear_impulse": "linear",
+    "angular_impulse": "angular",
+    "quaternion": "attitude",
+    "centre": "centre",
+}
+
+
+def drifts(
+    scene: Scene, start: Motion, answer: Motion, held: Mapping[str, Column], digits: int
+) -> list[tuple[Invariant, Errors]]:
+    """The drift of every conserved quantity, at the ambient precision of mpmath.
+
+    ``start`` is the exact initial state as a Motion of one row; ``held`` are the answer's own exact
+    numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
+    answer that is not finite drifts by NaN.
+    """
+    found = invariants(scene)
+    if scene.body.is_free:
+        return [(i, _errors(i, answer, _conserved(i, start, answer))) for i in found]
+    if not _is_finite(answer):
+        lost = np.array([mp.nan] * len(answer.radius), dtype=object)
+        return [(i, _errors(i, answer, lost)) for i in found]
+    ends = _arc_ends(scene, held, digits)
+    return [(i, _errors(i, answer, _balance(i, answer, ends))) for i in found]
+
+
+def _errors(invariant: Invariant, answer: Motion, drift: Column) -> Errors:
+    scale = invariant.scale(answer)
+    radius = np.array([mp.zero] * len(drift), dtype=object)
+    unit = f"scale of {invariant.name}"
+    return Errors(invariant.name, unit, drift / scale, radius, {invariant.name: scale})
+
+
+def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
+    return _sizes(invariant.value(answer) - invariant.value(start)[0])
+
+
+def _balance(invariant: Invariant, answer: Motion, ends: Motion) -> Column:
+    increments = invariant.value(answer) - invariant.value(ends)
+    return _sizes(np.cumsum(increments, axis=0))
+
+
+def _sizes(values: Column) -> Column:
+    if values.ndim > 1:
+        return norms(values)
+    return np.array([abs(value) for value in values], dtype=object)
+
+
+def _arc_ends(scene: Scene, held: Mapping[str, Column], digits: int) -> Motion:
+    """Where the exact motion leads from each sample (the first from the start) to the next one."""
+    elapsed = scene.clock.elapsed
+    spans = [b - a for a, b in zip((Fraction(0), *elapsed), elapsed, strict=False)]
+    return arcs(scene, [scene.initial, *_states(scene, held)[:-1]], spans, digits)
+
+
+def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
+    """The answer's samples as exact initial states."""
+    columns = {
+        _STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()
+    }
+    samples = zip(*columns.values(), strict=True)
+    return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
+
+
+def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
+    return tuple(Fraction(*value.as_integer_ratio()) for value in row)
+
+
+def _is_finite(motion: Motion) -> bool:
+    return all(
+        not mp.isnan(sum(v - v for v in values.flat))
+        for values in motion.quantities.values()
+    )

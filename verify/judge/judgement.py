@@ -1,0 +1,190 @@
+"""The judgement of one trajectory: every quantity compared, every comparison a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, log10
+from typing import Any
+
+from mpmath import mp
+
+from verify.exact.route import solution
+from verify.exact.solution import Solution, Unsettled
+from verify.judge.attainable import Floats, Floor, floor
+from verify.judge.drifts import drifts
+from verify.judge.errors import Errors, state_errors
+from verify.judge.gates import FACTOR, judge
+from verify.judge.provenance import provenance
+from verify.judge.record import GateRecord, Record
+from verify.judge.verdict import Status, Verdict
+from verify.models.problem import Problem
+from verify.scenes.precision import Rung
+from verify.scenes.scene import Scene
+from verify.solvers.solver import Solver
+from verify.solvers.trajectory import Outcome, Trajectory
+
+# The truth is asked for this many digits beyond the rung's own: its error is then below a
+# thousandth of a unit of roundoff, where the narrowest bound is some units.
+_MORE_DIGITS = 3
+# Differences of exactly held numbers lose no more than their leading bits at this precision.
+_SPARE_BITS = 96
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdicts of one run and the record they rest on (None if the run never came to a truth)."""
+
+    verdicts: tuple[Verdict, ...]
+    record: Record | None
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What is the same in every verdict of a run."""
+
+    problem: Problem
+    solver: Solver
+    trajectory: Trajectory
+
+    def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
+        scene, trajectory = self.problem.scene, self.trajectory
+        return Verdict(
+            scene=scene.name,
+            solver=self.solver.name,
+            rung=self.problem.rung.name,
+            setting=self.solver.setting,
+            quantity=quantity,
+            verdict=status,
+            outcome=trajectory.outcome.value,
+            roundoff=float(self.problem.rung.unit_roundoff),
+            steps=trajectory.steps,
+            evaluations=trajectory.evaluations,
+            seconds=trajectory.seconds,
+            provenance=provenance(scene.digest),
+            **numbers,
+        )
+
+
+def judgement(problem: Problem, solver: Solver, trajectory: Trajectory) -> Judgement:
+    """Compare a trajectory with the exact solution of the same rounded data, and judge it."""
+    run = _Run(problem, solver, trajectory)
+    main = main_quantity(problem.scene)
+    if trajectory.outcome is not Outcome.FINISHED:
+        return Judgement((run.verdict(main, Status.FAIL, because=_unfinished(trajectory)),), None)
+    exact = solution(problem.given)
+    try:
+        return _compare(run, exact)
+    except Unsettled as doubt:
+        return Judgement((run.verdict(main, Status.UNDECIDED, because=str(doubt)),), None)
+
+
+def _unfinished(trajectory: Trajectory) -> str:
+    detail = f" ({trajectory.detail})" if trajectory.detail else ""
+    return f"a run that did not finish is not scored: it {trajectory.outcome.value}{detail}"
+
+
+def _compare(run: _Run, exact: Solution) -> Judgement:
+    problem, trajectory = run.problem, run.trajectory
+    given, bits = problem.given, problem.rung.bits
+    digits = ceil(bits * log10(2)) + _MORE_DIGITS
+    truth = exact.motion(given.clock.elapsed, digits)
+    start = exact.motion([Fraction(0)], digits + _MORE_DIGITS)
+    answer = trajectory.motion(bits + _SPARE_BITS)
+    with mp.workprec(bits + _SPARE_BITS):
+        base = floor(given, problem.scene, truth, problem.rung.unit_roundoff, trajectory.steps)
+        compared = [
+            (errors, base.of_state(errors), "orbit")
+            for errors in state_errors(given, truth, answer)
+        ]
+        compared += [
+            (errors, base.of_invariant(invariant, truth, _scale(errors)), "gradient")
+            for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
+        ]
+        verdicts = [_verdict(run, base, *item) for item in compared]
+        gates = tuple(_gate(errors, attainable) for errors, attainable, _ in compared)
+    return Judgement(tuple(verdicts), _record(run, exact, digits, gates))
+
+
+def _scale(errors: Errors) -> Any:
+    return next(iter(errors.parts.values()))
+
+
+def _verdict(run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str) -> Verdict:
+    finding = judge(errors, attainable, base.reason(attainable, carried))
+    instants = run.problem.given.clock.instants
+    worst = finding.worst
+    return run.verdict(
+        errors.quantity,
+        finding.status,
+        max=float(errors.values[worst]),
+        mean=float(sum(errors.values) / len(errors.values)),
+        final=float(errors.values[-1]),
+        at=float(instants[worst]),
+        unit=errors.unit,
+        bound=float(FACTOR * attainable[worst]),
+        because=finding.because,
+        attainable=float(attainable[worst]),
+        ratio=finding.ratio,
+        ratio_at=float(instants[finding.ratio_at]),
+    )
+
+
+def _gate(errors: Errors, attainable: Floats) -> GateRecord:
+    return GateRecord(
+        quantity=errors.quantity,
+        unit=errors.unit,
+        errors=_floats(errors.values),
+        attainable=_floats(attainable),
+        truth_radius=max(_floats(errors.truth_radius)),
+    )
+
+
+def _floats(values: Iterable[Any]) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)
+
+
+def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ...]) -> Record:
+    problem, trajectory = run.problem, run.trajectory
+    scene, units = problem.scene, problem.units
+    return Record(
+        scene=scene.name,
+        title=scene.title,
+        solver=run.solver.name,
+        rung=problem.rung.name,
+        track=tuple(sorted(scene.track)),
+        equations=problem.form.text(),
+        parameters={name: str(float(value)) for name, value in problem.parameter.items()},
+        units={"time": str(units.time), "momentum": str(units.momentum), "impulse": str(units.impulse)},
+        regime=exact.regime,
+        route=exact.route,
+        truth_digits=digits,
+        outcome=trajectory.outcome.value,
+        steps=trajectory.steps,
+        unit_roundoff=float(problem.rung.unit_roundoff),
+        times=_floats(problem.given.clock.instants),
+        gates=gates,
+    )
+
+
+
+
+def unjudged(scene: Scene, solver: Solver, rung: Rung, status: Status, why: str) -> Judgement:
+    """The judgement of a run that could not begin."""
+    verdict = Verdict(
+        scene=scene.name,
+        solver=solver.name,
+        rung=rung.name,
+        setting=solver.setting,
+        quantity=main_quantity(scene),
+        verdict=status,
+        outcome=Outcome.NOT_REPRESENTABLE.value if status is Status.REFUSED else "not started",
+        because=why,
+        provenance=provenance(scene.digest),
+    )
+    return Judgement((verdict,), None)
+
+
+def main_quantity(scene: Scene) -> str:
+    return "omega" if scene.model == "euler" else "impulse"

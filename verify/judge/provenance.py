@@ -1,0 +1,47 @@
+"""What a published number can be traced to: versions, processor, command and scene."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+PACKAGES = ("taylor-verify", "heyoka", "numpy", "mpmath", "python-flint")
+
+
+@lru_cache
+def versions() -> dict[str, str]:
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+@lru_cache
+def processor() -> str:
+    """The processor's own name where the system tells it, else its architecture."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def command() -> str:
+    return " ".join(["taylor-verify", *sys.argv[1:]])
+
+
+def provenance(scene_digest: str) -> dict[str, Any]:
+    return {
+        "versions": versions(),
+        "processor": processor(),
+        "command": command(),
+        "scene": scene_digest,
+    }

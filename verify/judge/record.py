@@ -1,0 +1,42 @@
+"""A record: everything one run was judged by, for pages, for `explain`, and for a reader in doubt."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class GateRecord:
+    """The samples and the arithmetic of one gate. ``errors`` and ``bounds`` stand sample by sample."""
+
+    quantity: str
+    unit: str
+    errors: tuple[float, ...]
+    attainable: tuple[float, ...]
+    truth_radius: float
+
+
+@dataclass(frozen=True)
+class Record:
+    """One run: what was built, what the orbit is, and each gate's terms."""
+
+    scene: str
+    title: str
+    solver: str
+    rung: str
+    track: tuple[str, ...]
+    equations: tuple[str, ...]
+    parameters: dict[str, str]
+    units: dict[str, str]
+    regime: str
+    route: str
+    truth_digits: int
+    outcome: str
+    steps: int
+    unit_roundoff: float
+    times: tuple[float, ...]
+    gates: tuple[GateRecord, ...]
+
+    def document(self) -> dict[str, Any]:
+        return asdict(self)

@@ -1,0 +1,85 @@
+"""A verdict: one row for one quantity of one run. Tables and pages are made from these alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+from enum import StrEnum
+from typing import Any
+
+
+class Status(StrEnum):
+    """What a gate said. Only PASS is green."""
+
+    PASS = "pass"
+    FAIL = "fail"
+    UNDECIDED = "undecided"
+    VACUOUS = "vacuous"
+    REFUSED = "refused"
+    UNAVAILABLE = "unavailable"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One compared quantity.
+
+    ``max``, ``mean`` and ``final`` are errors in ``unit``, ``at`` the time of the largest; ``bound``
+    and ``attainable`` hold at that time. ``ratio`` is the largest error over attainable of all
+    samples and ``ratio_at`` its time: the gate asks every sample, so ``ratio`` decides. A number that
+    does not exist, or is not finite, is None.
+    """
+
+    scene: str
+    solver: str
+    rung: str
+    setting: str
+    quantity: str
+    verdict: Status
+    outcome: str
+    max: float | None = None
+    mean: float | None = None
+    final: float | None = None
+    at: float | None = None
+    unit: str = ""
+    bound: float | None = None
+    because: str = ""
+    attainable: float | None = None
+    ratio: float | None = None
+    ratio_at: float | None = None
+    roundoff: float | None = None
+    exponent: float | None = None
+    steps: int = 0
+    evaluations: int = 0
+    seconds: float | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    def row(self) -> dict[str, Any]:
+        """The row as JSON holds it: no NaN, no infinity."""
+        return {name: _json_number(value) for name, value in asdict(self).items()}
+
+
+def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:
+    """How many verdicts of each status, every status named."""
+    counts = {status.value: 0 for status in Status}
+    for verdict in verdicts:
+        counts[verdict.verdict.value] += 1
+    return counts
+
+
+def exit_status(verdicts: Iterable[Verdict]) -> int:
+    """0 if nothing failed, 1 if a gate failed, 3 if nothing failed but something is undecided.
+
+    A scene that the arithmetic had to refuse, or whose gate is vacuous, is no pass either unless it
+    was expected; until the list of expectations exists both count as undecided.
+    """
+    found = {verdict.verdict for verdict in verdicts}
+    if Status.FAIL in found:
+        return 1
+    return 3 if found & {Status.UNDECIDED, Status.REFUSED, Status.VACUOUS} else 0
+
+
+def _json_number(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

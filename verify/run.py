@@ -1,0 +1,41 @@
+"""The chain for one scene: scene, problem, trajectory, truth and judgement.
+
+The module is callable, so that `verify.run(scene, solver, rung)` is this chain.
+"""
+
+from __future__ import annotations
+
+from verify.callable_module import make_callable
+from verify.judge.judgement import Judgement, judgement, unjudged
+from verify.judge.verdict import Status
+from verify.models.problem import NotRepresentable, pose
+from verify.scenes.precision import Rung
+from verify.scenes.precision import rung as rung_named
+from verify.scenes.reader import load
+from verify.scenes.scene import Scene
+from verify.solvers.registry import solver_named
+from verify.solvers.solver import Solver
+
+
+def run(
+    scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64"
+) -> Judgement:
+    """Solve one scene on one rung and judge the answer.
+
+    Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
+    no solver or no rung. What the rung cannot hold is a verdict, not an error.
+    """
+    scene = load(scene) if isinstance(scene, str) else scene
+    solver = solver_named(solver) if isinstance(solver, str) else solver
+    rung = rung_named(rung) if isinstance(rung, str) else rung
+    if missing := solver.unavailable(rung):
+        return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing)
+    try:
+        problem = pose(scene, rung)
+    except NotRepresentable as reason:
+        return unjudged(scene, solver, rung, Status.REFUSED, str(reason))
+    trajectory = solver.solve(problem)
+    return judgement(problem, solver, trajectory)
+
+
+make_callable(__name__, run)

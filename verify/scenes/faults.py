@@ -1,0 +1,78 @@
+"""What is wrong with a scene: every fault in one line, all of them in one exception."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Final
+
+from verify.scenes.precision import float_text
+
+NOT_BUILT: Final = "which this version does not build yet"
+
+_LONGEST_SHOWN = 60
+
+
+class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
+    """A scene that cannot be asked of any solver.
+
+    ``faults`` holds one line each, ``expected ..., got ... @ body.inertia[1]``, with the mend in
+    brackets where there is an obvious one; indices count from 0. The text is those lines.
+    """
+
+    def __init__(self, faults: Sequence[str]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("\n".join(self.faults))
+
+
+class Faults:
+    """The faults found so far in one scene, in the order of the reading."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    def add(self, expected: str, got: str, path: str, mend: str = "") -> None:
+        line = f"expected {expected}, got {got} @ {path}"
+        self.lines.append(f"{line} ({mend})" if mend else line)
+
+
+def shown(value: object) -> str:
+    """A value as its scene would write it, cut short where it is long."""
+    text = _toml(value)
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
+
+
+def _toml(value: object, depth: int = 0) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Decimal):
+        return str(value).lower()
+    if isinstance(value, int | Fraction):
+        return _rational(Fraction(value))
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, list):
+        # What tomllib could just nest would overflow the stack here.
+        inner = ", ".join(_toml(entry, depth + 1) for entry in value) if depth < 3 else ".."
+        return f"[{inner}]"
+    if isinstance(value, Mapping):
+        return "a table"
+    return f"the {type(value).__name__} {value}"
+
+
+def _rational(value: Fraction) -> str:
+    try:
+        return str(value)
+    except ValueError:  # Python prints no integer of more than 4300 digits
+        return float_text(value)
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """A mend that names the known word most like this one, else all of them."""
+    words = sorted(known)
+    close = difflib.get_close_matches(word, words, n=1)
+    if close:
+        return f"did you mean `{close[0]}`?"
+    return f"known: {', '.join(words)}" if words else ""
