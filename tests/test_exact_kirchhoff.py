@@ -120,7 +120,8 @@ def stepped(solid: Clebsch, s: Six, left: mpf) -> tuple[Six, mpf]:
     # radius the first term left out is 7^-(1.2 dps) < 10^-dps.
     growth = max(abs(row[n]) ** (mpf(1) / n) for row in rows for n in range(1, order + 1))
     h = min(1 / (7 * growth), abs(left)) * mp.sign(left)
-    return [mp.polyval(row[::-1], h) for row in rows], left - h
+    powers = [h**n for n in range(order + 1)]
+    return [mp.fdot(row, powers) for row in rows], left - h
 
 
 def taylor(solid: Clebsch, start: State, time: Fraction, digits: int = DIGITS) -> Six:
@@ -144,13 +145,13 @@ TINY = Fraction(1, 10**10)
 CASES = {
     "four real roots": (SHARP, GENERIC, "four-roots"),
     "four real roots, the two largest": (
-        body(2, 1, "1/10", "3/10", 2, 1),
-        exact("3/5", "1/5", "4/5", "1/5", "-3/5", "1/10"),
+        body(3, 1, "-1/10", "7/20", 2, 1),
+        exact(1, 1, "3/4", "1/4", "-1/4", "-1/8"),
         "four-roots",
     ),
     "four real roots, the two smallest": (
-        body(2, 1, "1/10", "3/10", 2, 1),
-        exact("3/5", "1/5", "-4/5", "1/5", "-3/5", "1/10"),
+        body(5, 1, "1/10", "-2/5", 2, 1),
+        exact("1/2", "-1/2", -1, "1/8", "3/8", "1/8"),
         "four-roots",
     ),
     "two real roots": (BLUNT, GENERIC, "two-roots"),
@@ -186,7 +187,11 @@ CASES = {
         (TINY, Fraction(0), Fraction(1), Fraction(0), TINY / 3, Fraction(1, 5)),
         "two-roots",
     ),
-    "steady": (SHARP, exact(0, 0, 1, 0, 0, 1), "steady"),
+    "steady": (
+        body(1, "92/81", "1/10", "3/10", 1, "1/2"),  # p' solves f'(4/5) = 0
+        exact("3/5", 0, "4/5", "1/3", 0, 1),
+        "steady",
+    ),
 }
 
 by_case = pytest.mark.parametrize(

@@ -60,6 +60,13 @@ class Problem:
     def state(self) -> Mapping[str, Fraction]:
         return dict(zip(self.form.states, self.initial, strict=True))
 
+    def with_equations(self, equations: Equations) -> Problem:
+        """The same data under other equations in the same states, as the negative controls need."""
+        form = replace(self.form, equations=equations)
+        kept = form.entering()
+        values = tuple(self.parameter[name] for name in kept)
+        return replace(self, form=replace(form, parameters=kept), parameters=values)
+
 
 def pose(scene: Scene, rung: Rung) -> Problem:
     """Round the scene onto a rung and build the equations it requires.
