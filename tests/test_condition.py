@@ -16,7 +16,7 @@ from verify.exact.taylor import TaylorSolution
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector, apply, diagonal, inverse
+from verify.scenes.tensors import Matrix, Vector, diagonal, inverse, scaled
 
 Array = np.ndarray[Any, Any]
 
@@ -199,7 +199,7 @@ def _rational(values: Array) -> Vector:
 
 
 def test_place_moves_with_the_path() -> None:
-    """A turn stays a turn, a shift a shift; a turn at t_k swings c_i by |c_i - c_k|; nothing more."""
+    """A turn stays a turn, a shift a shift, and a turn at t_k swings c_i by |c_i - c_k|."""
     instants = times(0, "0.5", 2, 5)
     found = transition(LOADED_KIRCHHOFF, instants)
     path = TaylorSolution(LOADED_KIRCHHOFF).motion(instants, 30)["centre"].astype(float)
@@ -256,8 +256,9 @@ def test_growth_beside_an_unstable_rotation() -> None:
             [-np.sinh(rate * time) * rate * 3, np.cosh(rate * time)],
         ]
         expected = np.linalg.norm(block, 2)
-        # float64 hyperbolic functions of arguments below 50.
-        assert abs(found[i, 0] / expected - 1) <= 1e-12
+        # The matrix is held to conserve volume to 10^-6; with errors of 10^-25 grown 10^20 times,
+        # the orbits compared are 10^-5 apart, and what is neglected is its square.
+        assert abs(found[i, 0] / expected - 1) <= 1e-6
 
 
 def test_a_body_at_rest() -> None:
@@ -278,12 +279,8 @@ def test_norms_follow_the_units() -> None:
     body = CLEBSCH
     factor = Fraction(2**20)
     # x, y -> factor x, y; the same motion needs T's coefficients divided by the factor.
-    heavy = ImmersedBody(
-        *(
-            tuple(apply(diagonal((1 / factor,) * 3), row) for row in block)
-            for block in (body.linear, body.coupling, body.angular)
-        )
-    )
+    blocks = (body.linear, body.coupling, body.angular)
+    heavy = ImmersedBody(*(tuple(scaled(1 / factor, row) for row in block) for block in blocks))
     start = replace(
         IMPULSE,
         linear=tuple(factor * e for e in IMPULSE.linear),

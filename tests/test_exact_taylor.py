@@ -1,4 +1,4 @@
-"""The Taylor recursion solves the equations of both texts, loads and all, to the digits asked for."""
+"""The Taylor recursion solves the equations of both texts, loads and all, to any digits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from verify.exact.taylor import TaylorSolution, arcs
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector, diagonal
+from verify.scenes.tensors import Matrix, Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 
@@ -36,10 +36,11 @@ GENERAL = ImmersedBody(
     angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
 )
 LOADED = replace(GENERAL, force=FORCE, couple=COUPLE)
+OMEGA = vector("0.3", 1, "0.2")
 QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
 
 
-def euler(body: RigidBody, *track: str, omega: Vector = vector("0.3", 1, "0.2")) -> Scene:
+def euler(body: RigidBody, *track: str, omega: Vector = OMEGA) -> Scene:
     return scene("euler", body, Spin(omega, QUATERNION), track)
 
 
@@ -172,7 +173,7 @@ def test_times_come_in_any_order() -> None:
     with mp.workdps(50):
         for row, time in zip(together, times, strict=True):
             assert largest(row - exact.motion([time], 30)["omega"][0]) <= mpf(10) ** -30
-        start = np.array([mp.convert(entry) for entry in vector("0.3", 1, "0.2")])
+        start = np.array([mp.convert(entry) for entry in OMEGA])
         assert largest(together[2] - start) <= mpf(10) ** -40
 
 
@@ -182,10 +183,7 @@ def test_spherical_body_under_a_moment() -> None:
     time = Fraction(10**6, 7)
     found = TaylorSolution(euler(body)).motion([time], 40)["omega"][0]
     with mp.workdps(60):
-        expected = [
-            mp.convert(w + m * time / 3)
-            for w, m in zip(vector("0.3", 1, "0.2"), MOMENT, strict=True)
-        ]
+        expected = [mp.convert(w + m * time / 3) for w, m in zip(OMEGA, MOMENT, strict=True)]
         assert largest(found - np.array(expected)) <= mpf(10) ** -40 * max(map(abs, expected))
 
 
@@ -211,8 +209,8 @@ def test_a_quaternion_stands_for_a_direction() -> None:
 @pytest.mark.parametrize("digits", [32, 52, 72])
 def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
     """Two evaluations that are compared share neither precision nor order nor the ratio of both."""
-    exact = TaylorSolution(euler(RigidBody(TENSOR)))
-    one, other = exact._grid(digits), exact._grid(digits + 20)
+    problem = TaylorSolution(euler(RigidBody(TENSOR)))._problem
+    one, other = problem.grid(digits), problem.grid(digits + 20)
     assert one.bits < other.bits
     assert one.order != other.order
     # A step is radius / 2^(bits/order): unequal ratios make unequal steps.
@@ -221,12 +219,45 @@ def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
 
 def test_small_blocks_are_resolved() -> None:
     """A motion 10^-30 of the usual size has as many significant digits."""
-    small = tuple(entry / 10**30 for entry in vector("0.3", 1, "0.2"))
+    small = tuple(entry / 10**30 for entry in OMEGA)
     tiny = TaylorSolution(euler(RigidBody(TENSOR), omega=small)).evaluate([Fraction(10**30)], 40)
     usual = TaylorSolution(euler(RigidBody(TENSOR))).evaluate([Fraction(1)], 40)
     with mp.workdps(60):
         # omega(t) scales with its inverse time: the same digits, thirty places lower.
         assert largest(tiny["omega"] * mpf(10) ** 30 - usual["omega"]) <= mpf(10) ** -40
+
+
+def test_units_change_nothing() -> None:
+    """With impulses 2^40 times as large and energy coefficients as much smaller, nothing changes.
+
+    U and Omega are then the same, and every number of the motion is one exactly shifted.
+    """
+    factor = Fraction(2**40)
+    blocks = (GENERAL.linear, GENERAL.coupling, GENERAL.angular)
+    heavy = ImmersedBody(*(tuple(scaled(1 / factor, row) for row in block) for block in blocks))
+    light = kirchhoff(GENERAL, "attitude", "centre")
+    start = light.initial
+    assert isinstance(start, Impulse)
+    massive = Impulse(
+        scaled(factor, start.linear), scaled(factor, start.angular), QUATERNION, start.centre
+    )
+    times = [Fraction(-1), Fraction(5, 2)]
+    one = TaylorSolution(light).evaluate(times, 30)
+    other = TaylorSolution(replace(light, body=heavy, initial=massive)).evaluate(times, 30)
+    # Enough digits that a shift of what was computed rounds nothing.
+    with mp.workdps(200):
+        for name, shift in (("linear_impulse", 2**40), ("attitude", 1), ("centre", 1)):
+            assert (one[name] * shift == other[name]).all()
+
+
+def test_a_stiff_body_is_no_obstacle() -> None:
+    """A needle that tumbles is no harder for being a million times as easy to spin."""
+    needle = RigidBody(diagonal(vector("1e-6", 1, 1)))
+    resting = euler(needle, omega=vector("1e-9", 1, "0.5"))
+    exact = solution(resting, "mpmath").motion([Fraction(3)], 30)["omega"][0]
+    found = TaylorSolution(resting).motion([Fraction(3)], 30)["omega"][0]
+    with mp.workdps(50):
+        assert largest(exact - found) <= 2 * mpf(10) ** -30 * largest(exact)
 
 
 def test_endless_work_is_refused() -> None:

@@ -86,7 +86,7 @@ def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
 
 
 def test_they_tell_one_motion_from_another() -> None:
-    """A motion of a slightly different body does not conserve them: none is constant by its form."""
+    """Under loads every one of them changes: none is constant by its form."""
     rigid, solid = (
         scene(RigidBody(TENSOR, MOMENT), "attitude"),
         scene(replace(CLEBSCH, force=FORCE, couple=COUPLE), "attitude", "centre"),
@@ -124,7 +124,7 @@ def test_energy_grows_by_the_work_of_a_moment() -> None:
 
 
 def test_impulse_grows_by_the_loads() -> None:
-    """T by X.U + L.Omega; R x by R X; R y + c x R x by R L + c x R X: the balances of 48 (7), (9)."""
+    """T by X.U + L.Omega; R x by R X; R y + c x R x by R L + c x R X: 48 (7), (9)."""
     loaded = scene(replace(GENERAL, force=FORCE, couple=COUPLE), "attitude", "centre")
     force = np.array([float_free(entry) for entry in FORCE])
     couple = np.array([float_free(entry) for entry in COUPLE])
@@ -232,8 +232,9 @@ def test_scales_do_not_vanish() -> None:
     crossed = Impulse(vector(1, 0, 0), vector(0, 2, 0))
     motion = sampled(scene(CLEBSCH, start=crossed), [Fraction(0)])
     found = named(scene(CLEBSCH))
-    assert found["FG"].value(motion)[0] == 0 and found["FG"].scale(motion) == 2
-    assert found["y3"].value(motion)[0] == 0 and found["y3"].scale(motion) == 2
+    for name in ("FG", "y3"):
+        assert found[name].value(motion)[0] == 0
+        assert found[name].scale(motion) == 2
     nowhere = Impulse(vector(0, 0, 0), vector(0, 0, 0))
     for resting in (
         scene(CLEBSCH, "attitude", "centre", start=nowhere),

@@ -33,8 +33,11 @@ Polynomial = Mapping[tuple[int, int], Fraction]
 _BITS_PER_DIGIT: Final = 3.3219280948873626
 # mpmath's integers: those of gmpy2 where it is installed, which are twice as fast, else Python's.
 _Integer: Final = libmp.MPZ
-# Roundings of one step add up to some hundred units, and a long span has some ten thousand steps.
-_GUARD_BITS: Final = 24
+# Roundings of one step add up to some hundred last bits, and a long span has some ten thousand
+# steps; half of these bits is what the truncation of a series may leave, so that it stays visible
+# above the roundings of its own coefficients.
+_GUARD_BITS: Final = 26
+_SLACK_BITS: Final = 12
 # A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
 # orders; the linear cost asks for a few more. Two ratios, taken in turn every twenty digits, so
 # that two evaluations that are compared differ in order, step and precision.
@@ -61,40 +64,18 @@ class TaylorSolution(Solution):
         state, times what the orbit makes of a rounding. Raises Unsettled when the span would take
         more than a million steps.
         """
-        grid = self._grid(digits)
+        problem = self._problem
+        grid = problem.grid(digits)
         later = sorted({t for t in elapsed if t >= 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         states: dict[Fraction, list[int]] = {}
         for times in (later, earlier):
-            states.update(_march(self._equations, self._start, times, grid))
-        return _quantities(self.scene, [states[t] for t in elapsed], grid.bits)
+            states.update(_march(problem, times, grid))
+        return _quantities(self.scene, [problem.reals(states[t], grid) for t in elapsed])
 
     @cached_property
-    def _equations(self) -> Quadratic:
-        return _equations(self.scene)
-
-    @cached_property
-    def _start(self) -> Vector:
-        return _start(self.scene)
-
-    def _grid(self, digits: int) -> Grid:
-        smallest = min((floor_log2(size) // 2 for size in self._squared_sizes() if size), default=0)
-        bits = ceil(digits * _BITS_PER_DIGIT) + _GUARD_BITS + max(0, -smallest)
-        return Grid(bits, _ORDERS_PER_BIT[digits // _DIGITS_PER_TURN % 2])
-
-    def _squared_sizes(self) -> list[Fraction]:
-        """|block|^2 of everything whose smallness a fixed point must resolve."""
-        z, e = self._start, self._equations
-        moving = z[:3] if self.scene.model == "euler" else z[:6]
-        variables = moving + tuple(
-            sum((n * c for n, c in zip(form.numerators, z, strict=True)), Fraction(0))
-            / form.denominator
-            for form in e.forms
-        )
-        return [
-            tensors.dot(variables[i : i + 3], variables[i : i + 3])
-            for i in range(0, len(variables), 3)
-        ]
+    def _problem(self) -> Problem:
+        return _problem(self.scene)
 
 
 def arcs(scene: Scene, starts: Sequence[State], spans: Sequence[Fraction], digits: int) -> Motion:
@@ -129,30 +110,23 @@ class _Arcs(Solution):
 
 
 @dataclass(frozen=True)
-class Combination:
-    """sum of numerators[i] v_i / denominator: a linear combination with exact coefficients."""
+class Equations:
+    """z' = constant + right: quadratic in variables, which are the states and then the forms."""
 
-    numerators: tuple[int, ...]
-    denominator: int
+    constant: Vector
+    forms: Matrix
+    right: tuple[Polynomial, ...]
 
 
 @dataclass(frozen=True)
-class Quadratic:
-    """z' = constant + rates(products); a product is of two variables: states, then forms."""
+class Units:
+    """Powers of two, one for every variable and one for time, in which the motion is of size 1."""
 
-    constant: Vector
-    forms: tuple[Combination, ...]
-    products: tuple[tuple[int, int], ...]
-    rates: tuple[tuple[tuple[int, ...], Combination], ...]
+    variables: tuple[int, ...]
+    time: int
 
 
-def _equations(scene: Scene) -> Quadratic:
-    if isinstance(scene.body, RigidBody):
-        return _euler(scene.body, with_attitude=bool(scene.track))
-    return _kirchhoff(scene.body, bool(scene.track), "centre" in scene.track)
-
-
-def _euler(body: RigidBody, with_attitude: bool) -> Quadratic:
+def _euler(body: RigidBody, with_attitude: bool) -> Equations:
     """omega' = K((I omega) x omega + M); each row r of R obeys r' = r x omega."""
     omega: Triple = (0, 1, 2)
     inertia, inverse = body.inertia, body.inverse_inertia
@@ -164,10 +138,10 @@ def _euler(body: RigidBody, with_attitude: bool) -> Quadratic:
     right = [_sum(*(_times(c, p) for c, p in zip(row, torque, strict=True))) for row in inverse]
     if with_attitude:
         right += [p for row in _rows_from(3) for p in _cross(row, omega)]
-    return _quadratic(tensors.apply(inverse, body.moment), (), right)
+    return Equations(tensors.apply(inverse, body.moment), (), tuple(right))
 
 
-def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Quadratic:
+def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Equations:
     """Hydromechanics 48 (3), (4), (5); R' = R [Omega]x row by row, centre' = R U."""
     x: Triple = (0, 1, 2)
     y: Triple = (3, 4, 5)
@@ -180,7 +154,61 @@ def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Qu
         right += [p for row in _rows_from(6) for p in _cross(row, omega)]
     if with_centre:
         right += [_dot(row, velocity) for row in _rows_from(6)]
-    return _quadratic(body.force + body.couple, body.energy_matrix, right)
+    return Equations(body.force + body.couple, body.energy_matrix, tuple(right))
+
+
+def _euler_units(body: RigidBody, start: Vector) -> Units:
+    """omega by its size, or what the moment makes of it; time by omega."""
+    spun = tensors.apply(body.inverse_inertia, body.moment)
+    omega = _largest(_exponent(start[:3]), _halved(_exponent(spun)), default=0)
+    return Units((omega,) * 3 + (0,) * (len(start) - 3), -omega)
+
+
+def _kirchhoff_units(body: ImmersedBody, start: Vector) -> Units:
+    """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
+    x, y, force, couple = start[:3], start[3:6], body.force, body.couple
+    a, b, c = body.linear, body.coupling, body.angular
+    spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
+    pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
+    omega = _largest(
+        _exponent(tensors.apply(tensors.transpose(b), x)),
+        _exponent(tensors.apply(c, y)),
+        _halved(_exponent(spun)),
+        default=0,
+    )
+    time = -omega
+    velocity = _largest(
+        _exponent(tensors.apply(a, x)),
+        _exponent(tensors.apply(b, y)),
+        _later(_exponent(pushed), time),
+        default=omega,
+    )
+    linear = _largest(_exponent(x), _later(_exponent(force), time), default=0)
+    angular = _largest(
+        _exponent(y), _later(_exponent(couple), time), default=linear + velocity + time
+    )
+    angular = max(angular, linear + velocity + time)
+    sizes = (linear,) * 3 + (angular,) * 3 + (0,) * 9 + (velocity + time,) * 3
+    return Units(sizes[: len(start)] + (velocity,) * 3 + (omega,) * 3, time)
+
+
+def _exponent(vector: Vector) -> int | None:
+    """log2 of the length, rounded; None for zero."""
+    square = tensors.dot(vector, vector)
+    return floor_log2(square) // 2 if square else None
+
+
+def _halved(exponent: int | None) -> int | None:
+    return None if exponent is None else exponent // 2
+
+
+def _later(exponent: int | None, time: int) -> int | None:
+    """The size of what grows at this rate, after one unit of time."""
+    return None if exponent is None else exponent + time
+
+
+def _largest(*exponents: int | None, default: int) -> int:
+    return max((e for e in exponents if e is not None), default=default)
 
 
 def _rows_from(first: int) -> tuple[Triple, Triple, Triple]:
@@ -212,27 +240,6 @@ def _sum(*polynomials: Polynomial) -> Polynomial:
     return {pair: coefficient for pair, coefficient in total.items() if coefficient}
 
 
-def _quadratic(constant: Vector, forms: Matrix, right: Sequence[Polynomial]) -> Quadratic:
-    """The equations with common denominators; a missing constant is zero, as is a form's tail."""
-    size = len(right)
-    products = tuple(sorted({pair for polynomial in right for pair in polynomial}))
-    place = {pair: index for index, pair in enumerate(products)}
-    return Quadratic(
-        constant=constant + (Fraction(0),) * (size - len(constant)),
-        forms=tuple(_combination(row + (Fraction(0),) * (size - len(row))) for row in forms),
-        products=products,
-        rates=tuple(
-            (tuple(place[pair] for pair in polynomial), _combination(tuple(polynomial.values())))
-            for polynomial in right
-        ),
-    )
-
-
-def _combination(coefficients: Vector) -> Combination:
-    denominator = lcm(*(c.denominator for c in coefficients))
-    return Combination(tuple(int(c * denominator) for c in coefficients), denominator)
-
-
 def _start(scene: Scene) -> Vector:
     """The initial state in the order of the equations, exactly."""
     initial = scene.initial
@@ -259,69 +266,156 @@ def _rotation(quaternion: Quaternion) -> Matrix:
     return tuple(tensors.scaled(1 / norm, row) for row in rows)
 
 
-# The recursion.
+# The same, in integers.
+
+
+@dataclass(frozen=True)
+class Combination:
+    """sum of numerators[i] v_i / denominator: a linear combination with exact coefficients."""
+
+    numerators: tuple[int, ...]
+    denominator: int
 
 
 @dataclass(frozen=True)
 class Grid:
-    """The fixed point: integers count 2^-bits, and a series has ``orders_per_bit`` bits orders."""
+    """The fixed point: integers count 2^-bits of a unit.
+
+    A series has ``order`` terms, the last of which is to fall below 2^slack last bits.
+    """
 
     bits: int
+    slack: int
     orders_per_bit: float
 
     @property
     def order(self) -> int:
-        return ceil(self.bits * self.orders_per_bit)
+        return ceil((self.bits - self.slack) * self.orders_per_bit)
 
     def integers(self, values: Iterable[Fraction]) -> list[int]:
         return [_Integer(round(value * 2**self.bits)) for value in values]
 
 
-def _march(
-    equations: Quadratic, start: Vector, times: Sequence[Fraction], grid: Grid
-) -> dict[Fraction, list[int]]:
+@dataclass(frozen=True)
+class Problem:
+    """Equations and initial state in units: z' = constant + rates(products of two variables).
+
+    ``moving`` counts the states that enter the equations of the others.
+    """
+
+    units: Units
+    start: Vector
+    moving: int
+    constant: Vector
+    forms: tuple[Combination, ...]
+    products: tuple[tuple[int, int], ...]
+    rates: tuple[tuple[tuple[int, ...], Combination], ...]
+
+    def grid(self, digits: int) -> Grid:
+        """Bits for these digits of the smallest block, and for what coefficients make of a bit."""
+        blocks = [_exponent(self.start[i : i + 3]) for i in range(0, self.moving, 3)]
+        small = max(0, *(-exponent for exponent in blocks if exponent is not None), 0)
+        rows = [*self.forms, *(rate for _, rate in self.rates)]
+        strong = max(
+            (sum(map(abs, row.numerators)) // row.denominator).bit_length() for row in rows
+        )
+        slack = _SLACK_BITS + strong
+        bits = ceil(digits * _BITS_PER_DIGIT) + _GUARD_BITS + strong + small
+        return Grid(bits, slack, _ORDERS_PER_BIT[digits // _DIGITS_PER_TURN % 2])
+
+    def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:
+        """The state in the scene's own units, exactly, whatever the ambient precision."""
+        units = self.units.variables[: len(state)]
+        return [
+            mp.make_mpf(libmp.from_man_exp(count, unit - grid.bits))
+            for count, unit in zip(state, units, strict=True)
+        ]
+
+
+def _problem(scene: Scene) -> Problem:
+    """The scene's equations, its numbers exact and in units of their size."""
+    start = _start(scene)
+    if isinstance(scene.body, RigidBody):
+        equations, moving = _euler(scene.body, bool(scene.track)), 3
+        units = _euler_units(scene.body, start)
+    else:
+        equations = _kirchhoff(scene.body, bool(scene.track), "centre" in scene.track)
+        units, moving = _kirchhoff_units(scene.body, start), 6
+    size, products = len(start), sorted({pair for p in equations.right for pair in p})
+    unit = [power_of_two(exponent) for exponent in units.variables]
+    per_time = [power_of_two(units.time) / one for one in unit]
+    places = {pair: place for place, pair in enumerate(products)}
+    return Problem(
+        units=units,
+        start=tuple(z / one for z, one in zip(start, unit[:size], strict=True)),
+        moving=moving,
+        constant=tuple(c * one for c, one in zip(equations.constant, per_time, strict=False)),
+        forms=tuple(
+            _combination([c * one / own for c, one in zip(form, unit, strict=False)])
+            for form, own in zip(equations.forms, unit[size:], strict=True)
+        ),
+        products=tuple(products),
+        rates=tuple(
+            (
+                tuple(places[pair] for pair in p),
+                _combination([c * unit[a] * unit[b] * one for (a, b), c in p.items()]),
+            )
+            for p, one in zip(equations.right, per_time, strict=False)
+        ),
+    )
+
+
+def _combination(coefficients: Sequence[Fraction]) -> Combination:
+    denominator = lcm(*(c.denominator for c in coefficients))
+    return Combination(tuple(int(c * denominator) for c in coefficients), denominator)
+
+
+# The recursion.
+
+
+def _march(problem: Problem, times: Sequence[Fraction], grid: Grid) -> dict[Fraction, list[int]]:
     """The states at these times, which lie on one side of 0 and go away from it."""
     if not times:
         return {}
-    state, now, last = grid.integers(start), Fraction(0), times[-1]
-    width = _first_width(equations, start, last, grid)
+    unit = power_of_two(problem.units.time)
+    state, now, last = grid.integers(problem.start), Fraction(0), times[-1] / unit
+    width = _first_width(problem, last, grid)
     reached: dict[Fraction, list[int]] = {}
     steps, pending = 0, list(times[::-1])
     while pending:
-        series = _series(equations, state, width, grid)
-        growth = _log2_reach(series, grid)
+        series = _series(problem, state, width, grid)
+        growth = _log2_reach(series, problem.moving, grid)
         step = _dyadic(width, min(growth, 0.0))
-        while pending and abs(pending[-1] - now) <= abs(step):
+        while pending and abs(pending[-1] / unit - now) <= abs(step):
             time = pending.pop()
-            reached[time] = _value(series, (time - now) / width, grid)
+            reached[time] = _value(series, (time / unit - now) / width, grid)
         steps += 1
-        _refuse_endless(steps + abs(last - now) / abs(step), last)
+        _refuse_endless(steps + abs(last - now) / abs(step), times[-1])
         state, now = _value(series, step / width, grid), now + step
         # A little wider than this step, because the next one may be longer.
         width = _dyadic(width, min(growth + 0.06, 1.0))
     return reached
 
 
-def _series(equations: Quadratic, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
+def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
     """Taylor coefficients of every state, those of order k held multiplied by width^k."""
-    bits = grid.bits
-    forms = equations.forms
+    bits, forms, products = grid.bits, problem.forms, problem.products
     forward = [[z] for z in state]
     forward += [[_combined(form, state)] for form in forms]
     # The second factor of a convolution is kept in reverse, so that the two lists just pair up.
-    backward = {b: forward[b][:] for _, b in equations.products}
+    backward = {b: forward[b][:] for _, b in products}
     for k in range(grid.order):
-        sums = [sum(map(mul, forward[a], backward[b])) for a, b in equations.products]
+        sums = [sum(map(mul, forward[a], backward[b])) for a, b in products]
         scale = (width.denominator * (k + 1)) << bits
         fresh = [
             sum(map(mul, rate.numerators, [sums[place] for place in places]))
             * width.numerator
             // (scale * rate.denominator)
-            for places, rate in equations.rates
+            for places, rate in problem.rates
         ]
         if k == 0:
-            drift = grid.integers(width * c for c in equations.constant)
-            fresh = [z + c for z, c in zip(fresh, drift, strict=True)]
+            for i, drift in enumerate(grid.integers(width * c for c in problem.constant)):
+                fresh[i] += drift
         fresh += [_combined(form, fresh) for form in forms]
         for coefficients, z in zip(forward, fresh, strict=True):
             coefficients.append(z)
@@ -331,6 +425,7 @@ def _series(equations: Quadratic, state: list[int], width: Fraction, grid: Grid)
 
 
 def _combined(form: Combination, state: list[int]) -> int:
+    """A form of the states it is made of, which come first."""
     total: int = sum(map(mul, form.numerators, state))
     return total // form.denominator
 
@@ -345,32 +440,33 @@ def _value(series: list[list[int]], fraction: Fraction, grid: Grid) -> list[int]
     return [sum(map(mul, coefficients, powers)) >> bits for coefficients in series]
 
 
-def _log2_reach(series: list[list[int]], grid: Grid) -> float:
-    """log2 of the fraction of the width at which the last coefficients fall to the last bit.
+def _log2_reach(series: list[list[int]], moving: int, grid: Grid) -> float:
+    """log2 of the fraction of the width at which the last terms fall below the slack.
 
     A root test over the last eighth of the orders, so that a series with gaps does not deceive it.
-    1 where those coefficients are all zero: the width can then be doubled without harm.
+    1 where those terms are all zero: the width can then be doubled without harm. Where the motion
+    has outgrown its units, so have the roundings, and the slack with them.
     """
     order, bits_per_order = grid.order, 1 / grid.orders_per_bit
+    outgrown = max(abs(z[0]) for z in series[:moving]).bit_length() - grid.bits
+    slack = grid.slack + max(0, outgrown)
     reach = 1.0
     for k in range(order - max(order // 8, 3), order + 1):
-        size = max(abs(coefficients[k]) for coefficients in series).bit_length()
+        size = max(abs(z[k]) for z in series).bit_length()
         if size:
-            reach = min(reach, ((order - k) * bits_per_order - size) / k)
+            reach = min(reach, ((order - k) * bits_per_order + slack - size) / k)
     return reach
 
 
-def _first_width(equations: Quadratic, start: Vector, span: Fraction, grid: Grid) -> Fraction:
-    """A first guess of the step, from short series: no longer than the span, which has a sign."""
-    extra = max(0, grid.bits - _PILOT_BITS) // 4
-    pilot = Grid(_PILOT_BITS + extra, grid.orders_per_bit)
-    width = span if span else Fraction(1)
-    width = _dyadic(width, 0.0)
+def _first_width(problem: Problem, span: Fraction, grid: Grid) -> Fraction:
+    """A first guess of the step, from short series: no longer than the span, whose sign it has."""
+    bits = grid.slack + _PILOT_BITS
+    pilot = Grid(bits, grid.slack, grid.orders_per_bit)
+    start = pilot.integers(problem.start)
+    width = _dyadic(span if span else Fraction(1), 0.0)
     for _ in range(3):
-        width = _dyadic(
-            width,
-            min(_log2_reach(_series(equations, pilot.integers(start), width, pilot), pilot), 0.0),
-        )
+        reach = _log2_reach(_series(problem, start, width, pilot), problem.moving, pilot)
+        width = _dyadic(width, min(reach, 0.0))
     return width
 
 
@@ -393,8 +489,8 @@ def _refuse_endless(steps: Fraction, span: Fraction) -> None:
 # The answer.
 
 
-def _quantities(scene: Scene, states: Sequence[Sequence[int]], bits: int) -> Quantities:
-    z = np.array([[_real(n, bits) for n in state] for state in states], dtype=object)
+def _quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:
+    z = np.array(states, dtype=object).reshape(len(states), len(_start(scene)))
     if scene.model == "euler":
         parts, used = {"omega": z[:, :3]}, 3
     else:
@@ -404,8 +500,3 @@ def _quantities(scene: Scene, states: Sequence[Sequence[int]], bits: int) -> Qua
     if "centre" in scene.track:
         parts["centre"] = z[:, used + 9 :]
     return parts
-
-
-def _real(count: int, bits: int) -> Any:
-    """count * 2^-bits, exactly, whatever the ambient precision."""
-    return mp.make_mpf(libmp.from_man_exp(count, -bits))

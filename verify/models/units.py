@@ -62,7 +62,7 @@ def natural_units(scene: Scene) -> Units:
 def _euler_units(body: RigidBody, initial: Spin, span: Fraction) -> Units:
     momentum = tensors.apply(body.inertia, initial.omega)
     unit = _size(momentum) or _binary(_size(body.moment) * span) or Fraction(1)
-    rate = _largest(body.inverse_inertia) * unit
+    rate = _size(initial.omega) or _largest(body.inverse_inertia) * unit
     return Units(time=1 / _binary(rate), momentum=unit)
 
 

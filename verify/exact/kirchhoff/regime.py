@@ -13,8 +13,10 @@ from verify.exact.kirchhoff.quartic import (
     has_repeated_root,
     value,
 )
-from verify.exact.solution import NoClosedForm
+from verify.exact.solution import NoClosedForm, Unsettled
 from verify.scenes.precision import floor_log2, power_of_two
+
+_NARROWINGS = 40
 
 
 def regime(nutation: Nutation) -> str:
@@ -61,17 +63,18 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
     """The turning points to ``digits`` significant digits of every difference.
 
     The smallest difference is not known beforehand: the roots are narrowed until it is large enough
-    beside what is left of their enclosures.
+    beside what is left of their enclosures. Raises Unsettled if they do not come apart.
     """
     roots = RealRoots(nutation.f)
     F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
     width = F_above / 10**digits
-    while True:
+    for _ in range(_NARROWINGS):
         points = _arranged(nutation, roots, width)
         smallest = min(_allowances(nutation, points, width))
         if width * 10**digits <= smallest:
             return points
         width = min(smallest / 10**digits, width) / 16 if smallest > 0 else width / 10**digits
+    raise Unsettled("the roots of the quartic of x3 do not come apart")
 
 
 def _arranged(nutation: Nutation, real: RealRoots, width: Fraction) -> TurningPoints:

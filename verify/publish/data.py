@@ -1,0 +1,200 @@
+"""Verdicts and records as JSON files: what a run found, apart from how long it took and where.
+
+    verdicts.json   every verdict, one a line; the same on any machine that computes the same
+    timings.json    seconds of every run; Python, processor and command of every machine
+    records/        one file a run: the equations built and every sample's error
+
+Floats are written so that they read back to the last bit; one that is not finite is null.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+from verify.judge.record import Record
+from verify.judge.verdict import Status, Verdict
+from verify.publish.replacement import first_line, replace_files
+from verify.publish.runs import Run, runs
+
+FOLDER: Final = "data"
+VERDICTS: Final = "verdicts.json"
+TIMINGS: Final = "timings.json"
+RECORDS: Final = "records"
+
+_MADE_BY = {"made_by": "taylor-verify run; do not edit"}
+# What the numbers do not depend on: it may differ where verdicts.json may not.
+_MACHINE = ("processor", "command")
+_RUN = ("scene", "solver", "setting", "rung")
+
+
+def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) -> tuple[Path, ...]:
+    """Write ``folder``/data, in place of an earlier one, and return the files written.
+
+    Raises OSError if that cannot be done, and ValueError for verdicts of unlike versions or two
+    unlike records of one run; the earlier data then stay as they are.
+    """
+    found = runs(verdicts)
+    data = folder / FOLDER
+    # The verdicts come last: once they are in place, what they speak of is there.
+    texts = dict(_record_texts(records))
+    texts[TIMINGS] = _laid_out({**_MADE_BY, **_timings(found)})
+    rows = [_row(verdict) for run in found for verdict in run.verdicts]
+    same = versions(verdict for run in found for verdict in run.verdicts)
+    texts[VERDICTS] = _laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
+    return replace_files(data, texts, stale=_own_records(data))
+
+
+def load(folder: Path) -> tuple[Verdict, ...]:
+    """The verdicts of ``folder``/data as they were written, in reading order.
+
+    A number that was not finite is None. Raises OSError for files that cannot be read and
+    ValueError for files that hold something else. Timings may be missing.
+    """
+    file = folder / FOLDER / VERDICTS
+    stored = _document(file)
+    timed = _timed(folder / FOLDER / TIMINGS)
+    with _expecting("verdicts", file):
+        same = stored["versions"]
+        return tuple(_verdict(row, same, timed.get(_key(row), {})) for row in stored["verdicts"])
+
+
+def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
+    """The versions all verdicts were made with; not Python's, on which no number depends."""
+    found = [_numerical(verdict.provenance.get("versions", {})) for verdict in verdicts]
+    unlike = next((other for other in found if other != found[0]), None)
+    if unlike is not None:
+        raise ValueError(f"expected one set of versions, got {found[0]} and {unlike}")
+    return found[0] if found else {}
+
+
+def _numerical(found: Mapping[str, str]) -> dict[str, str]:
+    return {package: version for package, version in found.items() if package != "python"}
+
+
+# Writing.
+
+
+def _row(verdict: Verdict) -> dict[str, Any]:
+    row = verdict.row()
+    del row["seconds"]
+    apart = ("versions", *_MACHINE)
+    row["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
+    return row
+
+
+def _timings(found: Iterable[Run]) -> dict[str, Any]:
+    """The seconds of each run, with the place of its machine in a list of them."""
+    machines: list[dict[str, Any]] = []
+    timings = []
+    for run in found:
+        verdict = run.verdicts[0]
+        machine = _machine(verdict)
+        if machine not in machines:
+            machines.append(machine)
+        key = {name: getattr(run, name) for name in _RUN}
+        place = machines.index(machine)
+        timings.append({**key, "seconds": verdict.seconds, "machine": place})
+    return {"machines": machines, "timings": timings}
+
+
+def _machine(verdict: Verdict) -> dict[str, Any]:
+    given = verdict.provenance
+    python = given.get("versions", {}).get("python")
+    known = {"python": python} if python else {}
+    return {**known, **{name: given[name] for name in _MACHINE if name in given}}
+
+
+def _record_texts(records: Iterable[Record]) -> Iterator[tuple[str, str]]:
+    seen: dict[str, Record] = {}
+    for record in records:
+        name = f"{record.scene.replace('/', '-')}.{record.solver}.{record.rung}.json"
+        if name in seen and seen[name] != record:
+            raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
+        seen[name] = record
+        yield f"{RECORDS}/{name}", _laid_out({**_MADE_BY, **record.document()})
+
+
+def _own_records(data: Path) -> list[Path]:
+    """The records of an earlier run: files that name their maker, and no others."""
+    maker = _laid_out(_MADE_BY).removesuffix("}\n") + ","
+    return [file for file in (data / RECORDS).glob("*.json") if first_line(file) == maker]
+
+
+def _laid_out(document: Mapping[str, Any]) -> str:
+    """JSON with a line for every key and for every row of a list of rows."""
+    keys = (f"{_json(key)}: {_value(value)}" for key, value in document.items())
+    return "{" + ",\n ".join(keys) + "}\n"
+
+
+def _value(value: Any) -> str:
+    rows = value if isinstance(value, (list, tuple)) else ()
+    if rows and all(isinstance(row, dict) for row in rows):
+        return "[\n  " + ",\n  ".join(_json(row) for row in rows) + "\n ]"
+    return _json(value)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(_finite(value), allow_nan=False, ensure_ascii=False)
+
+
+def _finite(value: Any) -> Any:
+    """The same with None for every float that JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+# Reading.
+
+
+def _document(file: Path) -> dict[str, Any]:
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError as fault:
+        raise ValueError(f"expected a JSON document, got a fault: {fault} @ {file}") from fault
+    if not isinstance(document, dict):
+        raise ValueError(f"expected a JSON object, got {type(document).__name__} @ {file}")
+    return document
+
+
+def _timed(file: Path) -> dict[tuple[str, ...], dict[str, Any]]:
+    """Each run's seconds and machine; nothing where there is no such file."""
+    if not file.exists():
+        return {}
+    stored = _document(file)
+    with _expecting("timings", file):
+        machines = stored["machines"]
+        return {
+            _key(timing): {"seconds": timing["seconds"], "machine": machines[timing["machine"]]}
+            for timing in stored["timings"]
+        }
+
+
+def _key(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(row[name] for name in _RUN)
+
+
+def _verdict(row: dict[str, Any], same: dict[str, str], timing: dict[str, Any]) -> Verdict:
+    machine = dict(timing.get("machine", {}))
+    python = {"python": machine.pop("python")} if "python" in machine else {}
+    found = {**python, **same}
+    provenance = {"versions": found} if found else {}
+    provenance |= {**machine, **row["provenance"]}
+    given = {**row, "verdict": Status(row["verdict"]), "provenance": provenance}
+    return Verdict(**given, seconds=timing.get("seconds"))
+
+
+@contextmanager
+def _expecting(what: str, file: Path) -> Iterator[None]:
+    try:
+        yield
+    except (AttributeError, LookupError, TypeError, ValueError) as fault:
+        got = f"{type(fault).__name__}: {fault}"
+        raise ValueError(f"expected {what}, got a fault, {got} @ {file}") from fault

@@ -1,0 +1,41 @@
+"""Generated files replaced as a whole: whoever reads the folder finds old files or new ones."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+
+def replace_files(
+    folder: Path, texts: Mapping[str, str], stale: Iterable[Path] = ()
+) -> tuple[Path, ...]:
+    """Put the texts, by their paths below ``folder``, in place of what is there; remove ``stale``.
+
+    All are first written apart, so that what fails in writing leaves the old files as they were,
+    and none is ever half written. Raises OSError; returns the paths in the order given.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    places = {name: folder / name for name in texts}
+    # Inside the folder it is sure to be the same file system, where a move is one step.
+    with TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
+        for name, text in texts.items():
+            _write(Path(staging, name), text)
+        for name, place in places.items():
+            place.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(Path(staging, name), place)
+    for file in set(stale) - set(places.values()):
+        file.unlink(missing_ok=True)
+    return tuple(places.values())
+
+
+def first_line(file: Path) -> str:
+    """Where a generated file names its maker."""
+    with file.open(encoding="utf-8", errors="replace") as lines:
+        return lines.readline().rstrip("\n")
+
+
+def _write(file: Path, text: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8", newline="\n")

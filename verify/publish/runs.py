@@ -1,0 +1,83 @@
+"""Verdicts gathered by run and put in reading order: Euler first, scenes by name, rungs upwards."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from verify.judge.verdict import Verdict
+
+STATE_QUANTITIES = ("omega", "impulse", "attitude", "centre")
+
+# The order of columns: energy, momenta in body axes, momenta in space. Others come after these.
+CONSERVED_QUANTITIES = ("T", "H2", "H_space", "F2", "FG", "y3", "x_space", "y_space")
+
+_MODELS = {"omega": "Euler", "impulse": "Kirchhoff"}
+_READING_ORDER = (*_MODELS.values(), "")
+_BITS = {"f32": 24, "f64": 53, "f80": 64, "f128": 113}
+
+
+@dataclass(frozen=True)
+class Run:
+    """The verdicts of one scene, solver, setting and rung."""
+
+    scene: str
+    solver: str
+    setting: str
+    rung: str
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def model(self) -> str:
+        """The model that the main quantity belongs to; empty where only others were compared."""
+        quantities = (verdict.quantity for verdict in self.verdicts)
+        return next((_MODELS[name] for name in quantities if name in _MODELS), "")
+
+    @property
+    def state(self) -> tuple[Verdict, ...]:
+        return tuple(v for v in self.verdicts if v.quantity in STATE_QUANTITIES)
+
+    @property
+    def conserved(self) -> dict[str, Verdict]:
+        """By quantity; empty for a run that was not compared with anything."""
+        return {v.quantity: v for v in self.verdicts if v.quantity not in STATE_QUANTITIES}
+
+    @property
+    def is_scored(self) -> bool:
+        return any(is_scored(verdict) for verdict in self.verdicts)
+
+
+def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
+    """Those of all these runs, each once."""
+    found = dict.fromkeys(name for run in runs for name in run.conserved)
+    known = [name for name in CONSERVED_QUANTITIES if name in found]
+    return (*known, *(name for name in found if name not in known))
+
+
+def is_scored(verdict: Verdict) -> bool:
+    """Whether a comparison was made: a run that never came to one has no time of an error."""
+    return verdict.at is not None
+
+
+def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:
+    """The runs in reading order, each with its verdicts in the order in which they came."""
+    gathered: dict[tuple[str, str, str, str], list[Verdict]] = {}
+    for verdict in verdicts:
+        key = (verdict.scene, verdict.solver, verdict.setting, verdict.rung)
+        gathered.setdefault(key, []).append(verdict)
+    found = [Run(*key, tuple(rows)) for key, rows in gathered.items()]
+    return tuple(sorted(found, key=_place))
+
+
+def _place(run: Run) -> tuple[int, str, str, str, tuple[int, int, str]]:
+    model = _READING_ORDER.index(run.model)
+    return model, run.solver, run.setting, run.scene, place_of_rung(run.rung)
+
+
+def place_of_rung(rung: str) -> tuple[int, int, str]:
+    """The ladder: the IEEE formats by their bits, then mpN by N, then anything else."""
+    if rung in _BITS:
+        return 0, _BITS[rung], rung
+    multiple = re.fullmatch(r"mp([0-9]+)", rung)
+    return (1, int(multiple[1]), rung) if multiple else (2, 0, rung)

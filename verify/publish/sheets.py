@@ -1,0 +1,82 @@
+"""The published tables as CSV: one heading line, then every digit of what the Markdown shows."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+from verify.judge.verdict import Verdict
+from verify.publish.cells import in_roundoffs, word
+from verify.publish.runs import Run, conserved_quantities, is_scored, runs
+
+_RUN: Final = ("scene", "solver", "setting", "rung")
+_ACCURACY: Final = (
+    *_RUN,
+    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
+    *("bound", "steps", "verdict", "outcome"),
+)
+_GATES: Final = (
+    *_RUN,
+    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
+    *("bound", "attainable", "roundoff", "exponent", "steps", "evaluations"),
+    *("verdict", "outcome", "because", "scene_sha256"),
+)
+_CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
+
+
+def accuracy(verdicts: Iterable[Verdict]) -> str:
+    """A row for every state quantity of every run."""
+    return _sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
+
+
+def conserved(verdicts: Iterable[Verdict]) -> str:
+    """A row for every run, with five columns for every quantity: ``T_max_u`` and so on."""
+    found = runs(verdicts)
+    quantities = conserved_quantities(found)
+    names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
+    return _sheet([*_RUN, *names], (_conserved_row(run, quantities) for run in found))
+
+
+def gates(verdicts: Iterable[Verdict]) -> str:
+    """A row for every verdict."""
+    return _sheet(_GATES, (_fields(v) for run in runs(verdicts) for v in run.verdicts))
+
+
+def _conserved_row(run: Run, quantities: Iterable[str]) -> dict[str, Any]:
+    row = {name: getattr(run, name) for name in _RUN}
+    for quantity in quantities:
+        verdict = run.conserved.get(quantity)
+        if verdict is None and not run.is_scored:
+            verdict = run.verdicts[0]
+        if verdict is not None:
+            fields = _fields(verdict)
+            row |= {f"{quantity}_{field}": fields[field] for field in _CONSERVED}
+    return row
+
+
+def _fields(verdict: Verdict) -> dict[str, Any]:
+    """The verdict's own fields, and the errors in u; a word in place of a maximum that is none."""
+    row = verdict.row() | {
+        "mean_u": in_roundoffs(verdict, verdict.mean),
+        "scene_sha256": verdict.provenance.get("scene"),
+    }
+    if verdict.max is None:
+        return row | {"max": word(verdict), "max_u": word(verdict)}
+    ratio = math.inf if verdict.ratio is None and is_scored(verdict) else verdict.ratio
+    return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
+
+
+def _sheet(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({name: _on_one_line(value) for name, value in row.items()} for row in rows)
+    return text.getvalue()
+
+
+def _on_one_line(value: Any) -> Any:
+    """A text without line ends: readers differ in how they take those, and a row is then a line."""
+    return " ".join(value.split()) if isinstance(value, str) else value
