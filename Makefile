@@ -21,8 +21,7 @@ test-all: lint  ## The same with the slow tests
 	@$(BIN)/python -m pytest -n 2
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, and the tables, plots and pages made from it
-	@$(BIN)/taylor-verify run --out reports/data
-	@$(BIN)/taylor-verify publish
+	@$(BIN)/taylor-verify run --out reports
 
 lint: $(INSTALLED)  ## Check style and types only
 	@$(BIN)/ruff check

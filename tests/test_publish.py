@@ -25,6 +25,7 @@ from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import code, prose
 from verify.publish.page import MADE_BY
 from verify.publish.report import load, publish, write
+from verify.publish.runs import GRAVITY
 
 VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
 PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
@@ -159,7 +160,7 @@ def one_run(draw: st.DrawFn) -> list[Verdict]:
         numbers: dict[str, Any] = {name: draw(FLOATS) for name in (*NAN, "at", "bound")}
         status, outcome = draw(st.sampled_from(Status)), draw(TEXT)
         verdict = Verdict(scene, solver, rung, setting, quantity, status, outcome, **numbers)
-        rest = {"because": draw(TEXT), "seconds": seconds, "provenance": provenance}
+        rest: dict[str, Any] = {"because": draw(TEXT), "seconds": seconds, "provenance": provenance}
         verdicts.append(replace(verdict, **rest))
     return verdicts
 
@@ -336,7 +337,9 @@ def test_an_error_that_is_no_number_is_shown_as_fail(report: Path) -> None:
     assert "**fail**" in cells(line)
     for line in lines(report, "gates.md", "euler/lost"):
         assert cells(line)[-1].startswith("the error is not a finite number; 10 x attainable")
-    assert "2 without a finite error" in (report / "tables/gates.md").read_text(encoding="utf-8")
+    assert "2 of 15 without a finite error" in (report / "tables/gates.md").read_text(
+        encoding="utf-8"
+    )
     assert [row["max"] for row in rows(report, "gates.csv") if row["scene"] == "euler/lost"] == [
         "fail",
         "fail",
@@ -375,6 +378,9 @@ def test_a_quantity_that_a_scene_does_not_have_is_a_dash(report: Path) -> None:
     publish(report)
     (scored,) = lines(report, "conserved.md", "kirchhoff/general", "f64")
     assert cells(scored)[2:5] == ["3.00, 2.00 @ 7", NOTHING, NOTHING]
+    by_run = {(row["scene"], row["rung"]): row for row in rows(report, "conserved.csv")}
+    sheet = by_run["kirchhoff/general", "f80"]
+    assert (sheet["T_max_u"], sheet["F2_max_u"], sheet["y3_verdict"]) == ("unavailable", "", "")
     (not_scored,) = lines(report, "conserved.md", "kirchhoff/general", "f80")
     assert cells(not_scored)[2:5] == ["**unavailable**", NOTHING, NOTHING]
 
@@ -459,7 +465,7 @@ def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) ->
 
 def test_every_status_has_its_meaning_and_its_gravity() -> None:
     """A verdict of any kind can be explained and compared with another one."""
-    assert set(tables._MEANINGS) == set(Status) == set(tables._GRAVITY)
+    assert set(tables._MEANINGS) == set(Status) == set(GRAVITY)
 
 
 def test_a_report_of_nothing_is_no_error(tmp_path: Path) -> None:

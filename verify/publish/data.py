@@ -41,7 +41,7 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     found = runs(verdicts)
     data = folder / FOLDER
     # The verdicts come last: once they are in place, what they speak of is there.
-    texts = dict(_record_texts(records))
+    texts = _record_texts(records)
     texts[TIMINGS] = _laid_out({**_MADE_BY, **_timings(found)})
     rows = [_row(verdict) for run in found for verdict in run.verdicts]
     same = versions(verdict for run in found for verdict in run.verdicts)
@@ -109,14 +109,14 @@ def _machine(verdict: Verdict) -> dict[str, Any]:
     return {**known, **{name: given[name] for name in _MACHINE if name in given}}
 
 
-def _record_texts(records: Iterable[Record]) -> Iterator[tuple[str, str]]:
-    seen: dict[str, Record] = {}
+def _record_texts(records: Iterable[Record]) -> dict[str, str]:
+    texts: dict[str, str] = {}
     for record in records:
         name = f"{record.scene.replace('/', '-')}.{record.solver}.{record.rung}.json"
-        if name in seen and seen[name] != record:
+        text = _laid_out({**_MADE_BY, **record.document()})
+        if texts.setdefault(f"{RECORDS}/{name}", text) != text:
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
-        seen[name] = record
-        yield f"{RECORDS}/{name}", _laid_out({**_MADE_BY, **record.document()})
+    return texts
 
 
 def _own_records(data: Path) -> list[Path]:

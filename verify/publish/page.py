@@ -36,7 +36,9 @@ def _standing_out(status: Status, count: int) -> str:
 
 def _worst(verdicts: Sequence[Verdict]) -> str:
     lost = sum(is_scored(verdict) and verdict.ratio is None for verdict in verdicts)
-    parts = [bold(f"{lost} without a finite error over attainable.")] if lost else []
+    parts = (
+        [bold(f"{lost} of {len(verdicts)} without a finite error over attainable.")] if lost else []
+    )
     finite = [verdict for verdict in verdicts if verdict.ratio is not None]
     if finite:
         worst = max(finite, key=lambda verdict: verdict.ratio or 0.0)
@@ -70,7 +72,7 @@ def unscored(runs: Iterable[Run]) -> str:
     rows = [
         f"{code(run.scene)}, {run.rung}: {judged(verdict.verdict)}, {prose(reason(verdict))}"
         for run in runs
-        for verdict in run.verdicts
+        for verdict in run.state
         if verdict.max is None
     ]
     return f"Without a number:\n\n{bullets(rows)}" if rows else ""

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from verify.judge.verdict import Verdict
+from verify.judge.verdict import Status, Verdict
 
 STATE_QUANTITIES = ("omega", "impulse", "attitude", "centre")
 
 # The order of columns: energy, momenta in body axes, momenta in space. Others come after these.
 CONSERVED_QUANTITIES = ("T", "H2", "H_space", "F2", "FG", "y3", "x_space", "y_space")
+
+# The worst first.
+GRAVITY = (
+    Status.FAIL,
+    Status.UNDECIDED,
+    Status.REFUSED,
+    Status.VACUOUS,
+    Status.UNAVAILABLE,
+    Status.PASS,
+)
 
 _MODELS = {"omega": "Euler", "impulse": "Kirchhoff"}
 _READING_ORDER = (*_MODELS.values(), "")
@@ -44,6 +54,11 @@ class Run:
         return {v.quantity: v for v in self.verdicts if v.quantity not in STATE_QUANTITIES}
 
     @property
+    def drifts(self) -> tuple[Verdict, ...]:
+        """Of the conserved quantities; a run that came to none has one verdict for all."""
+        return tuple(self.conserved.values()) if self.is_scored else self.verdicts
+
+    @property
     def is_scored(self) -> bool:
         return any(is_scored(verdict) for verdict in self.verdicts)
 
@@ -53,6 +68,17 @@ def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
     found = dict.fromkeys(name for run in runs for name in run.conserved)
     known = [name for name in CONSERVED_QUANTITIES if name in found]
     return (*known, *(name for name in found if name not in known))
+
+
+def quantities_of_scene(run: Run, among: Sequence[Run]) -> tuple[str, ...]:
+    """What the run's scene conserves: known from other rungs, or else from other scenes."""
+    same = conserved_quantities(other for other in among if other.scene == run.scene)
+    return same or conserved_quantities(other for other in among if other.model == run.model)
+
+
+def gravest(verdicts: Iterable[Verdict]) -> Status:
+    """The status of several verdicts taken together."""
+    return min((verdict.verdict for verdict in verdicts), key=GRAVITY.index)
 
 
 def is_scored(verdict: Verdict) -> bool:

@@ -10,7 +10,14 @@ from typing import Any, Final
 
 from verify.judge.verdict import Verdict
 from verify.publish.cells import in_roundoffs, word
-from verify.publish.runs import Run, conserved_quantities, is_scored, runs
+from verify.publish.runs import (
+    Run,
+    conserved_quantities,
+    gravest,
+    is_scored,
+    quantities_of_scene,
+    runs,
+)
 
 _RUN: Final = ("scene", "solver", "setting", "rung")
 _ACCURACY: Final = (
@@ -33,11 +40,12 @@ def accuracy(verdicts: Iterable[Verdict]) -> str:
 
 
 def conserved(verdicts: Iterable[Verdict]) -> str:
-    """A row for every run, with five columns for every quantity: ``T_max_u`` and so on."""
+    """A row for every run, with five columns for each quantity: ``T_max_u`` and so on."""
     found = runs(verdicts)
     quantities = conserved_quantities(found)
     names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
-    return _sheet([*_RUN, *names], (_conserved_row(run, quantities) for run in found))
+    rows = [_conserved_row(run, quantities_of_scene(run, found)) for run in found]
+    return _sheet([*_RUN, "verdict", *names], rows)
 
 
 def gates(verdicts: Iterable[Verdict]) -> str:
@@ -45,15 +53,13 @@ def gates(verdicts: Iterable[Verdict]) -> str:
     return _sheet(_GATES, (_fields(v) for run in runs(verdicts) for v in run.verdicts))
 
 
-def _conserved_row(run: Run, quantities: Iterable[str]) -> dict[str, Any]:
-    row = {name: getattr(run, name) for name in _RUN}
-    for quantity in quantities:
-        verdict = run.conserved.get(quantity)
-        if verdict is None and not run.is_scored:
-            verdict = run.verdicts[0]
-        if verdict is not None:
-            fields = _fields(verdict)
-            row |= {f"{quantity}_{field}": fields[field] for field in _CONSERVED}
+def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
+    row: dict[str, Any] = {name: getattr(run, name) for name in _RUN}
+    row["verdict"] = gravest(run.drifts).value if run.drifts else None
+    drifts = run.conserved if run.is_scored else dict.fromkeys(of_scene, run.verdicts[0])
+    for quantity, verdict in drifts.items():
+        fields = _fields(verdict)
+        row |= {f"{quantity}_{field}": fields[field] for field in _CONSERVED}
     return row
 
 

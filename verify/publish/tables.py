@@ -19,7 +19,14 @@ from verify.publish.cells import (
 )
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import counts, page, roundoffs, sections, unscored
-from verify.publish.runs import Run, conserved_quantities, is_scored, runs
+from verify.publish.runs import (
+    Run,
+    conserved_quantities,
+    gravest,
+    is_scored,
+    quantities_of_scene,
+    runs,
+)
 
 _MEANINGS = {
     Status.PASS: "the error of every sample is within its bound",
@@ -30,15 +37,6 @@ _MEANINGS = {
     Status.REFUSED: "the numbers of this rung cannot hold the scene",
     Status.UNAVAILABLE: "this machine does not have the rung",
 }
-# The worst first: what a row of several quantities is called.
-_GRAVITY = (
-    Status.FAIL,
-    Status.UNDECIDED,
-    Status.REFUSED,
-    Status.VACUOUS,
-    Status.UNAVAILABLE,
-    Status.PASS,
-)
 _RATIO = (
     "*Over attainable* is the largest ratio, over all samples, of the error to what perfect "
     "rounding of every step would leave on this orbit"
@@ -103,7 +101,7 @@ def _accuracy_row(verdict: Verdict) -> list[str]:
 def conserved(verdicts: Sequence[Verdict]) -> str:
     """The drift of every conserved quantity, a run a line."""
     found = runs(verdicts)
-    shown = [verdict for run in found for verdict in _drifts(run)]
+    shown = [verdict for run in found for verdict in run.drifts]
     legend = [
         "A cell is *max, mean @ t of the max*, in u, each quantity relative to a scale of its own "
         f"that does not vanish. A single 0 is a quantity kept exactly; {NOTHING} is one that the "
@@ -124,11 +122,6 @@ def conserved(verdicts: Sequence[Verdict]) -> str:
     )
 
 
-def _drifts(run: Run) -> tuple[Verdict, ...]:
-    """A run that came to no number has one verdict, which speaks for all its quantities."""
-    return tuple(run.conserved.values()) if run.is_scored else run.verdicts
-
-
 def _conserved_section(group: Sequence[Run]) -> str:
     quantities = conserved_quantities(group)
     cells = [Column(code(name), True) for name in quantities]
@@ -137,18 +130,16 @@ def _conserved_section(group: Sequence[Run]) -> str:
 
 
 def _conserved_row(run: Run, group: Sequence[Run], quantities: Iterable[str]) -> list[str]:
-    # What the scene has is known from the other rungs, if from any.
-    of_scene = conserved_quantities(other for other in group if other.scene == run.scene)
-    cells = [_drift(run, name, name in of_scene or not of_scene) for name in quantities]
-    found = _drifts(run)
-    verdict = judged(_gravest(found)) if found else NOTHING
-    return [code(run.scene), run.rung, *cells, _worst_ratio(found), verdict]
+    of_scene = quantities_of_scene(run, group)
+    cells = [_drift(run, name, name in of_scene) for name in quantities]
+    verdict = judged(gravest(run.drifts)) if run.drifts else NOTHING
+    return [code(run.scene), run.rung, *cells, _worst_ratio(run.drifts), verdict]
 
 
 def _drift(run: Run, quantity: str, of_scene: bool) -> str:
     if quantity not in run.conserved:
         unscored = of_scene and not run.is_scored
-        return judged(_gravest(run.verdicts)) if unscored else NOTHING
+        return judged(gravest(run.verdicts)) if unscored else NOTHING
     verdict = run.conserved[quantity]
     text = prose(peak(verdict))
     if verdict.verdict is Status.PASS:
@@ -163,10 +154,6 @@ def _worst_ratio(verdicts: Sequence[Verdict]) -> str:
         return NOTHING
     worst = max(scored, key=lambda v: math.inf if v.ratio is None else v.ratio)
     return f"{ratio(worst)} ({code(worst.quantity)})"
-
-
-def _gravest(verdicts: Iterable[Verdict]) -> Status:
-    return min((verdict.verdict for verdict in verdicts), key=_GRAVITY.index)
 
 
 def gates(verdicts: Sequence[Verdict]) -> str:
