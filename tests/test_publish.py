@@ -25,7 +25,7 @@ from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import code, prose
 from verify.publish.page import MADE_BY
 from verify.publish.report import load, publish, write
-from verify.publish.runs import GRAVITY
+from verify.publish.runs import GRAVITY, place_of_rung
 
 VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
 PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
@@ -421,6 +421,12 @@ def test_rows_are_in_reading_order(report: Path) -> None:
     ]
     scenes = [scene for scene, _ in found]
     assert scenes == [*sorted(s for s in scenes if s.startswith("euler")), "kirchhoff/screw"]
+
+
+def test_the_ladder_goes_up_by_bits() -> None:
+    """IEEE formats come first, then MPFR by its number of bits and not by its name."""
+    ladder = ["f32", "f64", "f80", "f128", "mp64", "mp237", "mp1000"]
+    assert sorted(sorted(ladder), key=place_of_rung) == ladder
 
 
 def test_the_summary_counts_every_verdict(report: Path) -> None:

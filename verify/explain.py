@@ -2,52 +2,117 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
+from verify.judge.verdict import Verdict
+from verify.models.form import Form
+from verify.models.problem import NotRepresentable, pose
 from verify.run import run
+from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
+from verify.scenes.scene import Scene
+
+_FROM_RECORD = (
+    *("equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff"),
+)
 
 
-def explanation(scene_name: str, rung: str) -> dict[str, Any]:
+def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
     """One run of the scene, told by its record: nothing here is an estimate.
 
-    Raises scenes.faults.Refused for a scene that cannot be read.
+    What a run that came to no comparison has not found out is None. Raises scenes.faults.Refused
+    for a scene that cannot be read.
     """
-    scene = load(scene_name)
+    scene = load(scene) if isinstance(scene, str) else scene
     found = run(scene, "taylor", rung)
     record = found.record.document() if found.record is not None else {}
-    gates = [
-        {
-            "quantity": verdict.quantity,
-            "verdict": verdict.verdict.value,
-            "error": verdict.max,
-            "at": verdict.at,
-            "unit": verdict.unit,
-            "attainable": verdict.attainable,
-            "bound": verdict.bound,
-            "because": verdict.because,
-        }
-        for verdict in found.verdicts
-    ]
     first = found.verdicts[0]
-    told = (
-        "equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff",
-    )
     return {
         "scene": scene.name,
         "title": scene.title,
         "source": scene.source,
         "model": scene.model,
         "rung": rung,
+        "bits": rung_named(rung).bits,
         "track": sorted({"omega" if scene.model == "euler" else "impulse"} | scene.track),
         "warnings": list(scene.warnings),
-        **{name: record.get(name) for name in told},
+        **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
-            "states": len(record.get("equations", ())),
+            **_operations(scene, rung),
             "steps": first.steps,
             "evaluations": first.evaluations,
             "seconds": first.seconds,
         },
         "outcome": first.outcome,
-        "gates": gates,
+        "gates": [_gate(verdict) for verdict in found.verdicts],
     }
+
+
+def _gate(verdict: Verdict) -> dict[str, Any]:
+    names = (
+        *("quantity", "max", "mean", "final", "at", "unit", "attainable", "bound", "ratio"),
+        *("ratio_at", "because"),
+    )
+    row = verdict.row()
+    return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
+
+
+# What one evaluation of the equations costs.
+
+
+def _operations(scene: Scene, rung: str) -> dict[str, int | None]:
+    """The states, and the distinct operations of their rates; None where the rung holds no body."""
+    try:
+        form = pose(scene, rung_named(rung)).form
+    except NotRepresentable:
+        return dict.fromkeys(("states", "sums", "products", "quotients"))
+    done = _done(form)
+    return {
+        "states": len(form.states),
+        "sums": sum(term.operation in "+-" for term in done),
+        "products": sum(term.operation == "*" for term in done),
+        "quotients": sum(term.operation == "/" for term in done),
+    }
+
+
+def _done(form: Form) -> set[_Term]:
+    """Every operation of the rates, once however often it is written."""
+    rates = form.rates(
+        [_Term(name) for name in form.states], [_Term(name) for name in form.parameters]
+    )
+    done: set[_Term] = set()
+    left = [rate for rate in rates if isinstance(rate, _Term)]
+    while left:
+        term = left.pop()
+        if term.operation and term not in done:
+            done.add(term)
+            left.extend(operand for operand in term.operands if isinstance(operand, _Term))
+    return done
+
+
+@dataclass(frozen=True)
+class _Term:
+    """A number that remembers how it was made; equal terms are one."""
+
+    name: str = ""
+    operation: str = ""
+    operands: tuple[Any, ...] = ()
+
+    def __add__(self, other: Any) -> _Term:
+        return _Term("", "+", (self, other))
+
+    def __sub__(self, other: Any) -> _Term:
+        return _Term("", "-", (self, other))
+
+    def __neg__(self) -> _Term:
+        return _Term("", "-", (self,))
+
+    def __mul__(self, other: Any) -> _Term:
+        return _Term("", "*", (self, other))
+
+    def __rmul__(self, other: Any) -> _Term:
+        return _Term("", "*", (other, self))
+
+    def __truediv__(self, other: Any) -> _Term:
+        return _Term("", "/", (self, other))

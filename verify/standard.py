@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterable, Sequence
+import signal
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from verify.judge.judgement import Judgement
-from verify.scenes.precision import rung as rung_named
+if TYPE_CHECKING:
+    from verify.judge.judgement import Judgement
+
+
+class Failed(RuntimeError):  # noqa: N818 (it names what happened to the run)
+    """A run that came to no judgement, by no fault of its scene; the text says which and why."""
 
 
 @dataclass(frozen=True)
@@ -34,21 +45,27 @@ def run_all(
     """Every job's judgements, rung by rung; ``finished`` is told of each job as it ends.
 
     One job runs in this process, several in as many as there are cores: heyoka's compiled
-    integrators and the truth's big integers both hold the interpreter. An error in a job is raised.
+    integrators and the truth's big integers both hold the interpreter. Raises Failed for a job that
+    broke, or lost its process; whatever ends this early, an interrupt too, ends the workers first.
     """
     workers = min(workers or available_cores(), len(asked))
     if workers <= 1:
-        results = []
-        for job in asked:
-            results.append(_run(job))
-            finished(job)
-        return [judgement for result in results for judgement in result]
+        return _in_this_process(asked, finished)
     # Not fork: heyoka's threads and locks do not survive it.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        futures = {job: pool.submit(_run, job) for job in sorted(asked, key=_expense)}
-        _report(futures, finished)
-        return [judgement for job in asked for judgement in futures[job].result()]
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+        try:
+            with _interrupts_held():
+                futures = {job: pool.submit(_run, job) for job in sorted(asked, key=_expense)}
+            _report(futures, finished)
+            return [judgement for job in asked for judgement in futures[job].result()]
+        except BrokenProcessPool as error:
+            raise Failed("a worker process was ended from outside (is memory short?)") from error
+        finally:
+            # After the last result nothing is lost by this; before it, nobody waits for the rest.
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.terminate()
 
 
 def available_cores() -> int:
@@ -58,10 +75,39 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
+def fault(error: BaseException) -> str:
+    """One line for an error that nobody foresaw: what it is, and where in this package it rose."""
+    package = Path(__file__).parent
+    frames = [
+        f"{Path(frame.filename).relative_to(package)}:{frame.lineno}"
+        for frame in traceback.extract_tb(error.__traceback__)
+        if Path(frame.filename).is_relative_to(package)
+    ]
+    place = f" @ {frames[-1]}" if frames else ""
+    return f"{type(error).__name__}: {error}{place} (a fault of taylor-verify: please report it)"
+
+
+def _in_this_process(asked: Sequence[Job], finished: Finished) -> list[Judgement]:
+    results = []
+    for job in asked:
+        results += _run(job)
+        finished(job)
+    return results
+
+
 def _run(job: Job) -> list[Judgement]:
     from verify.run import run
+    from verify.scenes.faults import Refused
 
-    return [run(job.scene, job.solver, rung) for rung in job.rungs]
+    found = []
+    for rung in job.rungs:
+        try:
+            found.append(run(job.scene, job.solver, rung))
+        except Exception as error:
+            # Only text is sure to pass from process to process.
+            reason = str(error) if isinstance(error, Refused) else fault(error)
+            raise Failed(f"{job.scene} on {rung}: {reason}") from error
+    return found
 
 
 def _report(futures: dict[Job, Future[list[Judgement]]], finished: Finished) -> None:
@@ -71,15 +117,41 @@ def _report(futures: dict[Job, Future[list[Judgement]]], finished: Finished) -> 
         finished(by_future[future])
 
 
-def _expense(job: Job) -> tuple[int, int]:
-    """The longest first, so that no core is left with one at the end.
+def _expense(job: Job) -> int:
+    """The longest first, so that no core is left with one at the end: what is tracked tells.
 
-    Precision counts most, then what is tracked: the scene is read again, which costs a millisecond.
+    The scene is read again for it, which costs a millisecond.
     """
     from verify.scenes.reader import load
 
-    bits = max(rung_named(name).bits for name in job.rungs)
     scene = load(job.scene)
-    weight = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
-    return (-weight, -bits)
+    return -{"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
 
+
+def _begin_worker() -> None:
+    """A worker leaves an interrupt to its parent, and does not outlive it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Keep an interrupt until the workers are started.
+
+    They inherit the mask, and so are deaf from their first instruction, before `_begin_worker`.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 if TYPE_CHECKING:
     from verify.judge.verdict import Verdict
@@ -18,150 +20,259 @@ if TYPE_CHECKING:
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 _PIPED_WIDTH = 140
 _STATES = ("omega", "impulse", "attitude", "centre")
-_COLOURS = {"pass": "green", "fail": "red", "undecided": "yellow", "vacuous": "yellow"}
+_COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
+# The worst first: what a line that stands for several verdicts is called.
+_GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
+# Nobody needs to be told that something takes less than this, in seconds.
+_PATIENCE = 1.0
+
+
+def print_names(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> None:
+    console = _console()
+    width = max(map(len, titles), default=0)
+    for heading, entries in found.items():
+        _line(console, Text(heading, "bold"))
+        for entry in entries:
+            title = titles.get(entry, "")
+            _line(console, f"  {entry:{width}}  {title}".rstrip())
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    console = _console()
+    for line in lines:
+        _line(console, line)
+
+
+# run
 
 
 def print_verdicts(verdicts: Sequence[Verdict]) -> None:
-    """A line for each scene and rung, then whatever is not a pass with its reason, then the counts."""
+    """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
     from verify.judge.verdict import summary
 
     console = _console()
-    table = Table(
-        "scene", "rung", "state error/u", "at t", "of attainable", "worst drift/u", "", "steps",
-        "seconds", "verdict", title="errors in units of roundoff u = 2^-bits", box=None,
-    )  # fmt: skip
-    for column in (2, 3, 4, 5, 7, 8):
-        table.columns[column].justify = "right"
-    for (scene, rung), group in groupby(verdicts, key=lambda v: (v.scene, v.rung)):
-        table.add_row(scene, rung, *_run_cells(list(group)))
-    console.print(table)
-    for verdict in verdicts:
-        if verdict.verdict.value != "pass":
-            console.print(
-                f"{_status(verdict.verdict.value)}  {verdict.scene} {verdict.rung} "
-                f"{verdict.quantity}: {_told(verdict)}"
-            )
+    console.print(_table(verdicts))
+    _line(console)
+    _line(
+        console,
+        "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits;",
+    )
+    _line(
+        console, "/floor is the largest error over what perfect rounding would leave, of all gates."
+    )
+    others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
+    for verdict in others:
+        _line(console)
+        place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
+        _line(console, _status(verdict.verdict.value), f"  {place}: {_told(verdict)}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
-    console.print(f"\n{counts}")
+    _line(console, f"\n{counts}")
 
 
-def _run_cells(group: list[Verdict]) -> tuple[str, ...]:
-    worst_status = next((v.verdict.value for v in group if v.verdict.value != "pass"), "pass")
-    states = [v for v in group if v.quantity in _STATES]
-    drifts = [v for v in group if v.quantity not in _STATES and v.max is not None]
-    if not states or states[0].max is None:
-        return ("-", "-", "-", "-", "", "-", "-", _status(worst_status))
-    state = max(states, key=lambda v: v.ratio or 0.0)
-    drift = max(drifts, key=_units, default=None)
+def _table(verdicts: Sequence[Verdict]) -> Table:
+    table = Table(box=None, padding=(0, 1), pad_edge=False)
+    for heading in ("scene", "rung", "verdict", "state", "error/u", "at t", "drift", "error/u"):
+        table.add_column(heading, justify="right" if heading in ("error/u", "at t") else "left")
+    for heading in ("/floor", "steps", "seconds"):
+        table.add_column(heading, justify="right")
+    # A long path is folded; a name is not, nor is a number.
+    for column in table.columns[1:]:
+        column.no_wrap = True
+    table.columns[0].overflow = "fold"
+    for (scene, rung), group in groupby(verdicts, key=lambda v: (v.scene, v.rung)):
+        table.add_row(Text(scene), rung, *_run_cells(list(group)))
+    return table
+
+
+def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
+    status = _status(min((v.verdict.value for v in group), key=_GRAVITY.index))
+    compared = [v for v in group if v.at is not None]
+    if not compared:
+        return (status, *[""] * 8)
+    state = max((v for v in compared if v.quantity in _STATES), key=_ratio)
+    drift = max((v for v in compared if v.quantity not in _STATES), key=_units, default=None)
     return (
+        status,
+        state.quantity,
         f"{_units(state):.3g}",
-        f"{state.at:g}",
-        f"{state.ratio:.2g}" if state.ratio is not None else "-",
-        f"{_units(drift):.3g}" if drift else "-",
+        f"{state.at:.6g}",
         drift.quantity if drift else "",
-        str(state.steps),
-        f"{state.seconds:.3f}" if state.seconds is not None else "-",
-        _status(worst_status),
+        f"{_units(drift):.3g}" if drift else "",
+        f"{max(map(_ratio, compared)):.2g}",
+        str(state.steps or ""),
+        f"{state.seconds:.3f}" if state.seconds is not None else "",
     )
 
 
 def _units(verdict: Verdict) -> float:
-    """The largest error in units of roundoff; a missing one counts as larger than any."""
-    if verdict.max is None or not verdict.roundoff:
+    """The largest error in units of roundoff; one that is no number counts as larger than any."""
+    if verdict.max is None or not verdict.roundoff or verdict.max != verdict.max:
         return float("inf")
     return verdict.max / verdict.roundoff
 
 
+def _ratio(verdict: Verdict) -> float:
+    """The largest error over attainable; one that is no number counts as larger than any."""
+    ratio = verdict.ratio
+    return ratio if ratio is not None and ratio == ratio else float("inf")
+
+
 def _told(verdict: Verdict) -> str:
-    error = f"error {verdict.max:.2g} at t = {verdict.at:g}, " if verdict.max is not None else ""
-    bound = f"bound {verdict.bound:.2g}; " if verdict.bound is not None else ""
-    return f"{error}{bound}{verdict.because}"
+    if verdict.at is None:
+        return verdict.because
+    return f"{_error(verdict.row())}; bound = {verdict.because}"
 
 
-def _status(status: str) -> str:
-    colour = _COLOURS.get(status, "magenta")
-    return f"[{colour}]{status}[/{colour}]"
+def _error(gate: Mapping[str, Any]) -> str:
+    """One gate's numbers, from a row or an explanation: null is an error that is not finite."""
+    size = "not finite" if gate["max"] is None else f"{gate['max']:.3g}"
+    ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
+    return (
+        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {gate['bound']:.3g} "
+        f"is allowed; largest error/attainable {ratio} at t = {gate['ratio_at']:g}"
+    )
 
 
-def print_exact(found: dict[str, Any]) -> None:
+def _status(status: str) -> Text:
+    return Text(status, _COLOURS.get(status, "magenta"))
+
+
+# exact
+
+
+def print_exact(found: Mapping[str, Any]) -> None:
     console = _console()
-    console.print(f"{found['scene']}: {found['regime']} (route {found['route']})")
+    _line(console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})")
     for row in found["rows"]:
-        console.print(f"t = {row['t']}   (relative radius {row['radius']})")
+        _line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")
         for name, value in row.items():
             if name not in ("t", "radius"):
                 _print_quantity(console, name, value)
 
 
 def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
-    lines = [" ".join(row) for row in value] if isinstance(value[0], list) else value
-    for i, line in enumerate(lines):
-        console.print(f"  {name if i == 0 else '':16s} {line}", soft_wrap=True)
+    rows = [row if isinstance(row, list) else [row] for row in value]
+    # A column for the sign, so that digits stand below digits.
+    signed = [[text if text.startswith("-") else f" {text}" for text in row] for row in rows]
+    width = max(len(text) for row in signed for text in row)
+    for i, row in enumerate(signed):
+        entries = " ".join(text.ljust(width) for text in row).rstrip()
+        _line(console, f"  {name if i == 0 else '':15} {entries}")
 
 
-def print_explanation(found: dict[str, Any]) -> None:
+# explain
+
+
+def print_explanation(found: Mapping[str, Any]) -> None:
     console = _console()
-    console.print(f"[bold]{found['scene']}[/bold]: {found['title']}", soft_wrap=True)
+    _line(console, Text(found["scene"], "bold"), f": {found['title']}")
+    if found["source"]:
+        _line(console, f"source: {found['source']}")
     for warning in found["warnings"]:
-        console.print(f"[yellow]warning[/yellow] {warning}")
-    console.print(f"\ntracked: {', '.join(found['track'])}\n\nequations as built:")
-    for line in found["equations"] or ("(none: the run did not come to a comparison)",):
-        console.print(f"  {line}", markup=False, soft_wrap=True)
-    if found["parameters"] is not None:
-        _print_data(console, found)
-    console.print(f"\ngates on {found['rung']}:")
+        _line(console, Text("warning", "yellow"), f": {warning}")
+    _line(console, f"tracked: {', '.join(found['track'])}")
+    if found["equations"] is not None:
+        _print_problem(console, found)
+    _line(console)
+    _line(console, Text(f"gates on {found['rung']}", "bold"), f", u = 2^-{found['bits']}")
     for gate in found["gates"]:
-        console.print(f"  {gate['quantity']:10s} {_status(gate['verdict'])}", highlight=False)
-        console.print(f"    {_gate_line(gate)}", soft_wrap=True)
-        console.print(f"    bound = {gate['because']}", soft_wrap=True)
+        _print_gate(console, gate)
 
 
-def _print_data(console: Console, found: dict[str, Any]) -> None:
+def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     cost, units = found["cost"], found["units"]
-    named = ", ".join(f"{name} = {value}" for name, value in found["parameters"].items())
-    console.print(f"  with {named}", markup=False, soft_wrap=True)
-    unit_text = ", ".join(f"{name} {value}" for name, value in units.items())
-    console.print(f"  in units (exact powers of two): {unit_text}")
-    console.print(f"\nregime: {found['regime']}; truth: {found['route']}, {found['truth_digits']} digits")
-    console.print(
-        f"cost: {cost['states']} states, {cost['steps']} steps, {cost['evaluations']} Taylor orders, "
-        f"{cost['seconds']:.3g} s"
+    _line(console)
+    _line(console, Text("equations as built", "bold"))
+    for line in found["equations"]:
+        _line(console, f"  {line}")
+    if found["parameters"]:
+        _line(console, "with, shown as doubles,")
+        for name, value in found["parameters"].items():
+            _line(console, f"  {name:4} {value}")
+    _line(console, "in units (exact powers of two)")
+    _line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
+    _line(console)
+    _line(console, Text("orbit", "bold"), f"  {found['regime']}")
+    truth = f"  route {found['route']}, {found['truth_digits']} digits"
+    _line(console, Text("truth", "bold"), truth)
+    order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
+    _line(
+        console,
+        Text("cost", "bold"),
+        f"   {cost['states']} states; an evaluation takes {cost['products']} products, "
+        f"{cost['sums']} sums and {cost['quotients']} quotients\n"
+        f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
+        f"{cost['seconds']:.3g} s",
     )
 
 
-def _gate_line(gate: dict[str, Any]) -> str:
-    if gate["error"] is None:
-        return "no error: nothing was compared"
-    return (
-        f"error {gate['error']:.3g} at t = {gate['at']:g} ({gate['unit']}), "
-        f"attainable {gate['attainable']:.3g}, bound {gate['bound']:.3g}"
-    )
+def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
+    _line(console)
+    _line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
+    if gate["at"] is not None:
+        for part in _error(gate).split("; "):
+            _line(console, f"    {part}")
+    because = [part.strip() for part in gate["because"].split(";")]
+    for i, part in enumerate(because):
+        _line(console, f"    {'because' if i == 0 else '       '} {part}")
+
+
+# Progress.
 
 
 @contextmanager
 def progress(total: int) -> Iterator[Callable[[Job], None]]:
-    """A bar on stderr that advances as jobs end."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    console = Console(stderr=True)
+    """A bar on stderr that advances as jobs end; a line for each where stderr is no terminal."""
+    console = _console(stderr=True)
+    if not console.is_terminal:
+        yield _counting(console, total)
+        return
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as bar:
         task = bar.add_task("compiling and solving", total=total)
 
         def finished(job: Job) -> None:
             bar.update(task, advance=1, description=job.scene)
-            if not console.is_terminal:
-                console.print(f"{job.scene} {' '.join(job.rungs)}: done", highlight=False)
 
         yield finished
+
+
+def _counting(console: Console, total: int) -> Callable[[Job], None]:
+    done = 0
+
+    def finished(job: Job) -> None:
+        nonlocal done
+        done += 1
+        _line(console, f"{done}/{total} {job.scene} on {' '.join(job.rungs)}")
+
+    return finished
 
 
 @contextmanager
 def spinner(what: str) -> Iterator[None]:
     """A sign of life on stderr while one long thing is computed."""
-    with Console(stderr=True).status(what):
+    console = _console(stderr=True)
+    if console.is_terminal:
+        with console.status(Text(what)):
+            yield
+        return
+    notice = threading.Timer(_PATIENCE, _line, (console, f"{what}: computing"))
+    notice.daemon = True
+    notice.start()
+    try:
         yield
+    finally:
+        notice.cancel()
 
 
-def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=_PIPED_WIDTH)
+def _line(console: Console, *parts: str | Text) -> None:
+    """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
+    console.print(Text.assemble(*parts), soft_wrap=not console.is_terminal)
 
+
+def _console(stderr: bool = False) -> Console:
+    """A console that decorates nothing by itself."""
+    console = Console(stderr=stderr, markup=False, emoji=False, highlight=False)
+    if not console.is_terminal:
+        console.width = _PIPED_WIDTH
+    return console

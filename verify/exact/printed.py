@@ -1,19 +1,21 @@
-"""The exact motion as decimal text, with a radius that includes the rounding of the digits printed."""
+"""The exact motion as decimal text, with a radius that includes the rounding of the digits."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
 from verify.exact.solution import Solution
 from verify.scenes.scene import Scene
 
 # The motion is known to this many digits more than are printed, so that printing is what limits.
 _SPARE_DIGITS = 3
+# Below 10^-5, and where a number would need zeros that are no digits of it, an exponent is written.
+_LEAST_PLAIN_EXPONENT = -5
 
 
 def document(
@@ -21,20 +23,19 @@ def document(
 ) -> dict[str, Any]:
     """What `exact --json` prints: a row for each time, given as its text and its exact value.
 
-    ``radius`` bounds the error of every vector and matrix of the row in the Frobenius norm, relative
-    to its norm (absolute where that is zero).
+    ``radius`` bounds the error of every vector and matrix of the row in the Frobenius norm,
+    relative to its norm (absolute where that is zero).
     """
     elapsed = [time - scene.clock.start for _, time in times]
     motion = found.motion(elapsed, digits + _SPARE_DIGITS)
-    with mp.workdps(digits + 2 * _SPARE_DIGITS):
-        # Half a unit in the last of `digits` significant digits, of every entry.
-        printing = mpf(10) ** (1 - digits) / 2
-        rows = [
-            {"t": text}
-            | {name: _text(values[k], digits) for name, values in motion.quantities.items()}
-            | {"radius": mp.nstr(motion.radius[k] + printing, 2)}
-            for k, (text, _) in enumerate(times)
-        ]
+    # Half a unit in the last of `digits` significant digits, of every entry.
+    printing = Fraction(1, 2 * 10 ** (digits - 1))
+    rows = [
+        {"t": text}
+        | {name: _text(values[k], digits) for name, values in motion.quantities.items()}
+        | {"radius": decimal_text(_rational(motion.radius[k]) + printing, 2, ROUND_CEILING)}
+        for k, (text, _) in enumerate(times)
+    ]
     return {
         "scene": scene.name,
         "route": found.route,
@@ -44,7 +45,27 @@ def document(
     }
 
 
+def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:
+    """The number, rounded once, with exactly that many significant digits; zero is "0".
+
+    Python, C and JSON read it as a number.
+    """
+    if not value:
+        return "0"
+    context = Context(prec=digits, rounding=rounding, Emax=MAX_EMAX, Emin=MIN_EMIN)
+    quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    exponent = quotient.adjusted()
+    # A quotient that comes out even lacks its last zeros.
+    padded = quotient.quantize(Decimal((0, (1,), exponent - digits + 1)), context=context)
+    is_plain = _LEAST_PLAIN_EXPONENT <= exponent < digits
+    return format(padded, "f" if is_plain else "e")
+
+
 def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
     if values.ndim > 1:
         return [_text(row, digits) for row in values]
-    return [mp.nstr(value, digits, strip_zeros=False) if value else "0" for value in values]
+    return [decimal_text(_rational(value), digits) for value in values]
+
+
+def _rational(value: Any) -> Fraction:
+    return Fraction(*(int(part) for part in value.as_integer_ratio()))

@@ -1,50 +1,27 @@
-"""The truth where no closed form is known: our own Taylor recursion in exact integers.
+"""The truth where no closed form is known: the equations of both texts, and their Taylor recursion.
 
-Both equation sets are quadratic, z' = c + sum of products of states and linear forms of them, so
-the coefficients of a series follow from convolutions alone. Numbers are integers that count units
-of 2^-bits, times are exact dyadic rationals, and the body's coefficients stay rational: nothing is
-rounded but the states. Right-hand sides are written here from the texts, not taken from models.
+The right-hand sides are written here from the texts and share nothing with models.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, lcm
-from operator import mul
-from typing import Any, Final, final
+from typing import Any, final
 
 import numpy as np
-from mpmath import libmp, mp
 
-from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
+from verify.exact.recursion import Equations, Polynomial, Problem, Units, exponent, march, problem
+from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Motion, Quaternion, Spin, State
-from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
 
 Triple = tuple[int, int, int]
-Polynomial = Mapping[tuple[int, int], Fraction]
-
-_BITS_PER_DIGIT: Final = 3.3219280948873626
-# mpmath's integers: those of gmpy2 where it is installed, which are twice as fast, else Python's.
-_Integer: Final = libmp.MPZ
-# Roundings of one step add up to some hundred last bits, and a long span has some ten thousand
-# steps; half of these bits is what the truncation of a series may leave, so that it stays visible
-# above the roundings of its own coefficients.
-_GUARD_BITS: Final = 26
-_SLACK_BITS: Final = 12
-# A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
-# orders; the linear cost asks for a few more. Two ratios, taken in turn every twenty digits, so
-# that two evaluations that are compared differ in order, step and precision.
-_ORDERS_PER_BIT: Final = (0.36, 0.40)
-_DIGITS_PER_TURN: Final = 20
-_MOST_STEPS: Final = 1_000_000
-_PILOT_BITS: Final = 64
 
 
 @final
@@ -64,14 +41,13 @@ class TaylorSolution(Solution):
         state, times what the orbit makes of a rounding. Raises Unsettled when the span would take
         more than a million steps.
         """
-        problem = self._problem
-        grid = problem.grid(digits)
+        grid = self._problem.grid(digits)
         later = sorted({t for t in elapsed if t >= 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         states: dict[Fraction, list[int]] = {}
         for times in (later, earlier):
-            states.update(_march(problem, times, grid))
-        return _quantities(self.scene, [problem.reals(states[t], grid) for t in elapsed])
+            states.update(march(self._problem, times, grid))
+        return _quantities(self.scene, [self._problem.reals(states[t], grid) for t in elapsed])
 
     @cached_property
     def _problem(self) -> Problem:
@@ -109,23 +85,6 @@ class _Arcs(Solution):
 # The equations.
 
 
-@dataclass(frozen=True)
-class Equations:
-    """z' = constant + right: quadratic in variables, which are the states and then the forms."""
-
-    constant: Vector
-    forms: Matrix
-    right: tuple[Polynomial, ...]
-
-
-@dataclass(frozen=True)
-class Units:
-    """Powers of two, one for every variable and one for time, in which the motion is of size 1."""
-
-    variables: tuple[int, ...]
-    time: int
-
-
 def _euler(body: RigidBody, with_attitude: bool) -> Equations:
     """omega' = K((I omega) x omega + M); each row r of R obeys r' = r x omega."""
     omega: Triple = (0, 1, 2)
@@ -160,7 +119,7 @@ def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Eq
 def _euler_units(body: RigidBody, start: Vector) -> Units:
     """omega by its size, or what the moment makes of it; time by omega."""
     spun = tensors.apply(body.inverse_inertia, body.moment)
-    omega = _largest(_exponent(start[:3]), _halved(_exponent(spun)), default=0)
+    omega = _largest(exponent(start[:3]), _halved(exponent(spun)), default=0)
     return Units((omega,) * 3 + (0,) * (len(start) - 3), -omega)
 
 
@@ -171,31 +130,25 @@ def _kirchhoff_units(body: ImmersedBody, start: Vector) -> Units:
     spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
     pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
     omega = _largest(
-        _exponent(tensors.apply(tensors.transpose(b), x)),
-        _exponent(tensors.apply(c, y)),
-        _halved(_exponent(spun)),
+        exponent(tensors.apply(tensors.transpose(b), x)),
+        exponent(tensors.apply(c, y)),
+        _halved(exponent(spun)),
         default=0,
     )
     time = -omega
     velocity = _largest(
-        _exponent(tensors.apply(a, x)),
-        _exponent(tensors.apply(b, y)),
-        _later(_exponent(pushed), time),
+        exponent(tensors.apply(a, x)),
+        exponent(tensors.apply(b, y)),
+        _later(exponent(pushed), time),
         default=omega,
     )
-    linear = _largest(_exponent(x), _later(_exponent(force), time), default=0)
+    linear = _largest(exponent(x), _later(exponent(force), time), default=0)
     angular = _largest(
-        _exponent(y), _later(_exponent(couple), time), default=linear + velocity + time
+        exponent(y), _later(exponent(couple), time), default=linear + velocity + time
     )
     angular = max(angular, linear + velocity + time)
     sizes = (linear,) * 3 + (angular,) * 3 + (0,) * 9 + (velocity + time,) * 3
     return Units(sizes[: len(start)] + (velocity,) * 3 + (omega,) * 3, time)
-
-
-def _exponent(vector: Vector) -> int | None:
-    """log2 of the length, rounded; None for zero."""
-    square = tensors.dot(vector, vector)
-    return floor_log2(square) // 2 if square else None
 
 
 def _halved(exponent: int | None) -> int | None:
@@ -240,6 +193,15 @@ def _sum(*polynomials: Polynomial) -> Polynomial:
     return {pair: coefficient for pair, coefficient in total.items() if coefficient}
 
 
+def _problem(scene: Scene) -> Problem:
+    """The scene's equations and initial state, in units of their size."""
+    start, body = _start(scene), scene.body
+    if isinstance(body, RigidBody):
+        return problem(_euler(body, bool(scene.track)), _euler_units(body, start), start, moving=3)
+    equations = _kirchhoff(body, bool(scene.track), "centre" in scene.track)
+    return problem(equations, _kirchhoff_units(body, start), start, moving=6)
+
+
 def _start(scene: Scene) -> Vector:
     """The initial state in the order of the equations, exactly."""
     initial = scene.initial
@@ -264,226 +226,6 @@ def _rotation(quaternion: Quaternion) -> Matrix:
         (2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c),
     )
     return tuple(tensors.scaled(1 / norm, row) for row in rows)
-
-
-# The same, in integers.
-
-
-@dataclass(frozen=True)
-class Combination:
-    """sum of numerators[i] v_i / denominator: a linear combination with exact coefficients."""
-
-    numerators: tuple[int, ...]
-    denominator: int
-
-
-@dataclass(frozen=True)
-class Grid:
-    """The fixed point: integers count 2^-bits of a unit.
-
-    A series has ``order`` terms, the last of which is to fall below 2^slack last bits.
-    """
-
-    bits: int
-    slack: int
-    orders_per_bit: float
-
-    @property
-    def order(self) -> int:
-        return ceil((self.bits - self.slack) * self.orders_per_bit)
-
-    def integers(self, values: Iterable[Fraction]) -> list[int]:
-        return [_Integer(round(value * 2**self.bits)) for value in values]
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Equations and initial state in units: z' = constant + rates(products of two variables).
-
-    ``moving`` counts the states that enter the equations of the others.
-    """
-
-    units: Units
-    start: Vector
-    moving: int
-    constant: Vector
-    forms: tuple[Combination, ...]
-    products: tuple[tuple[int, int], ...]
-    rates: tuple[tuple[tuple[int, ...], Combination], ...]
-
-    def grid(self, digits: int) -> Grid:
-        """Bits for these digits of the smallest block, and for what coefficients make of a bit."""
-        blocks = [_exponent(self.start[i : i + 3]) for i in range(0, self.moving, 3)]
-        small = max(0, *(-exponent for exponent in blocks if exponent is not None), 0)
-        rows = [*self.forms, *(rate for _, rate in self.rates)]
-        strong = max(
-            (sum(map(abs, row.numerators)) // row.denominator).bit_length() for row in rows
-        )
-        slack = _SLACK_BITS + strong
-        bits = ceil(digits * _BITS_PER_DIGIT) + _GUARD_BITS + strong + small
-        return Grid(bits, slack, _ORDERS_PER_BIT[digits // _DIGITS_PER_TURN % 2])
-
-    def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:
-        """The state in the scene's own units, exactly, whatever the ambient precision."""
-        units = self.units.variables[: len(state)]
-        return [
-            mp.make_mpf(libmp.from_man_exp(count, unit - grid.bits))
-            for count, unit in zip(state, units, strict=True)
-        ]
-
-
-def _problem(scene: Scene) -> Problem:
-    """The scene's equations, its numbers exact and in units of their size."""
-    start = _start(scene)
-    if isinstance(scene.body, RigidBody):
-        equations, moving = _euler(scene.body, bool(scene.track)), 3
-        units = _euler_units(scene.body, start)
-    else:
-        equations = _kirchhoff(scene.body, bool(scene.track), "centre" in scene.track)
-        units, moving = _kirchhoff_units(scene.body, start), 6
-    size, products = len(start), sorted({pair for p in equations.right for pair in p})
-    unit = [power_of_two(exponent) for exponent in units.variables]
-    per_time = [power_of_two(units.time) / one for one in unit]
-    places = {pair: place for place, pair in enumerate(products)}
-    return Problem(
-        units=units,
-        start=tuple(z / one for z, one in zip(start, unit[:size], strict=True)),
-        moving=moving,
-        constant=tuple(c * one for c, one in zip(equations.constant, per_time, strict=False)),
-        forms=tuple(
-            _combination([c * one / own for c, one in zip(form, unit, strict=False)])
-            for form, own in zip(equations.forms, unit[size:], strict=True)
-        ),
-        products=tuple(products),
-        rates=tuple(
-            (
-                tuple(places[pair] for pair in p),
-                _combination([c * unit[a] * unit[b] * one for (a, b), c in p.items()]),
-            )
-            for p, one in zip(equations.right, per_time, strict=False)
-        ),
-    )
-
-
-def _combination(coefficients: Sequence[Fraction]) -> Combination:
-    denominator = lcm(*(c.denominator for c in coefficients))
-    return Combination(tuple(int(c * denominator) for c in coefficients), denominator)
-
-
-# The recursion.
-
-
-def _march(problem: Problem, times: Sequence[Fraction], grid: Grid) -> dict[Fraction, list[int]]:
-    """The states at these times, which lie on one side of 0 and go away from it."""
-    if not times:
-        return {}
-    unit = power_of_two(problem.units.time)
-    state, now, last = grid.integers(problem.start), Fraction(0), times[-1] / unit
-    width = _first_width(problem, last, grid)
-    reached: dict[Fraction, list[int]] = {}
-    steps, pending = 0, list(times[::-1])
-    while pending:
-        series = _series(problem, state, width, grid)
-        growth = _log2_reach(series, problem.moving, grid)
-        step = _dyadic(width, min(growth, 0.0))
-        while pending and abs(pending[-1] / unit - now) <= abs(step):
-            time = pending.pop()
-            reached[time] = _value(series, (time / unit - now) / width, grid)
-        steps += 1
-        _refuse_endless(steps + abs(last - now) / abs(step), times[-1])
-        state, now = _value(series, step / width, grid), now + step
-        # A little wider than this step, because the next one may be longer.
-        width = _dyadic(width, min(growth + 0.06, 1.0))
-    return reached
-
-
-def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
-    """Taylor coefficients of every state, those of order k held multiplied by width^k."""
-    bits, forms, products = grid.bits, problem.forms, problem.products
-    forward = [[z] for z in state]
-    forward += [[_combined(form, state)] for form in forms]
-    # The second factor of a convolution is kept in reverse, so that the two lists just pair up.
-    backward = {b: forward[b][:] for _, b in products}
-    for k in range(grid.order):
-        sums = [sum(map(mul, forward[a], backward[b])) for a, b in products]
-        scale = (width.denominator * (k + 1)) << bits
-        fresh = [
-            sum(map(mul, rate.numerators, [sums[place] for place in places]))
-            * width.numerator
-            // (scale * rate.denominator)
-            for places, rate in problem.rates
-        ]
-        if k == 0:
-            for i, drift in enumerate(grid.integers(width * c for c in problem.constant)):
-                fresh[i] += drift
-        fresh += [_combined(form, fresh) for form in forms]
-        for coefficients, z in zip(forward, fresh, strict=True):
-            coefficients.append(z)
-        for b, coefficients in backward.items():
-            coefficients.insert(0, fresh[b])
-    return forward[: len(state)]
-
-
-def _combined(form: Combination, state: list[int]) -> int:
-    """A form of the states it is made of, which come first."""
-    total: int = sum(map(mul, form.numerators, state))
-    return total // form.denominator
-
-
-def _value(series: list[list[int]], fraction: Fraction, grid: Grid) -> list[int]:
-    """The states at this fraction of the series' width."""
-    bits = grid.bits
-    argument = _Integer(round(fraction * 2**bits))
-    powers = [_Integer(1) << bits]
-    for _ in range(grid.order):
-        powers.append(powers[-1] * argument >> bits)
-    return [sum(map(mul, coefficients, powers)) >> bits for coefficients in series]
-
-
-def _log2_reach(series: list[list[int]], moving: int, grid: Grid) -> float:
-    """log2 of the fraction of the width at which the last terms fall below the slack.
-
-    A root test over the last eighth of the orders, so that a series with gaps does not deceive it.
-    1 where those terms are all zero: the width can then be doubled without harm. Where the motion
-    has outgrown its units, so have the roundings, and the slack with them.
-    """
-    order, bits_per_order = grid.order, 1 / grid.orders_per_bit
-    outgrown = max(abs(z[0]) for z in series[:moving]).bit_length() - grid.bits
-    slack = grid.slack + max(0, outgrown)
-    reach = 1.0
-    for k in range(order - max(order // 8, 3), order + 1):
-        size = max(abs(z[k]) for z in series).bit_length()
-        if size:
-            reach = min(reach, ((order - k) * bits_per_order + slack - size) / k)
-    return reach
-
-
-def _first_width(problem: Problem, span: Fraction, grid: Grid) -> Fraction:
-    """A first guess of the step, from short series: no longer than the span, whose sign it has."""
-    bits = grid.slack + _PILOT_BITS
-    pilot = Grid(bits, grid.slack, grid.orders_per_bit)
-    start = pilot.integers(problem.start)
-    width = _dyadic(span if span else Fraction(1), 0.0)
-    for _ in range(3):
-        reach = _log2_reach(_series(problem, start, width, pilot), problem.moving, pilot)
-        width = _dyadic(width, min(reach, 0.0))
-    return width
-
-
-def _dyadic(width: Fraction, log2_factor: float) -> Fraction:
-    """The width times 2^log2_factor, cut to six bits: exact, and cheap to multiply by."""
-    whole = int(log2_factor // 1)
-    wide = width * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
-    unit = power_of_two(floor_log2(wide) - 5)
-    return int(wide / unit) * unit
-
-
-def _refuse_endless(steps: Fraction, span: Fraction) -> None:
-    if steps > _MOST_STEPS:
-        raise Unsettled(
-            f"the Taylor recursion would take about {float(steps):.1e} steps to reach "
-            f"{float(span):g}; expected at most {_MOST_STEPS}: ask for a shorter time"
-        )
 
 
 # The answer.

@@ -73,6 +73,15 @@ class FreeRotation(Solution):
             rounded = [[+component for component in row] for row in rows]
         return {"omega": np.array(rounded, dtype=object).reshape(-1, 3)}
 
+    def period(self, digits: int) -> mpf | None:
+        """The period of omega in body axes, to about ``digits`` digits; None where it has none."""
+        with mp.workdps(digits + math.ceil(guard_digits(self.spin, Fraction(0)))):
+            if self.spin.regime is Regime.AXISYMMETRIC:
+                return abs(2 * mp.pi / Precession(self.spin).rate)
+            if self.spin.regime in (Regime.MIN_AXIS, Regime.MAX_AXIS):
+                return Orbit(self.spin).period
+            return None
+
     def _law(self, working: int) -> Law:
         """The motion set up at the ambient precision, which is ``working`` digits."""
         if working not in self._laws:
@@ -203,6 +212,11 @@ class Orbit:
             self._landen = Landen(self.m, self.m_prime)
         dn, sn, cn = (w / size for w, size in zip((w_a, w_b, w_c), self.amplitudes, strict=True))
         self.phase = self._phase_of(sn, cn, dn)
+
+    @property
+    def period(self) -> mpf:
+        """4K/lam; infinite on the separatrix."""
+        return mp.inf if self._on_separatrix else 4 * self._landen.quarter_period / self.rate
 
     def functions(self, t: mpf) -> Triple:
         """(sn, cn, dn) of lam t + u_0."""

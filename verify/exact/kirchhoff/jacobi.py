@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, final
 
 import numpy as np
-from mpmath import mp
+from mpmath import mp, mpf
 
 from verify.exact.kirchhoff.orbit import Axial, Orbit, transverse
 from verify.exact.kirchhoff.quartic import Nutation
@@ -87,6 +87,11 @@ class NutatingBody(Solution):
             orbit = self._orbit(working)
             states = [orbit.state(mp.convert(t)) for t in elapsed]
             return _quantities([x for x, _ in states], [y for _, y in states])
+
+    def period(self, digits: int) -> mpf:
+        """The period of nutation, to about ``digits`` digits."""
+        with mp.workdps(digits + _GUARD_DIGITS):
+            return self._orbit(digits + _GUARD_DIGITS).period
 
     def _orbit(self, digits: int) -> Orbit:
         """The orbit at the working precision of ``digits``, made once."""

@@ -131,6 +131,11 @@ class Orbit:
         turn = self._turn * mp.expj(chi)
         return (turn * shape.amplitude, shape.z), (turn * shape.partner, self._y3)
 
+    @property
+    def period(self) -> mpf:
+        """The period of nutation, after which x3 and the shape of (x, y) recur."""
+        return self._wave.period
+
     def lost_digits(self, t: mpf) -> int:
         """An estimate of the digits lost by the time t >= 0.
 

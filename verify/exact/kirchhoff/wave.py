@@ -66,12 +66,19 @@ class Wave(ABC):
     weight: mpf
     rate: mpf
     start: mpf
+    quarters: int  # of the period 4 K of the argument, in one period of x3
 
     def __init__(self, m: mpf, m_prime: mpf) -> None:
         self.m = m
         self.m_prime = m_prime
         self._landen = Landen(m, m_prime)
         self.quarter_period: mpf = self._landen.quarter_period
+
+    @final
+    @property
+    def period(self) -> mpf:
+        """The time in which x3 swings from one turning point to the other and back."""
+        return self.quarters * self.quarter_period / self.rate
 
     @final
     def place(self, u: mpf) -> Place:
@@ -110,6 +117,8 @@ class SquareIntegral:
 @final
 class SquareWave(Wave):
     """All roots real: (a, b) = (sn^2, cn^2); x3 has the period 2K."""
+
+    quarters = 2
 
     def __init__(self, nutation: Nutation, points: TurningPoints) -> None:
         z1, z2, z3, z4 = points.z1, points.z2, points.z3, points.z4
@@ -157,6 +166,8 @@ class CosineWave(Wave):
     A and B are the distances of the pair from z2 and z1; their product enters the modulus through
     A B +- [(z1-middle)(z2-middle) + n^2], of which the smaller is n^2 (z2-z1)^2 over the larger.
     """
+
+    quarters = 4
 
     def __init__(self, nutation: Nutation, points: TurningPoints) -> None:
         assert points.pair is not None

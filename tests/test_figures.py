@@ -1,0 +1,113 @@
+"""The figures the suite promises: errors of an ensemble of regular bodies on every rung."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from random import Random
+from statistics import median
+
+import pytest
+
+from verify.exact.euler.jacobi import FreeRotation
+from verify.exact.kirchhoff.jacobi import NutatingBody
+from verify.exact.route import solution
+from verify.judge.verdict import Status, Verdict
+from verify.run import run
+from verify.scenes import tensors
+from verify.scenes.bodies import Clebsch, RigidBody
+from verify.scenes.motion import Clock, Impulse, Spin
+from verify.scenes.precision import LADDER
+from verify.scenes.scene import Scene
+
+BODIES = 32
+PERIODS = 15
+SEED = 20261121
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """The verdicts of the motion's own error, and of every conserved quantity."""
+
+    states: tuple[Verdict, ...]
+    conserved: tuple[Verdict, ...]
+
+
+def decimal(random: Random, low: float, high: float) -> Fraction:
+    """A number with three decimals, as a person would write it."""
+    return Fraction(round(random.uniform(low, high) * 1000), 1000)
+
+
+def rigid_body(random: Random) -> Scene:
+    """A real body (the triangle inequality holds) with a spin about no axis in particular."""
+    squares = [decimal(random, 0.3, 2) for _ in range(3)]
+    total = sum(squares, Fraction(0))
+    body = RigidBody(tensors.diagonal(tuple(total - s for s in squares)))
+    omega = tuple(random.choice((-1, 1)) * decimal(random, 0.2, 1) for _ in range(3))
+    return _over_periods("euler", body, Spin(omega))
+
+
+def clebsch_body(random: Random) -> Scene:
+    """A body of revolution with screw coupling; |q| stays below sqrt(p r), so that T is positive."""
+    p, p_prime, r, r_prime = (decimal(random, 0.5, 2) for _ in range(4))
+    q, q_prime = (decimal(random, -0.4, 0.4) for _ in range(2))
+    body = Clebsch(p, p_prime, q, q_prime, r, r_prime).body()
+    x, y = (tuple(decimal(random, -1, 1) for _ in range(3)) for _ in range(2))
+    return _over_periods("kirchhoff", body, Impulse(x, y))
+
+
+def _over_periods(model: str, body: object, initial: object) -> Scene:
+    """Sampled 101 times over fifteen periods."""
+    start = Clock(Fraction(0), (Fraction(1),))
+    scene = Scene("drawn", "drawn", model, frozenset(), body, initial, start)
+    exact = solution(scene)
+    assert isinstance(exact, FreeRotation | NutatingBody)
+    span = PERIODS * Fraction(str(float(exact.period(20))))
+    clock = Clock(Fraction(0), tuple(span * k / 100 for k in range(101)))
+    return Scene("drawn", "drawn", model, frozenset(), body, initial, clock)
+
+
+@lru_cache
+def drawn(model: str) -> tuple[Scene, ...]:
+    """Thirty-two bodies from a fixed seed, none of them picked."""
+    random = Random(SEED)
+    draw = rigid_body if model == "euler" else clebsch_body
+    return tuple(draw(random) for _ in range(BODIES))
+
+
+@lru_cache
+def ensemble(model: str, rung: str) -> Ensemble:
+    found = [run(scene, "taylor", rung).verdicts for scene in drawn(model)]
+    return Ensemble(
+        tuple(verdicts[0] for verdicts in found),
+        tuple(verdict for verdicts in found for verdict in verdicts[1:]),
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rung", LADDER)
+@pytest.mark.parametrize("model", ["euler", "kirchhoff"])
+def test_median_state_error_is_within_300_units_of_roundoff(model: str, rung: str) -> None:
+    """After fifteen periods half of the bodies are right to 300 u on every rung."""
+    found = ensemble(model, rung)
+    assert median(v.max / v.roundoff for v in found.states) <= 300
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rung", LADDER)
+@pytest.mark.parametrize("model", ["euler", "kirchhoff"])
+def test_median_error_is_what_perfect_rounding_would_leave(model: str, rung: str) -> None:
+    """Half of the bodies stay within the attainable error at every sample, and no gate fails."""
+    found = ensemble(model, rung)
+    assert median(v.ratio for v in found.states) <= 1
+    assert {v.verdict for v in found.states + found.conserved} == {Status.PASS}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rung", LADDER)
+@pytest.mark.parametrize("model", ["euler", "kirchhoff"])
+def test_median_drift_is_within_30_units_of_roundoff(model: str, rung: str) -> None:
+    """Conserved quantities of half of the bodies drift by less than 30 u."""
+    found = ensemble(model, rung)
+    for quantity in {v.quantity for v in found.conserved}:
+        drifts = [v.max / v.roundoff for v in found.conserved if v.quantity == quantity]
+        assert median(drifts) <= 30

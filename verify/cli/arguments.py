@@ -1,0 +1,141 @@
+"""The arguments of every verb."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from verify.cli import verbs
+from verify.cli.answer import Answer
+
+_DEFAULT_DIGITS = 30
+# What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
+_RUNG = re.compile(r"(f|mp)\d*")
+_NEGATIVE_TIME = re.compile(r"-[\d.]")
+
+
+def parse(arguments: Sequence[str]) -> argparse.Namespace:
+    """The options, ``act`` the function of the verb; SystemExit for --help and a wrong call."""
+    parser = _parser()
+    options, left = parser.parse_known_args(_with_times_attached(arguments))
+    scenes = getattr(options, "scenes", None)
+    if left and (scenes is None or any(word.startswith("-") for word in left)):
+        parser.error(f"unrecognized arguments: {' '.join(left)}")
+    if scenes is not None:
+        # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
+        options.rung, taken = _split(options.rung)
+        options.scenes = [*scenes, *taken, *left]
+    return options
+
+
+def _with_times_attached(arguments: Sequence[str]) -> list[str]:
+    """``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
+    attached: list[str] = []
+    for word in arguments:
+        if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
+            attached[-1] = f"--at={word}"
+        else:
+            attached.append(word)
+    return attached
+
+
+def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]]:
+    """The rungs and the scenes of all that stood behind ``--rung``, whose first word is a rung."""
+    rungs: list[str] = []
+    scenes: list[str] = []
+    for first, *others in groups or ():
+        rungs += first.split(",")
+        for word in others:
+            names = word.split(",")
+            if all(_RUNG.fullmatch(name) for name in names):
+                rungs += names
+            else:
+                scenes.append(word)
+    return rungs, scenes
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="taylor-verify",
+        description="The reference that rigid-body and ideal-fluid simulations are measured "
+        "against.",
+        epilog="SCENE is a file or the name of a shipped scene, such as euler/generic. "
+        "Exit status: 0 pass, 1 a gate failed, 2 the input or the call was wrong, 3 undecided. "
+        "`taylor-verify VERB --help` has an example.",
+        allow_abbrev=False,
+    )
+    found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
+    _add_list(found)
+    _add_run(found)
+    _add_exact(found)
+    _add_explain(found)
+    _add_publish(found)
+    return parser
+
+
+def _verb(
+    found: Any, name: str, what: str, example: str, act: Callable[[argparse.Namespace], Answer]
+) -> argparse.ArgumentParser:
+    verb: argparse.ArgumentParser = found.add_parser(
+        name,
+        help=what,
+        description=what[0].upper() + what[1:] + ".",
+        epilog=f"example: taylor-verify {example}",
+        allow_abbrev=False,
+    )
+    verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+    verb.set_defaults(act=act)
+    return verb
+
+
+def _add_list(found: Any) -> None:
+    _verb(
+        found, "list", "list the shipped scenes, solvers and rungs", "list --json", verbs.list_all
+    )
+
+
+def _add_run(found: Any) -> None:
+    what = "solve scenes, compare with the exact motion, judge"
+    verb = _verb(found, "run", what, "run euler/generic --rung f32 f64", verbs.run)
+    verb.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the standard set")
+    verb.add_argument("--solver", default="taylor", metavar="S", help="default: taylor")
+    verb.add_argument(
+        "--rung",
+        nargs="+",
+        action="append",
+        metavar="R",
+        help="f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set",
+    )
+    verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
+
+
+def _add_exact(found: Any) -> None:
+    what = "print the exact motion of a scene at the times given"
+    verb = _verb(found, "exact", what, "exact euler/generic --at 0,10,1e9 --digits 40", verbs.exact)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--at", required=True, metavar="T,T,...", help="decimals or a/b, absolute")
+    verb.add_argument(
+        "--digits", type=int, default=_DEFAULT_DIGITS, metavar="N", help="default: 30"
+    )
+    verb.add_argument(
+        "--route",
+        choices=("mpmath", "arb", "taylor"),
+        help="default: mpmath, the closed form; arb is not built yet; taylor needs no closed form",
+    )
+
+
+def _add_explain(found: Any) -> None:
+    what = "show the equations as built, the regime of the orbit and the arithmetic of each gate"
+    verb = _verb(found, "explain", what, "explain kirchhoff/screw --rung f80", verbs.explain)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
+
+
+def _add_publish(found: Any) -> None:
+    what = "rebuild the tables from verdicts and records"
+    verb = _verb(found, "publish", what, "publish --from reports/local", verbs.publish)
+    verb.add_argument(
+        "--from", dest="folder", default="reports", metavar="DIR", help="default: reports"
+    )

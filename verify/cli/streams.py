@@ -1,0 +1,65 @@
+"""What goes to which stream: the answer alone to stdout, messages to stderr."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stdout
+from typing import TextIO
+
+
+def say(message: str) -> None:
+    try:
+        print(f"taylor-verify: {message}", file=sys.stderr, flush=True)
+    except OSError:
+        _abandon(sys.stderr)
+
+
+def attempt(print_out: Callable[[], None]) -> None:
+    """Print, and mind it not if the reader of our output went away (`| head`)."""
+    try:
+        print_out()
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _abandon(sys.stdout)
+    except OSError:
+        # A full disk, for one. What is left in the buffer must not be tried again at the exit.
+        _abandon(sys.stdout)
+        raise
+
+
+def _abandon(stream: TextIO) -> None:
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def have_streams() -> None:
+    """Something to print to where a stream is closed, and an escape for what it cannot encode."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 (it is the stream of the process)
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+    reconfigure = getattr(sys.stdout, "reconfigure", None)
+    if reconfigure is not None:
+        reconfigure(errors="backslashreplace")
+
+
+@contextmanager
+def stdout_reserved() -> Iterator[None]:
+    """While a verb works, whatever a library prints on stdout goes to stderr, in workers too.
+
+    heyoka, for one, has warnings of its own, written below Python.
+    """
+    sys.stdout.flush()
+    try:
+        kept = os.dup(1)
+        os.dup2(2, 1)
+    except OSError:  # one of them is closed: there is nothing to keep clean
+        yield
+        return
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)

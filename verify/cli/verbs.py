@@ -1,0 +1,232 @@
+"""What each verb does: options in, an answer out."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
+from functools import partial
+from typing import TYPE_CHECKING
+
+from verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
+from verify.cli.streams import say
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+    from pathlib import Path
+
+    from verify.judge.judgement import Judgement
+    from verify.scenes.scene import Scene
+
+_MOST_DIGITS = 10_000
+
+
+def list_all(options: argparse.Namespace) -> Answer:
+    """Everything that has a name."""
+    from verify.cli.terminal import print_names
+    from verify.scenes.library import names
+    from verify.scenes.precision import LADDER
+    from verify.scenes.reader import load
+    from verify.solvers.registry import NAMES
+
+    del options
+    titles = {name: load(name).title for name in names()}
+    found = {"scenes": list(titles), "solvers": list(NAMES), "rungs": list(LADDER)}
+    return Answer(PASS, found, partial(print_names, found, titles))
+
+
+def run(options: argparse.Namespace) -> Answer:
+    """The whole chain for some scenes, or for the standard set."""
+    from verify.cli.terminal import print_verdicts
+    from verify.judge.verdict import exit_status, summary
+    from verify.scenes.library import names
+    from verify.scenes.precision import LADDER
+
+    rungs = _known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
+    _known_solver(options.solver)
+    scenes = list(dict.fromkeys(options.scenes)) or list(names())
+    _read(scenes)
+    folder = _writable(options.out) if options.out is not None else None
+    results = _judge(scenes, options.solver, rungs)
+    verdicts = [verdict for result in results for verdict in result.verdicts]
+    status, faults = exit_status(verdicts), _write_reports(folder, results)
+    found = {"verdicts": [v.row() for v in verdicts], "summary": summary(verdicts)}
+    show = partial(print_verdicts, verdicts)
+    return Answer(WRONG_CALL if faults else status, found, show, faults)
+
+
+def exact(options: argparse.Namespace) -> Answer:
+    """The exact motion of one scene."""
+    from verify.cli.terminal import print_exact
+
+    if options.route == "arb":
+        raise WrongCall(
+            "expected --route mpmath or taylor, got arb: the route by Arb balls is not built in "
+            "this version"
+        )
+    if not 1 <= options.digits <= _MOST_DIGITS:
+        raise WrongCall(f"expected --digits from 1 to {_MOST_DIGITS}, got {options.digits}")
+    times = [(text.strip(), _time(text)) for text in options.at.split(",")]
+    (scene,) = _read([options.scene])
+    from verify.exact.printed import document
+    from verify.exact.route import solution
+    from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+
+    route = options.route or "mpmath"
+    try:
+        with _working(f"exact {scene.name}"):
+            found = solution(scene, route)
+            printed = document(scene, found, times, options.digits)
+    except NoClosedForm as reason:
+        because = f"no closed form: {reason}; use --route taylor @ {scene.name}"
+        return _without_rows(scene, options.digits, route, NO_CLOSED_FORM, because)
+    except Unsettled as doubt:
+        because = f"undecided: {doubt} @ {scene.name}"
+        return _without_rows(scene, options.digits, route, found.regime, because)
+    return Answer(PASS, printed, partial(print_exact, printed))
+
+
+def _without_rows(scene: Scene, digits: int, route: str, regime: str, because: str) -> Answer:
+    """The answer that there is none, in the shape of one."""
+    found = {
+        "scene": scene.name,
+        "route": route,
+        "digits": digits,
+        "regime": regime,
+        "rows": [],
+        "because": because,
+    }
+    return Answer(UNDECIDED, found, _show_nothing, [because])
+
+
+def explain(options: argparse.Namespace) -> Answer:
+    """The arithmetic of one run."""
+    from verify.cli.terminal import print_explanation
+    from verify.explain import explanation
+
+    (rung,) = _known_rungs([options.rung])
+    (scene,) = _read([options.scene], warn=False)
+    with _working(f"explain {options.scene}"):
+        found = explanation(scene, rung)
+    return Answer(PASS, found, partial(print_explanation, found))
+
+
+def publish(options: argparse.Namespace) -> Answer:
+    """Tables from stored verdicts."""
+    from verify.cli.terminal import print_lines
+    from verify.publish import report
+
+    try:
+        written = [str(path) for path in report.publish(options.folder)]
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected what `run --out {options.folder}` writes, got no such file "
+            f"@ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(str(error)) from error
+    return Answer(PASS, {"written": written}, partial(print_lines, written))
+
+
+# What the verbs share.
+
+
+def _judge(scenes: Sequence[str], solver: str, rungs: Sequence[str]) -> list[Judgement]:
+    from verify.cli.terminal import progress
+    from verify.standard import jobs, run_all
+
+    asked = jobs(scenes, solver, rungs)
+    with progress(len(asked)) as finished:
+        return run_all(asked, finished)
+
+
+def _working(what: str) -> AbstractContextManager[None]:
+    from verify.cli.terminal import spinner
+
+    return spinner(what)
+
+
+def _show_nothing() -> None:
+    """The messages have said it."""
+
+
+def _known_rungs(rungs: Iterable[str]) -> list[str]:
+    from verify.scenes.precision import rung
+
+    try:
+        return [rung(name).name for name in dict.fromkeys(rungs)]
+    except ValueError as error:
+        raise WrongCall(f"{error} @ --rung") from error
+
+
+def _known_solver(name: str) -> None:
+    from verify.solvers.registry import NAMES, unknown_solver
+
+    if name not in NAMES:
+        raise WrongCall(f"{unknown_solver(name)} @ --solver")
+
+
+def _read(names: Sequence[str], warn: bool = True) -> list[Scene]:
+    """Every scene, read before any work begins; the faults of all of them are reported at once."""
+    from verify.scenes.faults import Refused
+    from verify.scenes.reader import load
+
+    scenes, faults = [], []
+    for name in names:
+        try:
+            scenes.append(load(name))
+        except Refused as error:
+            heading = f"{name} is refused:\n" if len(names) > 1 else ""
+            faults.append(f"{heading}{error}")
+    if faults:
+        raise WrongCall("\n".join(faults))
+    for scene in scenes if warn else ():
+        for warning in scene.warnings:
+            say(f"warning: {warning} @ {scene.name}")
+    return scenes
+
+
+def _time(text: str) -> Fraction:
+    from verify.scenes.table import exact_number
+
+    try:
+        return exact_number(text)
+    except ValueError as error:
+        raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
+
+
+def _writable(folder: str) -> Path:
+    """The folder, tried out before hours of work end in a refusal to write, and not yet made."""
+    import tempfile
+    from pathlib import Path
+
+    path = Path(folder)
+    try:
+        if not folder:
+            raise NotADirectoryError(0, "an empty name")
+        with tempfile.TemporaryFile(dir=_nearest_existing(path)):
+            return path
+    except OSError as error:
+        raise WrongCall(
+            f"expected a folder that can be written, got {folder!r} ({error.strerror}) @ --out"
+        ) from error
+
+
+def _nearest_existing(path: Path) -> Path:
+    return next(folder for folder in (path, *path.absolute().parents) if folder.exists())
+
+
+def _write_reports(folder: Path | None, results: Sequence[Judgement]) -> list[str]:
+    """What prevented the reports; a run that took hours is shown in any case."""
+    if folder is None:
+        return []
+    from verify.publish import report
+
+    verdicts = [verdict for result in results for verdict in result.verdicts]
+    records = [result.record for result in results if result.record is not None]
+    try:
+        report.write(folder, verdicts, records)
+        report.publish(folder)
+    except (OSError, ValueError) as error:
+        return [f"expected to write the reports, got {str(error)!r} @ --out {folder}"]
+    return []
