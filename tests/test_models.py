@@ -89,9 +89,7 @@ def test_principal_form_is_the_full_form_with_absent_products(seed: int) -> None
     H, k = vector(random), vector(random)
     zeros = tensors.diagonal(k)
     absent = [[k[i] if i == j else 0 for j in range(3)] for i in range(3)]
-    assert momentum_rate(H, absent, [0, 0, 0]) == list(
-        tensors.cross(H, tensors.apply(zeros, H))
-    )
+    assert momentum_rate(H, absent, [0, 0, 0]) == list(tensors.cross(H, tensors.apply(zeros, H)))
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -154,9 +152,7 @@ def test_one_definition_serves_every_arithmetic(form: Form) -> None:
     import heyoka as hy
 
     random = Random(1)
-    state, parameters = rationals(random, len(form.states)), rationals(
-        random, len(form.parameters)
-    )
+    state, parameters = rationals(random, len(form.states)), rationals(random, len(form.parameters))
     exact = form.rates(state, parameters)
 
     def rates_in(convert: object) -> list[object]:
@@ -165,7 +161,9 @@ def test_one_definition_serves_every_arithmetic(form: Form) -> None:
     # Dyadic data with 12 bits: products of four of them fit a double, so all agree to the bit.
     assert [float(v) for v in rates_in(mp.convert)] == [float(v) for v in exact]
     balls = rates_in(lambda v: arb(fmpq(v.numerator, v.denominator)))
-    assert all(b.contains(fmpq(v.numerator, v.denominator)) for b, v in zip(balls, exact, strict=True))
+    assert all(
+        b.contains(fmpq(v.numerator, v.denominator)) for b, v in zip(balls, exact, strict=True)
+    )
     arrays = rates_in(lambda v: np.full(2, float(v)))
     assert all(np.all(a == float(v)) for a, v in zip(arrays, exact, strict=True))
     symbols = hy.make_vars(*form.states)

@@ -39,7 +39,7 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
         "warnings": list(scene.warnings),
         **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
-            **_operations(scene, rung),
+            **_cost(scene, rung),
             "steps": first.steps,
             "evaluations": first.evaluations,
             "seconds": first.seconds,
@@ -61,15 +61,18 @@ def _gate(verdict: Verdict) -> dict[str, Any]:
 # What one evaluation of the equations costs.
 
 
-def _operations(scene: Scene, rung: str) -> dict[str, int | None]:
-    """The states, and the distinct operations of their rates; None where the rung holds no body."""
+def _cost(scene: Scene, rung: str) -> dict[str, int | None]:
     try:
         form = pose(scene, rung_named(rung)).form
     except NotRepresentable:
         return dict.fromkeys(("states", "sums", "products", "quotients"))
+    return {"states": len(form.states), **operations(form)}
+
+
+def operations(form: Form) -> dict[str, int]:
+    """The distinct sums, products and quotients of one evaluation of the rates."""
     done = _done(form)
     return {
-        "states": len(form.states),
         "sums": sum(term.operation in "+-" for term in done),
         "products": sum(term.operation == "*" for term in done),
         "quotients": sum(term.operation == "/" for term in done),

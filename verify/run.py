@@ -17,9 +17,7 @@ from verify.solvers.registry import solver_named
 from verify.solvers.solver import Solver
 
 
-def run(
-    scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64"
-) -> Judgement:
+def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64") -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 
 from verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall
-from verify.cli.streams import attempt, have_streams, say, stdout_reserved
+from verify.cli.streams import have_streams, print_out, say, stdout_reserved
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,19 +33,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(_told(error))
         return WRONG_CALL
     finally:
-        attempt(sys.stdout.flush)
+        print_out()
 
 
 def _print(answer: Answer, as_json: bool) -> int:
-    for message in answer.messages:
-        say(message)
     if as_json:
         import json
 
-        text = json.dumps(answer.document, indent=1, allow_nan=False)
-        attempt(lambda: print(text, flush=True))
+        print_out(json.dumps(answer.document, indent=1, allow_nan=False))
     else:
-        attempt(answer.show)
+        print_out(answer.text())
+    for message in answer.messages:
+        say(message)
     return answer.status
 
 
@@ -58,6 +57,8 @@ def _told(error: Exception) -> str:
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
+    if isinstance(error, ModuleNotFoundError) and error.name and error.name[:6] != "verify":
+        return f"expected the package {error.name} (`make verify` sets all up), got none"
     from verify.standard import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)

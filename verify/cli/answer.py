@@ -1,4 +1,4 @@
-"""What a verb answers: an exit status, a JSON document and a way to show it to a person."""
+"""What a verb answers: an exit status, a JSON document and a text for a person."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class WrongCall(Exception):  # noqa: N818 (it names what was done)
 
 @dataclass(frozen=True)
 class Answer:
-    """``messages`` go to stderr, then ``document`` or what ``show`` prints to stdout."""
+    """``document`` as JSON or else ``text()`` is for stdout; ``messages`` follow on stderr."""
 
     status: int
     document: dict[str, Any]
-    show: Callable[[], None]
+    text: Callable[[], str]
     messages: Sequence[str] = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from typing import TextIO
 
@@ -16,10 +16,11 @@ def say(message: str) -> None:
         _abandon(sys.stderr)
 
 
-def attempt(print_out: Callable[[], None]) -> None:
-    """Print, and mind it not if the reader of our output went away (`| head`)."""
+def print_out(text: str = "") -> None:
+    """Print the answer, if any is left, and mind it not if its reader went away (`| head`)."""
     try:
-        print_out()
+        if text:
+            print(text)
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon(sys.stdout)

@@ -1,33 +1,30 @@
-"""What a person sees: tables on stdout, progress on stderr."""
+"""The texts that a person reads: names, verdicts, the exact motion, an explanation."""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+import sys
+import textwrap
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
     from verify.judge.verdict import Verdict
-    from verify.standard import Job
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 _PIPED_WIDTH = 140
+_ROOMY = 120
 _STATES = ("omega", "impulse", "attitude", "centre")
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
 # The worst first: what a line that stands for several verdicts is called.
 _GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
-# Nobody needs to be told that something takes less than this, in seconds.
-_PATIENCE = 1.0
 
 
-def print_names(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> None:
+def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> str:
     console = _console()
     width = max(map(len, titles), default=0)
     for heading, entries in found.items():
@@ -35,23 +32,19 @@ def print_names(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -
         for entry in entries:
             title = titles.get(entry, "")
             _line(console, f"  {entry:{width}}  {title}".rstrip())
-
-
-def print_lines(lines: Iterable[str]) -> None:
-    console = _console()
-    for line in lines:
-        _line(console, line)
+    return _text(console)
 
 
 # run
 
 
-def print_verdicts(verdicts: Sequence[Verdict]) -> None:
+def verdicts_text(verdicts: Sequence[Verdict]) -> str:
     """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
     from verify.judge.verdict import summary
 
-    console = _console()
-    console.print(_table(verdicts))
+    # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
+    console = _console(_PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
+    console.print(_table(verdicts, gap=2 if console.width >= _ROOMY else 1))
     _line(console)
     _line(
         console,
@@ -61,16 +54,18 @@ def print_verdicts(verdicts: Sequence[Verdict]) -> None:
         console, "/floor is the largest error over what perfect rounding would leave, of all gates."
     )
     others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
-    for verdict in others:
+    if others:
         _line(console)
+    for verdict in others:
         place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
         _line(console, _status(verdict.verdict.value), f"  {place}: {_told(verdict)}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
     _line(console, f"\n{counts}")
+    return _text(console)
 
 
-def _table(verdicts: Sequence[Verdict]) -> Table:
-    table = Table(box=None, padding=(0, 1), pad_edge=False)
+def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
+    table = Table(box=None, padding=(0, gap, 0, 0), pad_edge=False)
     for heading in ("scene", "rung", "verdict", "state", "error/u", "at t", "drift", "error/u"):
         table.add_column(heading, justify="right" if heading in ("error/u", "at t") else "left")
     for heading in ("/floor", "steps", "seconds"):
@@ -140,7 +135,7 @@ def _status(status: str) -> Text:
 # exact
 
 
-def print_exact(found: Mapping[str, Any]) -> None:
+def exact_text(found: Mapping[str, Any]) -> str:
     console = _console()
     _line(console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})")
     for row in found["rows"]:
@@ -148,6 +143,7 @@ def print_exact(found: Mapping[str, Any]) -> None:
         for name, value in row.items():
             if name not in ("t", "radius"):
                 _print_quantity(console, name, value)
+    return _text(console)
 
 
 def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
@@ -163,7 +159,7 @@ def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
 # explain
 
 
-def print_explanation(found: Mapping[str, Any]) -> None:
+def explanation_text(found: Mapping[str, Any]) -> str:
     console = _console()
     _line(console, Text(found["scene"], "bold"), f": {found['title']}")
     if found["source"]:
@@ -177,6 +173,7 @@ def print_explanation(found: Mapping[str, Any]) -> None:
     _line(console, Text(f"gates on {found['rung']}", "bold"), f", u = 2^-{found['bits']}")
     for gate in found["gates"]:
         _print_gate(console, gate)
+    return _text(console)
 
 
 def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
@@ -211,68 +208,32 @@ def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
     _line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
     if gate["at"] is not None:
         for part in _error(gate).split("; "):
-            _line(console, f"    {part}")
+            _indented(console, "    ", part)
     because = [part.strip() for part in gate["because"].split(";")]
     for i, part in enumerate(because):
-        _line(console, f"    {'because' if i == 0 else '       '} {part}")
-
-
-# Progress.
-
-
-@contextmanager
-def progress(total: int) -> Iterator[Callable[[Job], None]]:
-    """A bar on stderr that advances as jobs end; a line for each where stderr is no terminal."""
-    console = _console(stderr=True)
-    if not console.is_terminal:
-        yield _counting(console, total)
-        return
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True) as bar:
-        task = bar.add_task("compiling and solving", total=total)
-
-        def finished(job: Job) -> None:
-            bar.update(task, advance=1, description=job.scene)
-
-        yield finished
-
-
-def _counting(console: Console, total: int) -> Callable[[Job], None]:
-    done = 0
-
-    def finished(job: Job) -> None:
-        nonlocal done
-        done += 1
-        _line(console, f"{done}/{total} {job.scene} on {' '.join(job.rungs)}")
-
-    return finished
-
-
-@contextmanager
-def spinner(what: str) -> Iterator[None]:
-    """A sign of life on stderr while one long thing is computed."""
-    console = _console(stderr=True)
-    if console.is_terminal:
-        with console.status(Text(what)):
-            yield
-        return
-    notice = threading.Timer(_PATIENCE, _line, (console, f"{what}: computing"))
-    notice.daemon = True
-    notice.start()
-    try:
-        yield
-    finally:
-        notice.cancel()
+        _indented(console, "    because " if i == 0 else "            ", part)
 
 
 def _line(console: Console, *parts: str | Text) -> None:
     """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
-    console.print(Text.assemble(*parts), soft_wrap=not console.is_terminal)
+    console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
 
 
-def _console(stderr: bool = False) -> Console:
-    """A console that decorates nothing by itself."""
-    console = Console(stderr=stderr, markup=False, emoji=False, highlight=False)
-    if not console.is_terminal:
-        console.width = _PIPED_WIDTH
+def _indented(console: Console, label: str, text: str) -> None:
+    """A line behind its label; on a terminal what is too long goes on below itself."""
+    width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
+    for i, line in enumerate(textwrap.wrap(text, width)):
+        _line(console, (label if i == 0 else " " * len(label)) + line)
+
+
+def _console(piped_width: int = _PIPED_WIDTH) -> Console:
+    """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
+    console = Console(markup=False, emoji=False, highlight=False)
+    if not sys.stdout.isatty():
+        console.width = piped_width
+    console.begin_capture()
     return console
+
+
+def _text(console: Console) -> str:
+    return console.end_capture().rstrip("\n")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable, Sequence
-from contextlib import AbstractContextManager
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -23,7 +22,7 @@ _MOST_DIGITS = 10_000
 
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
-    from verify.cli.terminal import print_names
+    from verify.cli.terminal import names_text
     from verify.scenes.library import names
     from verify.scenes.precision import LADDER
     from verify.scenes.reader import load
@@ -32,12 +31,12 @@ def list_all(options: argparse.Namespace) -> Answer:
     del options
     titles = {name: load(name).title for name in names()}
     found = {"scenes": list(titles), "solvers": list(NAMES), "rungs": list(LADDER)}
-    return Answer(PASS, found, partial(print_names, found, titles))
+    return Answer(PASS, found, partial(names_text, found, titles))
 
 
 def run(options: argparse.Namespace) -> Answer:
     """The whole chain for some scenes, or for the standard set."""
-    from verify.cli.terminal import print_verdicts
+    from verify.cli.terminal import verdicts_text
     from verify.judge.verdict import exit_status, summary
     from verify.scenes.library import names
     from verify.scenes.precision import LADDER
@@ -49,15 +48,23 @@ def run(options: argparse.Namespace) -> Answer:
     folder = _writable(options.out) if options.out is not None else None
     results = _judge(scenes, options.solver, rungs)
     verdicts = [verdict for result in results for verdict in result.verdicts]
-    status, faults = exit_status(verdicts), _write_reports(folder, results)
+    status, messages = exit_status(verdicts), []
+    if folder is not None:
+        try:
+            messages = [_write_reports(folder, results)]
+        except (OSError, ValueError) as error:
+            # A run that took hours is shown in any case.
+            messages = [f"expected to write the reports, got {error} @ --out {folder}"]
+            status = WRONG_CALL
     found = {"verdicts": [v.row() for v in verdicts], "summary": summary(verdicts)}
-    show = partial(print_verdicts, verdicts)
-    return Answer(WRONG_CALL if faults else status, found, show, faults)
+    text = partial(verdicts_text, verdicts)
+    return Answer(status, found, text, messages)
 
 
 def exact(options: argparse.Namespace) -> Answer:
     """The exact motion of one scene."""
-    from verify.cli.terminal import print_exact
+    from verify.cli.progress import working
+    from verify.cli.terminal import exact_text
 
     if options.route == "arb":
         raise WrongCall(
@@ -74,7 +81,7 @@ def exact(options: argparse.Namespace) -> Answer:
 
     route = options.route or "mpmath"
     try:
-        with _working(f"exact {scene.name}"):
+        with working(f"exact {scene.name}"):
             found = solution(scene, route)
             printed = document(scene, found, times, options.digits)
     except NoClosedForm as reason:
@@ -83,7 +90,7 @@ def exact(options: argparse.Namespace) -> Answer:
     except Unsettled as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
         return _without_rows(scene, options.digits, route, found.regime, because)
-    return Answer(PASS, printed, partial(print_exact, printed))
+    return Answer(PASS, printed, partial(exact_text, printed))
 
 
 def _without_rows(scene: Scene, digits: int, route: str, regime: str, because: str) -> Answer:
@@ -96,24 +103,24 @@ def _without_rows(scene: Scene, digits: int, route: str, regime: str, because: s
         "rows": [],
         "because": because,
     }
-    return Answer(UNDECIDED, found, _show_nothing, [because])
+    return Answer(UNDECIDED, found, _no_text, [because])
 
 
 def explain(options: argparse.Namespace) -> Answer:
     """The arithmetic of one run."""
-    from verify.cli.terminal import print_explanation
+    from verify.cli.progress import working
+    from verify.cli.terminal import explanation_text
     from verify.explain import explanation
 
     (rung,) = _known_rungs([options.rung])
     (scene,) = _read([options.scene], warn=False)
-    with _working(f"explain {options.scene}"):
+    with working(f"explain {options.scene}"):
         found = explanation(scene, rung)
-    return Answer(PASS, found, partial(print_explanation, found))
+    return Answer(PASS, found, partial(explanation_text, found))
 
 
 def publish(options: argparse.Namespace) -> Answer:
     """Tables from stored verdicts."""
-    from verify.cli.terminal import print_lines
     from verify.publish import report
 
     try:
@@ -125,29 +132,24 @@ def publish(options: argparse.Namespace) -> Answer:
         ) from error
     except ValueError as error:
         raise WrongCall(str(error)) from error
-    return Answer(PASS, {"written": written}, partial(print_lines, written))
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
 
 
 # What the verbs share.
 
 
 def _judge(scenes: Sequence[str], solver: str, rungs: Sequence[str]) -> list[Judgement]:
-    from verify.cli.terminal import progress
+    from verify.cli.progress import advancing
     from verify.standard import jobs, run_all
 
     asked = jobs(scenes, solver, rungs)
-    with progress(len(asked)) as finished:
+    with advancing(len(asked)) as finished:
         return run_all(asked, finished)
 
 
-def _working(what: str) -> AbstractContextManager[None]:
-    from verify.cli.terminal import spinner
-
-    return spinner(what)
-
-
-def _show_nothing() -> None:
+def _no_text() -> str:
     """The messages have said it."""
+    return ""
 
 
 def _known_rungs(rungs: Iterable[str]) -> list[str]:
@@ -216,17 +218,12 @@ def _nearest_existing(path: Path) -> Path:
     return next(folder for folder in (path, *path.absolute().parents) if folder.exists())
 
 
-def _write_reports(folder: Path | None, results: Sequence[Judgement]) -> list[str]:
-    """What prevented the reports; a run that took hours is shown in any case."""
-    if folder is None:
-        return []
+def _write_reports(folder: Path, results: Sequence[Judgement]) -> str:
+    """Verdicts, records and tables; returns where they are."""
     from verify.publish import report
 
     verdicts = [verdict for result in results for verdict in result.verdicts]
     records = [result.record for result in results if result.record is not None]
-    try:
-        report.write(folder, verdicts, records)
-        report.publish(folder)
-    except (OSError, ValueError) as error:
-        return [f"expected to write the reports, got {str(error)!r} @ --out {folder}"]
-    return []
+    report.write(folder, verdicts, records)
+    report.publish(folder)
+    return f"wrote {folder / report.TABLES} and {folder / 'data'}"

@@ -88,7 +88,9 @@ def _stored_in_float32(sound: Trajectory) -> Trajectory:
     """Every number passes through a float32 on its way out."""
     single = rung("f32").bits
     with mp.workprec(single):
-        return _mapped(sound, lambda rows: np.array([[+v for v in row] for row in rows], dtype=object))
+        return _mapped(
+            sound, lambda rows: np.array([[+v for v in row] for row in rows], dtype=object)
+        )
 
 
 def _one_nan(sound: Trajectory) -> Trajectory:

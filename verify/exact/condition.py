@@ -27,10 +27,11 @@ from verify.scenes.tensors import Matrix, Vector
 Array = np.ndarray[Any, Any]
 FloatArray = np.ndarray[Any, np.dtype[np.float64]]
 
-# (e, digits): momenta are changed by 10^-e of their size. A perturbed orbit may lie 10^-e beside a
-# degenerate one, where a closed form can lose 3e digits; the Taylor recursion loses none.
-_CLOSED_FORM_DIGITS: Final = ((25, 110), (50, 220), (100, 440))
-_TAYLOR_DIGITS: Final = ((15, 40), (30, 70), (60, 130))
+# (e, digits): momenta are changed by 10^-e of their size. The first attempt is for regular orbits. A
+# perturbed orbit may lie 10^-e beside a degenerate one, where a closed form can lose 3e digits; the
+# Taylor recursion loses none.
+_CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440))
+_TAYLOR_DIGITS: Final = ((12, 32), (30, 70), (60, 130))
 # Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
 _VOLUME_ERROR: Final = mpf("1e-6")
 

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.exact.solution import Solution
+from verify.exact.route import solution
+from verify.exact.solution import NoClosedForm, Solution
 from verify.scenes.scene import Scene
 
 # The motion is known to this many digits more than are printed, so that printing is what limits.
@@ -40,9 +41,17 @@ def document(
         "scene": scene.name,
         "route": found.route,
         "digits": digits,
-        "regime": found.regime,
+        "regime": _regime(scene, found),
         "rows": rows,
     }
+
+
+def _regime(scene: Scene, found: Solution) -> str:
+    """The kind of orbit where it is known, whatever route was taken to the numbers."""
+    try:
+        return solution(scene, "mpmath").regime
+    except NoClosedForm:
+        return found.regime
 
 
 def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:

@@ -69,7 +69,7 @@ class Floor:
 
     def reason(self, attainable: Floats, carried: str) -> str:
         """The arithmetic of the largest floor in one sentence."""
-        steps = int(round(float(np.sum(self.steps_at))))
+        steps = round(float(np.sum(self.steps_at)))
         random_walk = self.unit_roundoff * steps**0.5
         top = float(np.max(attainable))
         growth = top / random_walk
@@ -161,7 +161,8 @@ def _steps_at(elapsed: Sequence[float], steps: int) -> Floats:
     """The steps up to each node since the one before, in proportion to time; never less than one."""
     ends = np.abs(np.array(elapsed))
     shares = np.diff(ends, prepend=0.0) / max(ends[-1], np.finfo(float).tiny)
-    return np.maximum(1.0, shares * max(steps, len(elapsed)))
+    found: Floats = np.maximum(1.0, shares * max(steps, len(elapsed)))
+    return found
 
 
 def _sizes(scene: Scene, truth: Motion, nodes: Sequence[int]) -> dict[str, Floats]:

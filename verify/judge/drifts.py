@@ -86,9 +86,7 @@ def _arc_ends(scene: Scene, held: Mapping[str, Column], digits: int) -> Motion:
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
     """The answer's samples as exact initial states."""
-    columns = {
-        _STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()
-    }
+    columns = {_STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()}
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
 
@@ -99,6 +97,5 @@ def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
 
 def _is_finite(motion: Motion) -> bool:
     return all(
-        not mp.isnan(sum(v - v for v in values.flat))
-        for values in motion.quantities.values()
+        not mp.isnan(sum(v - v for v in values.flat)) for values in motion.quantities.values()
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,9 +70,10 @@ def _ratio(error: Any, attainable: float) -> Any:
     return error / attainable if attainable > 0 else mp.inf + 0 * error
 
 
-def index_of_largest(values: Sequence[Any]) -> int:
+def index_of_largest(values: Iterable[Any]) -> int:
     """The index of the largest value, or of the first NaN."""
-    top = largest(values)
+    found = list(values)
+    top = largest(found)
     if mp.isnan(top):
-        return next(i for i, value in enumerate(values) if mp.isnan(value))
-    return list(values).index(top)
+        return next(i for i, value in enumerate(found) if mp.isnan(value))
+    return found.index(top)

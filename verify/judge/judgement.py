@@ -156,7 +156,11 @@ def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ..
         track=tuple(sorted(scene.track)),
         equations=problem.form.text(),
         parameters={name: str(float(value)) for name, value in problem.parameter.items()},
-        units={"time": str(units.time), "momentum": str(units.momentum), "impulse": str(units.impulse)},
+        units={
+            "time": str(units.time),
+            "momentum": str(units.momentum),
+            "impulse": str(units.impulse),
+        },
         regime=exact.regime,
         route=exact.route,
         truth_digits=digits,
@@ -166,8 +170,6 @@ def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ..
         times=_floats(problem.given.clock.instants),
         gates=gates,
     )
-
-
 
 
 def unjudged(scene: Scene, solver: Solver, rung: Rung, status: Status, why: str) -> Judgement:

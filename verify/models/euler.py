@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from verify.models.algebra import Terms, add, apply, cross, is_absent, minus, times
+from verify.models.algebra import ABSENT, Terms, add, apply, cross, is_absent, minus, times
 
 
 def angular_velocity(H: Terms, K: Sequence[Terms]) -> list[Any]:
@@ -21,18 +21,34 @@ def angular_velocity(H: Terms, K: Sequence[Terms]) -> list[Any]:
 
 
 def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
-    """H' = H x K H + M, body axes: Euler's equations for any symmetric tensor K."""
-    free = _principal_rate(H, K) if _is_diagonal(K) else cross(H, angular_velocity(H, K))
+    """H' = H x K H + M, body axes: Euler's equations for any symmetric tensor K.
+
+    Only differences of K's diagonal enter, because H x H = 0. In a nearly spherical body they are
+    small and, the rounding of a difference of neighbours being exact, known to full precision; written
+    with K itself the rate would be a difference of large numbers.
+    """
+    free = _principal_rate(H, K) if _is_diagonal(K) else cross(H, apply(_deviation(K), H))
     return add(free, M)
 
 
 def _principal_rate(H: Terms, K: Sequence[Terms]) -> list[Any]:
     """H x K H in principal axes, where three products of the state serve for six."""
-    H23, H31, H12 = H[1] * H[2], H[2] * H[0], H[0] * H[1]
+    k1, k2, k3 = (K[i][i] for i in range(3))
     return [
-        minus(times(K[2][2], H23), times(K[1][1], H23)),
-        minus(times(K[0][0], H31), times(K[2][2], H31)),
-        minus(times(K[1][1], H12), times(K[0][0], H12)),
+        times(minus(k3, k2), H[1] * H[2]),
+        times(minus(k1, k3), H[2] * H[0]),
+        times(minus(k2, k1), H[0] * H[1]),
+    ]
+
+
+def _deviation(K: Sequence[Terms]) -> list[list[Any]]:
+    """K - K33 1, a symmetric tensor again: what is left of the body when a sphere is taken away."""
+    return [
+        [
+            ABSENT if i == j == 2 else minus(K[i][j], K[2][2]) if i == j else K[i][j]
+            for j in range(3)
+        ]
+        for i in range(3)
     ]
 
 

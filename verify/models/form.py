@@ -61,7 +61,6 @@ class Form:
         rates = self.equations(named)
         return [rates[name] for name in self.states]
 
-
     def text(self) -> tuple[str, ...]:
         """The equations as they are built, one line a state, zero terms and all that is absent gone."""
         symbols = [Symbol(name) for name in self.states]

@@ -23,8 +23,8 @@ from verify.models.form import (
 )
 from verify.models.units import Units, natural_units
 from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Quaternion, Spin
+from verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from verify.scenes.precision import Rung, floor_log2, power_of_two
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
@@ -74,45 +74,62 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     Raises NotRepresentable where the rounded data are no body or the sample times coincide.
     """
     units = natural_units(scene)
-    rounded = _Rounding(rung)
-    times = tuple(rounded(t / units.time) for t in scene.clock.elapsed)
+    rounding = _Rounding(rung)
+    times = tuple(rounding(t / units.time) for t in scene.clock.elapsed)
     if len(set(times)) < len(times):
         raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
-    clock = Clock(
-        scene.clock.start, tuple(scene.clock.start + t * units.time for t in times)
-    )
-    if isinstance(scene.body, RigidBody):
-        assert isinstance(scene.initial, Spin)
-        numbers, given = _round_euler(scene.body, scene.initial, units, rounded)
-        equations: Equations = euler_equations
-        states = ["H1", "H2", "H3"]
-    else:
-        assert isinstance(scene.initial, Impulse)
-        numbers, given = _round_kirchhoff(scene.body, scene.initial, units, rounded)
-        is_clebsch = given[0].clebsch is not None
-        equations = clebsch_equations if is_clebsch else kirchhoff_equations
-        y3_is_constant = is_clebsch and not scene.body.couple[2]
-        states = ["x1", "x2", "x3", "y1", "y2"] + ([] if y3_is_constant else ["y3"])
-    body, initial = given
-    if "attitude" in scene.track:
-        numbers |= _indexed("e", _unit_quaternion(initial.attitude, rung), start=0)
-        states += ["e0", "e1", "e2", "e3"]
-    if "centre" in scene.track:
-        # The centre is integrated from the origin and its start added exactly afterwards.
-        numbers |= _indexed("c", (Fraction(0),) * 3)
-        states += ["c1", "c2", "c3"]
-    present = tuple(name for name, value in numbers.items() if name not in states and value)
-    parameters = Form(equations, tuple(states), present).entering()
+    start = scene.clock.start
+    clock = Clock(start, tuple(start + t * units.time for t in times))
+    data = _rounded_data(scene, units, rounding)
+    data = _with_frame(data, scene, rung)
+    form = Form(data.equations, data.states, data.present())
+    form = replace(form, parameters=form.entering())
     return Problem(
         scene=scene,
         rung=rung,
-        form=Form(equations, tuple(states), parameters),
+        form=form,
         units=units,
-        parameters=tuple(numbers[name] for name in parameters),
-        initial=tuple(numbers[name] for name in states),
+        parameters=tuple(data.numbers[name] for name in form.parameters),
+        initial=tuple(data.numbers[name] for name in form.states),
         times=times,
-        given=replace(scene, body=body, initial=initial, clock=clock),
+        given=replace(scene, body=data.body, initial=data.initial, clock=clock),
     )
+
+
+@dataclass(frozen=True)
+class _Data:
+    """Rounded numbers by name, which of them are states, and the exact body and start they define."""
+
+    equations: Equations
+    states: tuple[str, ...]
+    numbers: Mapping[str, Fraction]
+    body: Body
+    initial: State
+
+    def present(self) -> tuple[str, ...]:
+        """The parameters that are not zero."""
+        return tuple(n for n, value in self.numbers.items() if n not in self.states and value)
+
+
+def _rounded_data(scene: Scene, units: Units, rounding: _Rounding) -> _Data:
+    if isinstance(scene.body, RigidBody):
+        assert isinstance(scene.initial, Spin)
+        return _round_euler(scene.body, scene.initial, units, rounding)
+    assert isinstance(scene.initial, Impulse)
+    return _round_kirchhoff(scene.body, scene.initial, units, rounding)
+
+
+def _with_frame(data: _Data, scene: Scene, rung: Rung) -> _Data:
+    """The same with attitude and centre among the states, as far as they are tracked."""
+    states, numbers = data.states, dict(data.numbers)
+    if "attitude" in scene.track:
+        numbers |= _indexed("e", _unit_quaternion(data.initial.attitude, rung), start=0)
+        states += ("e0", "e1", "e2", "e3")
+    if "centre" in scene.track:
+        # The centre is integrated from the origin and its start added exactly afterwards.
+        numbers |= _indexed("c", (Fraction(0),) * 3)
+        states += ("c1", "c2", "c3")
+    return replace(data, states=states, numbers=numbers)
 
 
 @dataclass(frozen=True)
@@ -134,9 +151,7 @@ class _Rounding:
         return tuple(self.vector(row, unit) for row in matrix)
 
 
-def _round_euler(
-    body: RigidBody, initial: Spin, units: Units, rounded: _Rounding
-) -> tuple[dict[str, Fraction], tuple[RigidBody, Spin]]:
+def _round_euler(body: RigidBody, initial: Spin, units: Units, rounded: _Rounding) -> _Data:
     """K and H0 are formed exactly and rounded once; the body is K^-1, and omega0 = K H0, exactly."""
     K = rounded.matrix(body.inverse_inertia, units.inverse_inertia)
     H = rounded.vector(tensors.apply(body.inertia, initial.omega), units.momentum)
@@ -147,16 +162,15 @@ def _round_euler(
         )
     physical_K = _rescaled(K, units.inverse_inertia)
     omega = tensors.apply(physical_K, tensors.scaled(units.momentum, H))
-    given = RigidBody(
-        tensors.inverse(physical_K), tensors.scaled(units.momentum / units.time, M)
-    )
+    given = RigidBody(tensors.inverse(physical_K), tensors.scaled(units.momentum / units.time, M))
     numbers = _indexed("H", H) | _upper_triangle("K", K) | _indexed("M", M)
-    return numbers, (given, Spin(omega, _rounded_quaternion(initial.attitude, rounded)))
+    start = Spin(omega, _rounded_quaternion(initial.attitude, rounded))
+    return _Data(euler_equations, ("H1", "H2", "H3"), numbers, given, start)
 
 
 def _round_kirchhoff(
     body: ImmersedBody, initial: Impulse, units: Units, rounded: _Rounding
-) -> tuple[dict[str, Fraction], tuple[ImmersedBody, Impulse]]:
+) -> _Data:
     """The 21 coefficients are rounded once each; that T is the body."""
     A = rounded.matrix(body.linear, units.inverse_mass)
     B = rounded.matrix(body.coupling, units.coupling)
@@ -181,11 +195,15 @@ def _round_kirchhoff(
         tensors.scaled(units.length, rounded.vector(initial.centre, units.length)),
     )
     numbers = _indexed("x", x) | _indexed("y", y) | _indexed("X", X) | _indexed("L", L)
-    if given.clebsch is not None:
-        six = (A[0][0], A[2][2], B[0][0], B[2][2], C[0][0], C[2][2])
-        return numbers | dict(zip(CLEBSCH_NAMES, six, strict=True)), (given, start)
-    numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
-    return numbers, (given, start)
+    states: tuple[str, ...] = ("x1", "x2", "x3", "y1", "y2")
+    if given.clebsch is None:
+        numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
+        return _Data(kirchhoff_equations, (*states, "y3"), numbers, given, start)
+    six = (A[0][0], A[2][2], B[0][0], B[2][2], C[0][0], C[2][2])
+    numbers |= dict(zip(CLEBSCH_NAMES, six, strict=True))
+    if L[2]:
+        states += ("y3",)
+    return _Data(clebsch_equations, states, numbers, given, start)
 
 
 def _rounded_quaternion(quaternion: Quaternion, rounded: _Rounding) -> Quaternion:
@@ -220,4 +238,3 @@ def _entries(letter: str, matrix: Matrix) -> dict[str, Fraction]:
 
 def _upper_triangle(letter: str, matrix: Matrix) -> dict[str, Fraction]:
     return {f"{letter}{i + 1}{j + 1}": matrix[i][j] for i in range(3) for j in range(i, 3)}
-

@@ -9,6 +9,10 @@ from typing import Any
 
 LADDER = ("f32", "f64", "f80", "f128", "mp237")
 
+_LEAST_BITS = 24
+# The numbers of a verdict are doubles: errors of 2^-1000 still are, those of 2^-1075 are not.
+_MOST_BITS = 1000
+
 
 @dataclass(frozen=True)
 class Rung:
@@ -61,10 +65,11 @@ def rung(name: str) -> Rung:
     """The rung of that name; ValueError for a name that is not on the ladder."""
     if name in _IEEE:
         return _IEEE[name]
-    match = re.fullmatch(r"mp([1-9][0-9]{1,4})", name)
-    if match is None or int(match[1]) < 24:
+    match = re.fullmatch(r"mp([1-9][0-9]{1,3})", name)
+    if match is None or not _LEAST_BITS <= int(match[1]) <= _MOST_BITS:
         raise ValueError(
-            f"expected a rung f32, f64, f80, f128 or mpN with 24 <= N <= 99999 bits, got {name!r}"
+            f"expected a rung f32, f64, f80, f128 or mpN with {_LEAST_BITS} <= N <= {_MOST_BITS} "
+            f"bits, got {name!r}"
         )
     return Rung(name, int(match[1]))
 

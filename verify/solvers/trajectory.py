@@ -64,7 +64,7 @@ class Trajectory:
 
 def _rotation_matrix(q: np.ndarray[Any, Any]) -> list[list[Any]]:
     squared_norm = sum(component * component for component in q)
-    return [[entry / squared_norm for entry in row] for row in rotation(q)]
+    return [[entry / squared_norm for entry in row] for row in rotation(list(q))]
 
 
 def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:

@@ -60,7 +60,7 @@ def unavailable(rung: Rung) -> str:
     return ""
 
 
-def _longdouble(value: Fraction) -> np.longdouble:
+def _longdouble(value: Fraction) -> Any:
     return np.ldexp(np.longdouble(value.numerator), 1 - value.denominator.bit_length())
 
 
@@ -103,5 +103,3 @@ def _from_real(value: Any) -> Fraction:
     sign, man, exponent, _ = libmp.from_str(str(value), value.prec, libmp.round_nearest)
     magnitude = Fraction(int(man)) * power_of_two(exponent)
     return -magnitude if sign else magnitude
-
-
