@@ -19,8 +19,8 @@ from mpmath import mp
 
 import verify
 from verify.cli import main, verbs
-from verify.judge.verdict import Status
 from verify.explain import operations
+from verify.judge.verdict import Status
 from verify.models.form import Form
 from verify.models.problem import Problem
 from verify.scenes import library, tensors

@@ -60,12 +60,15 @@ def run_all(
                 futures = {job: pool.submit(_run, job) for job in sorted(asked, key=_expense)}
             _report(futures, finished)
             return [judgement for job in asked for judgement in futures[job].result()]
-        except BrokenProcessPool as error:
-            raise Failed("a worker process was ended from outside (is memory short?)") from error
-        finally:
-            # After the last result nothing is lost by this; before it, nobody waits for the rest.
+        except BaseException as error:
+            # Nobody waits for the rest, and the pool would.
             for worker in set(multiprocessing.active_children()) - others:
                 worker.terminate()
+            if isinstance(error, BrokenProcessPool):
+                raise Failed(
+                    "a worker process was ended from outside (short of memory?)"
+                ) from error
+            raise
 
 
 def available_cores() -> int:

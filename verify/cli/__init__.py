@@ -16,10 +16,11 @@ from verify.cli.streams import have_streams, print_out, say, stdout_reserved
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
-    from verify.cli.arguments import parse
-
-    have_streams()
     try:
+        # Here already, so that an interrupt finds it as it finds the rest.
+        from verify.cli.arguments import parse
+
+        have_streams()
         options = parse(sys.argv[1:] if arguments is None else arguments)
         with stdout_reserved():
             answer = options.act(options)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 PASS, FAIL, WRONG_CALL, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -13,8 +12,7 @@ class WrongCall(Exception):  # noqa: N818 (it names what was done)
     """The call or its input was wrong; the text is the message."""
 
 
-@dataclass(frozen=True)
-class Answer:
+class Answer(NamedTuple):
     """``document`` as JSON or else ``text()`` is for stdout; ``messages`` follow on stderr."""
 
     status: int

@@ -12,7 +12,7 @@ from verify.cli.answer import Answer
 
 _DEFAULT_DIGITS = 30
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
-_RUNG = re.compile(r"(f|mp)\d*")
+_RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 
 
