@@ -12,7 +12,7 @@ import pytest
 from mpmath import libmp, mp, mpf
 
 from verify.exact.route import solution
-from verify.exact.solution import Unsettled
+from verify.exact.solution import SETTLING_STEP_DIGITS, Unsettled
 from verify.exact.taylor import TaylorSolution, arcs
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
@@ -210,7 +210,7 @@ def test_a_quaternion_stands_for_a_direction() -> None:
 def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
     """Two evaluations that are compared share neither precision nor order nor the ratio of both."""
     problem = TaylorSolution(euler(RigidBody(TENSOR)))._problem
-    one, other = problem.grid(digits), problem.grid(digits + 20)
+    one, other = problem.grid(digits), problem.grid(digits + SETTLING_STEP_DIGITS)
     assert one.bits < other.bits
     assert one.order != other.order
     # A step is radius / 2^(bits/order): unequal ratios make unequal steps.

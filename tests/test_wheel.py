@@ -47,7 +47,7 @@ def test_the_wheel_holds_every_file(wheel: Path) -> None:
     """The wheel holds all of verify/, templates and data included, and all of cases/ inside it."""
     expected = {path.as_posix() for path in shipped("verify")}
     expected |= {f"verify/{path.as_posix()}" for path in shipped("cases")}
-    assert "verify/cli.py" in expected
+    assert "verify/cli/__init__.py" in expected
     names = zipfile.ZipFile(wheel).namelist()
     assert {name for name in names if name.startswith("verify/")} == expected
 

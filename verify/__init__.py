@@ -25,3 +25,7 @@ def __getattr__(name: str) -> Any:
     if name in _CALLABLE:
         return import_module(f"verify.{name}")
     raise AttributeError(f"module 'verify' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from mpmath import libmp, mp
 
-from verify.exact.solution import Unsettled
+from verify.exact.solution import SETTLING_STEP_DIGITS, Unsettled
 from verify.scenes import tensors
 from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.tensors import Matrix, Vector
@@ -33,10 +33,9 @@ _Integer: Final = libmp.MPZ
 _GUARD_BITS: Final = 26
 _SLACK_BITS: Final = 12
 # A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
-# orders; the linear cost asks for a few more. Two ratios, taken in turn every twenty digits, so
+# orders; the linear cost asks for a few more. Two ratios, taken in turn every dozen digits, so
 # that two evaluations that are compared differ in order, step and precision.
 _ORDERS_PER_BIT: Final = (0.36, 0.40)
-_DIGITS_PER_TURN: Final = 20
 _MOST_STEPS: Final = 1_000_000
 _PILOT_BITS: Final = 64
 
@@ -119,7 +118,7 @@ class Problem:
         )
         slack = _SLACK_BITS + strong
         bits = ceil(digits * _BITS_PER_DIGIT) + _GUARD_BITS + strong + small
-        return Grid(bits, slack, _ORDERS_PER_BIT[digits // _DIGITS_PER_TURN % 2])
+        return Grid(bits, slack, _ORDERS_PER_BIT[digits // SETTLING_STEP_DIGITS % 2])
 
     def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:
         """The state in the scene's own units, exactly, whatever the ambient precision."""
@@ -164,13 +163,15 @@ def _combination(coefficients: Sequence[Fraction]) -> Combination:
 # The recursion.
 
 
-def march(problem: Problem, times: Sequence[Fraction], grid: Grid) -> dict[Fraction, list[int]]:
-    """The states at these times, which lie on one side of 0 and go away from it."""
-    if not times:
-        return {}
+def march(
+    problem: Problem, times: Sequence[Fraction], grid: Grid, width: Fraction
+) -> dict[Fraction, list[int]]:
+    """The states at these times, which lie on one side of 0 and go away from it.
+
+    ``width`` is a guess of the first step, with the sign of the times: `first_width` makes one.
+    """
     unit = power_of_two(problem.units.time)
     state, now, last = grid.integers(problem.start), Fraction(0), times[-1] / unit
-    width = _first_width(problem, last, grid)
     reached: dict[Fraction, list[int]] = {}
     steps, pending = 0, list(times[::-1])
     while pending:
@@ -249,8 +250,9 @@ def _log2_reach(series: list[list[int]], moving: int, grid: Grid) -> float:
     return reach
 
 
-def _first_width(problem: Problem, span: Fraction, grid: Grid) -> Fraction:
-    """A first guess of the step, from short series: no longer than the span, whose sign it has."""
+def first_width(problem: Problem, last: Fraction, grid: Grid) -> Fraction:
+    """A first guess of the step towards a time, from short series; never beyond that time."""
+    span = last / power_of_two(problem.units.time)
     bits = grid.slack + _PILOT_BITS
     pilot = Grid(bits, grid.slack, grid.orders_per_bit)
     start = pilot.integers(problem.start)

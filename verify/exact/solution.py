@@ -19,9 +19,11 @@ Quantities = Mapping[str, np.ndarray[Any, Any]]
 
 NO_CLOSED_FORM: Final = "no closed form"
 
-_FIRST_GUARD_DIGITS = 12
-_STEP_DIGITS = 20
-_ATTEMPTS = 12
+_FIRST_GUARD_DIGITS = 3
+# Two evaluations that are compared differ by this much in precision; each route makes sure that they
+# differ in more than that (the Taylor recursion in order and step) and never coincide.
+SETTLING_STEP_DIGITS: Final = 12
+_ATTEMPTS = 24
 
 
 class NoClosedForm(Exception):
@@ -54,25 +56,25 @@ class Solution(ABC):
         """The motion to ``digits`` significant digits of every vector and matrix.
 
         Two evaluations at precisions (for the Taylor route also orders and steps) that differ by
-        twenty digits must agree to the digits asked for; until they do, both precisions rise. The
+        a dozen digits must agree to the digits asked for; until they do, both precisions rise. The
         difference is the error of the poorer one; the better one is returned.
 
-        Raises Unsettled when a dozen rises do not suffice.
+        Raises Unsettled when two dozen rises do not suffice.
         """
         working = digits + _FIRST_GUARD_DIGITS
         poorer = self.evaluate(elapsed, working)
         for _ in range(_ATTEMPTS):
-            better = self.evaluate(elapsed, working + _STEP_DIGITS)
-            with mp.workdps(working + _STEP_DIGITS):
+            better = self.evaluate(elapsed, working + SETTLING_STEP_DIGITS)
+            with mp.workdps(working + SETTLING_STEP_DIGITS):
                 radius = _largest_difference(poorer, better)
                 worst = max(radius, default=mpf(0))
                 # Written so that a NaN is not agreement.
                 if worst <= mpf(10) ** -digits:
                     return Motion(better, radius)
-            poorer, working = better, working + _STEP_DIGITS
+            poorer, working = better, working + SETTLING_STEP_DIGITS
         raise Unsettled(
-            f"two evaluations of the exact solution at {working - _STEP_DIGITS} and {working} digits "
-            f"do not agree to {digits} digits"
+            f"two evaluations of the exact solution at {working - SETTLING_STEP_DIGITS} and {working} "
+            f"digits do not agree to {digits} digits"
         )
 
 

@@ -13,7 +13,16 @@ from typing import Any, final
 
 import numpy as np
 
-from verify.exact.recursion import Equations, Polynomial, Problem, Units, exponent, march, problem
+from verify.exact.recursion import (
+    Equations,
+    Polynomial,
+    Problem,
+    Units,
+    exponent,
+    first_width,
+    march,
+    problem,
+)
 from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
@@ -45,8 +54,9 @@ class TaylorSolution(Solution):
         later = sorted({t for t in elapsed if t >= 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         states: dict[Fraction, list[int]] = {}
-        for times in (later, earlier):
-            states.update(march(self._problem, times, grid))
+        for times in filter(None, (later, earlier)):
+            width = first_width(self._problem, times[-1], grid)
+            states.update(march(self._problem, times, grid, width))
         return _quantities(self.scene, [self._problem.reals(states[t], grid) for t in elapsed])
 
     @cached_property
@@ -75,11 +85,17 @@ class _Arcs(Solution):
     regime = NO_CLOSED_FORM
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        ends = [
-            TaylorSolution(replace(self.scene, initial=start)).evaluate([span], digits)
-            for start, span in zip(self.starts, elapsed, strict=True)
-        ]
-        return {name: np.concatenate([end[name] for end in ends]) for name in ends[0]}
+        ends: list[list[Any]] = []
+        width: Fraction | None = None
+        for start, span in zip(self.starts, elapsed, strict=True):
+            posed = _problem(replace(self.scene, initial=start))
+            grid = posed.grid(digits)
+            guess = width or first_width(posed, span, grid)
+            # The arcs follow each other, so that the next one goes on at the same pace; an arc
+            # of no length says nothing about it, not even the direction.
+            width = guess if span else None
+            ends.append(posed.reals(march(posed, [span], grid, guess)[span], grid))
+        return _quantities(self.scene, ends)
 
 
 # The equations.

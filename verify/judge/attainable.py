@@ -120,7 +120,7 @@ def _floor(
         unit_roundoff=float(unit_roundoff),
         samples=len(elapsed),
         nodes=nodes,
-        steps_at=_steps_at([float(elapsed[k]) for k in nodes], steps),
+        steps_at=_steps_at([elapsed[k] for k in nodes], steps),
         sizes=_sizes(given, truth, nodes),
         orbit=_orbit(conditioned, tuple(conditioned.clock.elapsed[k] for k in nodes)),
     )
@@ -157,10 +157,10 @@ def _nodes(samples: int) -> tuple[int, ...]:
     return tuple(sorted({round(k * (samples - 1) / max(count - 1, 1)) for k in range(count)}))
 
 
-def _steps_at(elapsed: Sequence[float], steps: int) -> Floats:
+def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:
     """The steps up to each node since the one before, in proportion to time; never less than one."""
-    ends = np.abs(np.array(elapsed))
-    shares = np.diff(ends, prepend=0.0) / max(ends[-1], np.finfo(float).tiny)
+    span = elapsed[-1] or Fraction(1)
+    shares = np.diff([float(t / span) for t in elapsed], prepend=0.0)
     found: Floats = np.maximum(1.0, shares * max(steps, len(elapsed)))
     return found
 

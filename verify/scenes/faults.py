@@ -26,6 +26,10 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
         self.faults = tuple(faults)
         super().__init__("\n".join(self.faults))
 
+    def __reduce__(self) -> tuple[type[Refused], tuple[tuple[str, ...]]]:
+        # An exception is rebuilt from its text by default, and the text is not its argument.
+        return Refused, (self.faults,)
+
 
 class Faults:
     """The faults found so far in one scene, in the order of the reading."""

@@ -33,7 +33,8 @@ _CONSTANT = (Regime.REST, Regime.SPHERICAL, Regime.STEADY)
 
 # Some hundred roundings in a row, and the constants in the bounds below.
 _OWN_GUARD_DIGITS = 8
-# Working precisions are multiples of this, so that batches of samples share one set-up.
+# Working precisions are multiples of this, so that batches of samples share one set-up; it is less
+# than SETTLING_STEP_DIGITS, so that two evaluations that are compared never share theirs.
 _PRECISION_STEP = 10
 
 

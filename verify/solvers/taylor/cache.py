@@ -7,6 +7,7 @@ processor does not have. The folder's name does.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import platform
@@ -15,6 +16,8 @@ from pathlib import Path
 
 import heyoka as hy
 from platformdirs import user_cache_path
+
+_SQLITE = b"SQLite format 3\0"
 
 
 def use_own_cache() -> None:
@@ -28,6 +31,7 @@ def use_own_cache() -> None:
     parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
     folder = parent / processor_key()
     if _is_writable(folder):
+        _remove_if_broken(folder / "cache.db")
         hy.llvm_state.set_diskcache_path(str(folder))
     else:
         hy.llvm_state.set_diskcache_enabled(False)
@@ -48,6 +52,15 @@ def _processor_features() -> str:
         return f"{platform.processor()} {platform.platform()}"
     wanted = ("model name", "cpu family", "model\t", "flags", "Features", "CPU part")
     return "\n".join(sorted({line for line in lines if line.startswith(wanted)}))
+
+
+def _remove_if_broken(database: Path) -> None:
+    """heyoka leaves a file that is no database where it is, and compiles everything anew for ever."""
+    with contextlib.suppress(OSError):
+        with database.open("rb") as file:
+            header = file.read(len(_SQLITE))
+        if header and header != _SQLITE:
+            database.unlink()
 
 
 def _is_writable(folder: Path) -> bool:
