@@ -19,7 +19,6 @@ from mpmath import mp
 
 import verify
 from verify.cli import main, verbs
-from verify.explain import operations
 from verify.judge.verdict import Status
 from verify.models.form import Form
 from verify.models.problem import Problem
@@ -391,7 +390,7 @@ def test_the_cost_counts_each_operation_once() -> None:
         return {"a": a * k * b - a * k, "b": (a * k * b) / b}
 
     form = Form(equations, ("a", "b"), ("k",))
-    assert operations(form) == {"sums": 1, "products": 2, "quotients": 1}
+    assert form.operations() == {"sums": 1, "products": 2, "quotients": 1}
 
 
 # What is wrong.

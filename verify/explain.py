@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from verify.judge.verdict import Verdict
-from verify.models.form import Form
 from verify.models.problem import NotRepresentable, pose
 from verify.run import run
 from verify.scenes.precision import rung as rung_named
@@ -58,64 +56,9 @@ def _gate(verdict: Verdict) -> dict[str, Any]:
     return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
 
 
-# What one evaluation of the equations costs.
-
-
 def _cost(scene: Scene, rung: str) -> dict[str, int | None]:
     try:
         form = pose(scene, rung_named(rung)).form
     except NotRepresentable:
         return dict.fromkeys(("states", "sums", "products", "quotients"))
-    return {"states": len(form.states), **operations(form)}
-
-
-def operations(form: Form) -> dict[str, int]:
-    """The distinct sums, products and quotients of one evaluation of the rates."""
-    done = _done(form)
-    return {
-        "sums": sum(term.operation in "+-" for term in done),
-        "products": sum(term.operation == "*" for term in done),
-        "quotients": sum(term.operation == "/" for term in done),
-    }
-
-
-def _done(form: Form) -> set[_Term]:
-    """Every operation of the rates, once however often it is written."""
-    rates = form.rates(
-        [_Term(name) for name in form.states], [_Term(name) for name in form.parameters]
-    )
-    done: set[_Term] = set()
-    left = [rate for rate in rates if isinstance(rate, _Term)]
-    while left:
-        term = left.pop()
-        if term.operation and term not in done:
-            done.add(term)
-            left.extend(operand for operand in term.operands if isinstance(operand, _Term))
-    return done
-
-
-@dataclass(frozen=True)
-class _Term:
-    """A number that remembers how it was made; equal terms are one."""
-
-    name: str = ""
-    operation: str = ""
-    operands: tuple[Any, ...] = ()
-
-    def __add__(self, other: Any) -> _Term:
-        return _Term("", "+", (self, other))
-
-    def __sub__(self, other: Any) -> _Term:
-        return _Term("", "-", (self, other))
-
-    def __neg__(self) -> _Term:
-        return _Term("", "-", (self,))
-
-    def __mul__(self, other: Any) -> _Term:
-        return _Term("", "*", (self, other))
-
-    def __rmul__(self, other: Any) -> _Term:
-        return _Term("", "*", (other, self))
-
-    def __truediv__(self, other: Any) -> _Term:
-        return _Term("", "/", (self, other))
+    return {"states": len(form.states), **form.operations()}

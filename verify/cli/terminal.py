@@ -185,7 +185,7 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     if found["parameters"]:
         _line(console, "with, shown as doubles,")
         for name, value in found["parameters"].items():
-            _line(console, f"  {name:4} {value}")
+            _line(console, f"  {name:4} {float.fromhex(value)!r}")
     _line(console, "in units (exact powers of two)")
     _line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
     _line(console)

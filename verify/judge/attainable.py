@@ -67,16 +67,15 @@ class Floor:
         drift = self.unit_roundoff * np.sqrt(np.cumsum(self.steps_at * injected))
         return self._at_samples(drift / float(scale))
 
-    def reason(self, attainable: Floats, carried: str) -> str:
-        """The arithmetic of the largest floor in one sentence."""
-        steps = round(float(np.sum(self.steps_at)))
-        random_walk = self.unit_roundoff * steps**0.5
-        top = float(np.max(attainable))
-        growth = top / random_walk
+    def reason(self, attainable: Floats, sample: int, carried: str) -> str:
+        """The arithmetic of the floor at one sample, in one sentence."""
+        steps = round(float(np.sum(self.steps_at[: np.searchsorted(self.nodes, sample) + 1])))
+        floor_there = float(attainable[sample])
+        growth = floor_there / (self.unit_roundoff * steps**0.5)
         what = "the orbit's transition matrix" if carried == "orbit" else "the gradient"
         return (
             f"attainable = u sqrt(N) x growth = {self.unit_roundoff:.2g} x sqrt({steps}) x "
-            f"{growth:.3g} = {top:.2g}: one rounding a step, carried by {what}"
+            f"{growth:.3g} = {floor_there:.2g}: one rounding a step, carried by {what}"
         )
 
     def _of_part(self, part: str) -> Floats:

@@ -15,12 +15,12 @@ from verify.exact.solution import Solution, Unsettled
 from verify.judge.attainable import Floats, Floor, floor
 from verify.judge.drifts import drifts
 from verify.judge.errors import Errors, state_errors
-from verify.judge.gates import FACTOR, judge
+from verify.judge.gates import FACTOR, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import Problem
-from verify.scenes.precision import Rung
+from verify.scenes.precision import Rung, hexadecimal
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Solver
 from verify.solvers.trajectory import Outcome, Trajectory
@@ -112,7 +112,8 @@ def _scale(errors: Errors) -> Any:
 
 
 def _verdict(run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str) -> Verdict:
-    finding = judge(errors, attainable, base.reason(attainable, carried))
+    reason = base.reason(attainable, index_of_largest(errors.values), carried)
+    finding = judge(errors, attainable, reason)
     instants = run.problem.given.clock.instants
     worst = finding.worst
     return run.verdict(
@@ -135,10 +136,14 @@ def _gate(errors: Errors, attainable: Floats) -> GateRecord:
     return GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=_floats(errors.values),
-        attainable=_floats(attainable),
+        errors=_four_digits(errors.values),
+        attainable=_four_digits(attainable),
         truth_radius=max(_floats(errors.truth_radius)),
     )
+
+
+def _four_digits(values: Iterable[Any]) -> tuple[float, ...]:
+    return tuple(float(f"{float(value):.4g}") for value in values)
 
 
 def _floats(values: Iterable[Any]) -> tuple[float, ...]:
@@ -155,7 +160,7 @@ def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ..
         rung=problem.rung.name,
         track=tuple(sorted(scene.track)),
         equations=problem.form.text(),
-        parameters={name: str(float(value)) for name, value in problem.parameter.items()},
+        parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
         units={
             "time": str(units.time),
             "momentum": str(units.momentum),

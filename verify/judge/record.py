@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class GateRecord:
-    """The samples and the arithmetic of one gate. ``errors`` and ``bounds`` stand sample by sample."""
+    """The samples of one gate, ``errors`` and ``attainable``, to the four digits a picture needs."""
 
     quantity: str
     unit: str

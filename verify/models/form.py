@@ -15,7 +15,7 @@ from verify.models.algebra import ABSENT
 from verify.models.euler import angular_velocity, momentum_rate
 from verify.models.frame import attitude_rate, centre_rate
 from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
-from verify.models.symbol import Symbol
+from verify.models.symbol import Symbol, operations
 
 CLEBSCH_NAMES = ("p", "p'", "q", "q'", "r", "r'")
 
@@ -62,10 +62,17 @@ class Form:
         return [rates[name] for name in self.states]
 
     def text(self) -> tuple[str, ...]:
-        """The equations as they are built, one line a state, zero terms and all that is absent gone."""
-        symbols = [Symbol(name) for name in self.states]
-        rates = self.rates(symbols, [Symbol(name) for name in self.parameters])
-        return tuple(f"{name}' = {rate}" for name, rate in zip(self.states, rates, strict=True))
+        """The equations as they are built, a line for each state: what is absent is not there."""
+        rates = zip(self.states, self._symbolic(), strict=True)
+        return tuple(f"{name}' = {rate}" for name, rate in rates)
+
+    def operations(self) -> dict[str, int]:
+        """The distinct sums, products and quotients of one evaluation of the rates."""
+        return operations(self._symbolic())
+
+    def _symbolic(self) -> list[Any]:
+        states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
+        return self.rates(list(states), list(parameters))
 
     def entering(self) -> tuple[str, ...]:
         """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""

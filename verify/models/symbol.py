@@ -1,45 +1,72 @@
-"""A symbol that writes down what is done to it: the equations printed are the equations built."""
+"""A symbol that remembers what is done to it: the equations printed and priced are those built."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-_SUM, _PRODUCT, _ATOM = 1, 2, 3
+_STRENGTH = {"+": 1, "-": 1, "*": 2, "/": 2, "": 3}
 
 
 @dataclass(frozen=True)
 class Symbol:
-    """Text of an expression, with the binding strength of its outermost operation."""
+    """A name, or an operation (+ - * /) on one or two operands; equal expressions are equal."""
 
-    text: str
-    strength: int = _ATOM
-
-    def __str__(self) -> str:
-        return self.text
+    name: str = ""
+    operation: str = ""
+    operands: tuple[Any, ...] = ()
 
     def __add__(self, other: Any) -> Symbol:
-        return Symbol(f"{self} + {_of(other)}", _SUM)
+        return Symbol("", "+", (self, other))
 
     def __sub__(self, other: Any) -> Symbol:
-        return Symbol(f"{self} - {_of(other).within(_PRODUCT)}", _SUM)
+        return Symbol("", "-", (self, other))
 
     def __neg__(self) -> Symbol:
-        return Symbol(f"-{self.within(_PRODUCT)}", _SUM)
+        return Symbol("", "-", (self,))
 
     def __mul__(self, other: Any) -> Symbol:
-        return Symbol(f"{self.within(_PRODUCT)} {_of(other).within(_PRODUCT)}", _PRODUCT)
+        return Symbol("", "*", (self, other))
 
     def __rmul__(self, other: Any) -> Symbol:
-        return _of(other) * self
+        return Symbol("", "*", (other, self))
 
     def __truediv__(self, other: Any) -> Symbol:
-        return Symbol(f"{self.within(_PRODUCT)}/{_of(other).within(_ATOM)}", _PRODUCT)
+        return Symbol("", "/", (self, other))
 
-    def within(self, strength: int) -> str:
-        """The text, in brackets if it binds less than its surroundings."""
-        return self.text if self.strength >= strength else f"({self.text})"
+    def __str__(self) -> str:
+        if not self.operation:
+            return self.name
+        if len(self.operands) == 1:
+            return f"-{_within(self.operands[0], _STRENGTH['*'])}"
+        left, right = self.operands
+        if self.operation == "+":
+            return f"{left} + {right}"
+        if self.operation == "-":
+            return f"{left} - {_within(right, _STRENGTH['*'])}"
+        if self.operation == "*":
+            return f"{_within(left, _STRENGTH['*'])} {_within(right, _STRENGTH['*'])}"
+        return f"{_within(left, _STRENGTH['*'])}/{_within(right, _STRENGTH[''])}"
 
 
-def _of(value: Any) -> Symbol:
-    return value if isinstance(value, Symbol) else Symbol(str(value))
+def _within(operand: Any, strength: int) -> str:
+    """The text, in brackets if it binds less than its surroundings."""
+    own = _STRENGTH[operand.operation] if isinstance(operand, Symbol) else _STRENGTH[""]
+    return str(operand) if own >= strength else f"({operand})"
+
+
+def operations(expressions: Iterable[Any]) -> dict[str, int]:
+    """How many distinct sums, products and quotients these expressions take to evaluate."""
+    done: set[Symbol] = set()
+    left = [expression for expression in expressions if isinstance(expression, Symbol)]
+    while left:
+        symbol = left.pop()
+        if symbol.operation and symbol not in done:
+            done.add(symbol)
+            left.extend(operand for operand in symbol.operands if isinstance(operand, Symbol))
+    return {
+        "sums": sum(symbol.operation in "+-" for symbol in done),
+        "products": sum(symbol.operation == "*" for symbol in done),
+        "quotients": sum(symbol.operation == "/" for symbol in done),
+    }

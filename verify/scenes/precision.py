@@ -85,6 +85,12 @@ def floor_log2(value: Fraction) -> int:
     return estimate if power_of_two(estimate) <= size else estimate - 1
 
 
+def hexadecimal(value: Fraction) -> str:
+    """A dyadic rational as an exact hexadecimal float, 0x<integer>p<exponent>, as C reads it."""
+    sign = "-" if value < 0 else ""
+    return f"{sign}0x{abs(value.numerator):x}p{1 - value.denominator.bit_length():+d}"
+
+
 def held_exactly(value: Fraction) -> Any:
     """The mpf that equals a dyadic rational, whatever the ambient precision of mpmath."""
     from mpmath import libmp, mp
