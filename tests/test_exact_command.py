@@ -323,3 +323,11 @@ def test_a_person_sees_the_numbers_that_a_program_reads(
         assert row["radius"] in shown
         for line in row["attitude"]:
             assert re.search(r" +".join(re.escape(text) for text in line), shown)
+
+
+def test_the_separatrix_is_printed_at_any_time(capsys: pytest.CaptureFixture[str]) -> None:
+    """At t = 10^9 two components are e^(-3 10^8): their digits are printed, not their rational."""
+    assert main(["exact", "euler/separatrix", "--at", "1e9", "--digits", "20", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert row["omega"][0].endswith("e-132974985")
+    assert len(row["omega"][0].split("e")[0].replace(".", "")) == 20

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from mpmath import mp
 
 from verify.exact.route import solution
 from verify.exact.solution import NoClosedForm, Solution
@@ -17,6 +18,8 @@ from verify.scenes.scene import Scene
 _SPARE_DIGITS = 3
 # Below 10^-5, and where a number would need zeros that are no digits of it, an exponent is written.
 _LEAST_PLAIN_EXPONENT = -5
+# In bits. Beyond it the digits come from mpmath, whose own rounding is a thousandth of the last one.
+_LARGEST_RATIONAL = 100_000
 
 
 def document(
@@ -73,7 +76,15 @@ def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) 
 def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
     if values.ndim > 1:
         return [_text(row, digits) for row in values]
-    return [decimal_text(_rational(value), digits) for value in values]
+    return [_entry(value, digits) for value in values]
+
+
+def _entry(value: Any, digits: int) -> str:
+    """The entry rounded once; on a separatrix it can be e^(-10^9), whose exact rational fills memory."""
+    if value and abs(mp.mag(value)) > _LARGEST_RATIONAL:
+        with mp.workdps(digits + _SPARE_DIGITS):
+            return str(mp.nstr(value, digits, strip_zeros=False))
+    return decimal_text(_rational(value), digits)
 
 
 def _rational(value: Any) -> Fraction:

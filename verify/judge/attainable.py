@@ -125,7 +125,7 @@ def _floor(
     )
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def _orbit(scene: Scene, elapsed: tuple[Fraction, ...]) -> Transition:
     return transition(scene, elapsed)
 

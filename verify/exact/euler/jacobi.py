@@ -46,9 +46,9 @@ def closed_form(scene: Scene) -> Solution:
     if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
         raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
     if not scene.body.is_free:
-        raise NoClosedForm("no closed form is implemented for a moment that is not zero")
+        raise NoClosedForm("a moment acts on the body")
     if "attitude" in scene.track:
-        raise NoClosedForm("no closed form is implemented for the attitude")
+        raise NoClosedForm("the closed form of the attitude is not built")
     return FreeRotation(FreeSpin(scene.body.inertia, scene.initial.omega))
 
 
