@@ -257,3 +257,38 @@ def test_callback_of_the_wrong_shape_or_that_raises_is_not_scored() -> None:
 
     (raised,) = run("euler/generic", Callback(broken), "f64").verdicts
     assert "ZeroDivisionError: by zero" in raised.because
+
+
+@pytest.mark.parametrize(
+    "value",
+    [0.1, 3, np.float32(0.1), np.longdouble(1) / 3, np.int64(-7), mp.mpf("0.3"), Fraction(5, 8)],
+)
+def test_callback_numbers_are_taken_exactly(value: object) -> None:
+    """Whatever number type a callable answers in, the judge sees that number and no other."""
+    problem = pose(load("euler/generic"), rung("f64"))
+    states = np.full((101, 3), value, dtype=object)
+    held = Callback(lambda _: states).solve(problem).quantities["omega"][50, 1]
+    exact = int(value) if isinstance(value, np.integer) else value
+    assert Fraction(*held.as_integer_ratio()) == Fraction(*exact.as_integer_ratio())
+
+
+@pytest.mark.parametrize("value", ["1.5", None, 1j, True])
+def test_callback_answer_that_is_no_number_is_misshapen(value: object) -> None:
+    """Text, None, complex numbers and booleans are refused with what was got."""
+    states = np.full((101, 3), value, dtype=object)
+    (verdict,) = run("euler/generic", Callback(lambda _: states), "f64").verdicts
+    assert verdict.verdict is Status.FAIL
+    assert "expected real numbers, got" in verdict.because
+
+
+def test_zero_quaternion_fails() -> None:
+    """A callable that leaves the attitude at zero has no attitude, and fails its gate by NaN."""
+
+    def without_attitude(problem: Problem) -> object:
+        sound = Taylor().solve(problem).quantities
+        return np.hstack([sound["omega"], 0 * sound["quaternion"]])
+
+    verdicts = run("euler/with-attitude", Callback(without_attitude), "f64").verdicts
+    found = {v.quantity: v.verdict for v in verdicts}
+    assert found["attitude"] is Status.FAIL
+    assert found["omega"] is Status.PASS

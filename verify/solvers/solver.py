@@ -5,6 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
+from itertools import accumulate, pairwise
+from numbers import Rational
 from time import perf_counter
 from typing import Any, final
 
@@ -12,8 +15,10 @@ import numpy as np
 from mpmath import mp
 
 from verify.models.problem import Problem
-from verify.scenes.precision import Rung
+from verify.scenes.precision import Rung, held_exactly
 from verify.solvers.trajectory import Outcome, Trajectory
+
+_RATIONAL_BITS = 4000
 
 
 class Solver(ABC):
@@ -41,7 +46,7 @@ class Callback(Solver):
     """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
-    is. Any real number that is a Python float, an int, an mpf or a NumPy scalar is taken exactly.
+    is. A Python or NumPy number, a Fraction or an mpf is taken exactly.
     """
 
     answer: Callable[[Problem], Any]
@@ -60,11 +65,15 @@ class Callback(Solver):
         if states.shape != expected:
             detail = f"expected states of shape {expected}, got {states.shape}"
             return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
-        held = np.array([[_held(v) for v in row] for row in states], dtype=object)
-        quantities, left = {}, 0
-        for quantity, width in layout:
-            quantities[quantity] = held[:, left : left + width]
-            left += width
+        try:
+            held = np.array([[_held(v) for v in row] for row in states], dtype=object)
+        except TypeError as error:
+            return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
+        ends = list(accumulate((width for _, width in layout), initial=0))
+        quantities = {
+            name: held[:, left:right]
+            for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
+        }
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
 
 
@@ -82,14 +91,22 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
 
 
 def _held(value: Any) -> Any:
-    """The mpf equal to a number; NaN and infinity stay what they are, and fail every gate."""
+    """The mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
+
+    A rational that is no binary fraction is rounded to 4000 bits. Raises TypeError for what is no
+    real number.
+    """
     if isinstance(value, mp.mpf):
         return value
-    if isinstance(value, (np.floating, float)):
-        if not np.isfinite(value):
-            return mp.mpf(float(value))
+    if isinstance(value, np.floating | float) and not np.isfinite(value):
+        return mp.mpf(float(value))
+    if isinstance(value, Rational) and not isinstance(value, bool):
+        numerator, denominator = int(value.numerator), int(value.denominator)
+    elif isinstance(value, np.floating | float):
         numerator, denominator = value.as_integer_ratio()
     else:
-        numerator, denominator = int(value), 1
-    with mp.workprec(max(numerator.bit_length(), 2)):
-        return mp.ldexp(mp.mpf(numerator), 1 - denominator.bit_length())
+        raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
+    if denominator & (denominator - 1):
+        with mp.workprec(_RATIONAL_BITS):
+            return mp.mpf(numerator) / denominator
+    return held_exactly(Fraction(numerator, denominator))

@@ -64,6 +64,9 @@ class Trajectory:
 
 def _rotation_matrix(q: np.ndarray[Any, Any]) -> list[list[Any]]:
     squared_norm = sum(component * component for component in q)
+    if squared_norm == 0:
+        # No attitude at all: NaN fails every gate that looks at it.
+        return [[mp.nan] * 3 for _ in range(3)]
     return [[entry / squared_norm for entry in row] for row in rotation(list(q))]
 
 
