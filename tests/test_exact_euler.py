@@ -19,6 +19,7 @@ from verify.exact.solution import NoClosedForm
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Clock, Spin
+from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
 
@@ -673,3 +674,25 @@ def test_evaluation_is_repeatable():
     solution.evaluate([LONG], 70)
     assert (first == solution.evaluate(times, 40)["omega"]).all()
     assert (first == FreeRotation(solution.spin).evaluate(times, 40)["omega"]).all()
+
+
+@pytest.mark.parametrize("name", ["generic", "about-max-axis", "tennis-racket", "axisymmetric"])
+def test_motion_recurs_after_the_period(name: str) -> None:
+    """omega(t + P) = omega(t) for the period P among the elements, and m + m' = 1."""
+    scene = load(f"euler/{name}")
+    found = closed_form(scene)
+    elements = found.elements(50)
+    with mp.workdps(60):
+        period = Fraction(*elements["period"].as_integer_ratio())
+        now, later = found.motion([Fraction(3), Fraction(3) + period], 45)["omega"]
+        # The period is known to 50 digits and omega changes by less than ten of itself in unit time.
+        assert distance(later, now) <= mpf(10) ** -43
+        if "m" in elements:
+            assert abs(elements["m"] + elements["m_prime"] - 1) <= mpf(10) ** -48
+
+
+def test_separatrix_has_no_period() -> None:
+    """On the separatrix m is 1 and there is a rate but no period."""
+    elements = closed_form(load("euler/separatrix")).elements(30)
+    assert "period" not in elements
+    assert elements["m_prime"] == 0

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+from mpmath import mp
+
+from verify.exact.route import solution
+from verify.exact.solution import NoClosedForm, Orbital
 from verify.judge.verdict import Verdict
 from verify.models.problem import NotRepresentable, pose
 from verify.run import run
@@ -11,6 +16,7 @@ from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 
+_DIGITS = 15
 _FROM_RECORD = (
     *("equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff"),
 )
@@ -42,9 +48,25 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
             "evaluations": first.evaluations,
             "seconds": first.seconds,
         },
+        "orbit": _elements(scene),
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in found.verdicts],
     }
+
+
+def _elements(scene: Scene) -> dict[str, str]:
+    """Period, rate, parameter m = k^2 and 1 - m of the impulses' or omega's orbit, as decimals.
+
+    They belong to the scene's own numbers, and exist where there is a closed form; attitude and
+    centre do not change them.
+    """
+    try:
+        exact = solution(replace(scene, track=frozenset()), "mpmath")
+    except NoClosedForm:
+        return {}
+    if not isinstance(exact, Orbital):
+        return {}
+    return {name: str(mp.nstr(v, _DIGITS)) for name, v in exact.elements(_DIGITS).items()}
 
 
 def _gate(verdict: Verdict) -> dict[str, Any]:

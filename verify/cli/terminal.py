@@ -190,6 +190,8 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     _line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
     _line(console)
     _line(console, Text("orbit", "bold"), f"  {found['regime']}")
+    for name, value in found["orbit"].items():
+        _line(console, f"  {name:8} {value}")
     truth = f"  route {found['route']}, {found['truth_digits']} digits"
     _line(console, Text("truth", "bold"), truth)
     order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0

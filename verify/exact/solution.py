@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any, Final, final
+from typing import Any, Final, Protocol, final, runtime_checkable
 
 import numpy as np
 from mpmath import mp, mpf
@@ -24,6 +24,15 @@ _FIRST_GUARD_DIGITS = 3
 # differ in more than that (the Taylor recursion in order and step) and never coincide.
 SETTLING_STEP_DIGITS: Final = 12
 _ATTEMPTS = 24
+
+
+@runtime_checkable
+class Orbital(Protocol):
+    """A closed form that knows the numbers of its orbit."""
+
+    def elements(self, digits: int) -> dict[str, mpf]:
+        """``period``, ``rate``, ``m`` and ``m_prime``, as far as the orbit has them."""
+        ...
 
 
 class NoClosedForm(Exception):

@@ -76,12 +76,19 @@ class FreeRotation(Solution):
 
     def period(self, digits: int) -> mpf | None:
         """The period of omega in body axes, to about ``digits`` digits; None where it has none."""
+        return self.elements(digits).get("period")
+
+    def elements(self, digits: int) -> dict[str, mpf]:
+        """The numbers of the orbit: period, rate lam, parameter m = k^2 and m_prime = 1 - k^2."""
         with mp.workdps(digits + math.ceil(guard_digits(self.spin, Fraction(0)))):
+            if self.spin.regime in _CONSTANT:
+                return {}
             if self.spin.regime is Regime.AXISYMMETRIC:
-                return abs(2 * mp.pi / Precession(self.spin).rate)
-            if self.spin.regime in (Regime.MIN_AXIS, Regime.MAX_AXIS):
-                return Orbit(self.spin).period
-            return None
+                rate = abs(Precession(self.spin).rate)
+                return {"period": 2 * mp.pi / rate, "rate": rate}
+            orbit = Orbit(self.spin)
+            found = {"rate": orbit.rate, "m": orbit.m, "m_prime": orbit.m_prime}
+            return found if orbit.period == mp.inf else {"period": orbit.period, **found}
 
     def _law(self, working: int) -> Law:
         """The motion set up at the ambient precision, which is ``working`` digits."""
