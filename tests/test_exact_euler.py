@@ -13,7 +13,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.euler.jacobi import FreeRotation, Orbit, closed_form, principal_frame
+from verify.exact.euler.jacobi import FreeRotation, closed_form
+from verify.exact.euler.orbit import Orbit, principal_frame
 from verify.exact.euler.regime import FreeSpin, Regime
 from verify.exact.solution import NoClosedForm
 from verify.scenes import tensors
@@ -652,13 +653,6 @@ def test_a_moment_has_no_closed_form_here():
     body = RigidBody(BODY.inertia, vector(0, 0, "1e-30"))
     with pytest.raises(NoClosedForm, match="a moment acts on the body"):
         closed_form(Question(body, START).scene())
-
-
-def test_the_attitude_has_no_closed_form_here():
-    """Tracking the attitude raises NoClosedForm with a sentence that says so."""
-    question = Question(BODY, START, frozenset({"omega", "attitude"}))
-    with pytest.raises(NoClosedForm, match="the closed form of the attitude is not built"):
-        closed_form(question.scene())
 
 
 def test_no_samples_are_no_rows():

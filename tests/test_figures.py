@@ -9,7 +9,8 @@ from statistics import median
 
 import pytest
 
-from verify.exact.euler.jacobi import FreeRotation, Orbit
+from verify.exact.euler.jacobi import FreeRotation
+from verify.exact.euler.orbit import Orbit
 from verify.exact.kirchhoff.jacobi import NutatingBody
 from verify.exact.route import solution
 from verify.judge.verdict import Status, Verdict
