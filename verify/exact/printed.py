@@ -12,6 +12,7 @@ from mpmath import mp
 
 from verify.exact.route import solution
 from verify.exact.solution import NoClosedForm, Solution
+from verify.scenes.precision import exact_value
 from verify.scenes.scene import Scene
 
 # The motion is known to this many digits more than are printed, so that printing is what limits.
@@ -37,7 +38,7 @@ def document(
     rows = [
         {"t": text}
         | {name: _text(values[k], digits) for name, values in motion.quantities.items()}
-        | {"radius": decimal_text(_rational(motion.radius[k]) + printing, 2, ROUND_CEILING)}
+        | {"radius": decimal_text(exact_value(motion.radius[k]) + printing, 2, ROUND_CEILING)}
         for k, (text, _) in enumerate(times)
     ]
     return {
@@ -84,8 +85,4 @@ def _entry(value: Any, digits: int) -> str:
     if value and abs(mp.mag(value)) > _LARGEST_RATIONAL:
         with mp.workdps(digits + _SPARE_DIGITS):
             return str(mp.nstr(value, digits, strip_zeros=False))
-    return decimal_text(_rational(value), digits)
-
-
-def _rational(value: Any) -> Fraction:
-    return Fraction(*(int(part) for part in value.as_integer_ratio()))
+    return decimal_text(exact_value(value), digits)

@@ -23,6 +23,7 @@ from verify.exact.invariants import Invariant, invariants
 from verify.exact.taylor import arcs
 from verify.judge.errors import Errors, norms
 from verify.scenes.motion import Motion, State
+from verify.scenes.precision import exact_value
 from verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]
@@ -92,7 +93,7 @@ def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
 
 
 def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
-    return tuple(Fraction(*value.as_integer_ratio()) for value in row)
+    return tuple(exact_value(value) for value in row)
 
 
 def _is_finite(motion: Motion) -> bool:

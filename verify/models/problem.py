@@ -25,7 +25,7 @@ from verify.models.units import Units, natural_units
 from verify.scenes import tensors
 from verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
-from verify.scenes.precision import Rung, floor_log2, power_of_two
+from verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
 
@@ -220,7 +220,7 @@ def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
     with mp.workprec(rung.bits + 64):
         norm = mp.sqrt(mp.convert(tensors.dot(quaternion, quaternion)))
         quotients = [mp.convert(entry) / norm for entry in quaternion]
-        e0, e1, e2, e3 = (rung.round(Fraction(*v.as_integer_ratio())) for v in quotients)
+        e0, e1, e2, e3 = (rung.round(exact_value(v)) for v in quotients)
     return (e0, e1, e2, e3)
 
 

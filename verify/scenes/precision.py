@@ -91,6 +91,15 @@ def hexadecimal(value: Fraction) -> str:
     return f"{sign}0x{abs(value.numerator):x}p{1 - value.denominator.bit_length():+d}"
 
 
+def exact_value(number: Any) -> Fraction:
+    """The rational that a finite binary number (float, NumPy float, mpf) is.
+
+    mpmath's integers may be gmpy2's, and a Fraction made of those is not quite a Fraction.
+    """
+    numerator, denominator = number.as_integer_ratio()
+    return Fraction(int(numerator), int(denominator))
+
+
 def held_exactly(value: Fraction) -> Any:
     """The mpf that equals a dyadic rational, whatever the ambient precision of mpmath."""
     from mpmath import libmp, mp

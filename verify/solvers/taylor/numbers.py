@@ -15,7 +15,7 @@ import heyoka as hy
 import numpy as np
 from mpmath import libmp
 
-from verify.scenes.precision import Rung, power_of_two
+from verify.scenes.precision import Rung, exact_value, power_of_two
 
 # hy.real(int) passes through a decimal string, which Python limits to 4300 digits.
 _LARGEST_INTEGER_BITS = 14000
@@ -37,11 +37,11 @@ class Arithmetic:
 def arithmetic(rung: Rung) -> Arithmetic:
     """The number type of a rung that is available here; ``unavailable`` tells which are not."""
     if rung.name == "f32":
-        return Arithmetic(np.float32, lambda v: np.float32(float(v)), _from_float, compact=False)
+        return Arithmetic(np.float32, lambda v: np.float32(float(v)), exact_value, compact=False)
     if rung.name == "f64":
-        return Arithmetic(float, float, _from_float, compact=False)
+        return Arithmetic(float, float, exact_value, compact=False)
     if rung.name == "f80":
-        return Arithmetic(np.longdouble, _longdouble, _from_float, compact=False)
+        return Arithmetic(np.longdouble, _longdouble, exact_value, compact=False)
     # Without compact mode these compile for seconds to minutes and then run no faster.
     if rung.name == "f128":
         return Arithmetic(hy.real128, _real128, _from_real128, compact=True)
@@ -83,10 +83,6 @@ def _real(value: Fraction, bits: int) -> Any:
 
 def _trailing_zeros(value: int) -> int:
     return (value & -value).bit_length() - 1 if value else 0
-
-
-def _from_float(value: Any) -> Fraction:
-    return Fraction(*value.as_integer_ratio())
 
 
 def _from_real128(value: Any) -> Fraction:
