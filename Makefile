@@ -6,10 +6,10 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify test test-all reports lint clean
+.PHONY: help verify test test-all reports check-reports lint clean
 
 help:  ## Print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
 verify: $(INSTALLED)  ## Run the standard set of scenes and print its verdicts (writes to reports/local)
 	@$(BIN)/taylor-verify run --out reports/local
@@ -20,8 +20,13 @@ test: lint  ## Check style and types, then run all but the slow tests
 test-all: lint  ## The same with the slow tests
 	@$(BIN)/python -m pytest -n 2
 
-reports: $(INSTALLED)  ## Rewrite what is published: reports/data, and the tables, plots and pages made from it
+reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, and reports/reference
 	@$(BIN)/taylor-verify run --out reports
+	@$(BIN)/taylor-verify publish --reference > /dev/null
+
+# The rungs of hardware: they differ most between processors, and the wider ones take longer.
+check-reports: $(INSTALLED)  ## Run part of what is published anew: has a number left its rounding class?
+	@$(BIN)/taylor-verify run --rung f32 f64 f80 --against reports
 
 lint: $(INSTALLED)  ## Check style and types only
 	@$(BIN)/ruff check

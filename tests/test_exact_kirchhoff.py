@@ -377,10 +377,6 @@ REFUSED = {
     ),
     "a force or a couple": scene(SHARP.body(force=exact(0, 0, 1)), GENERIC),
     "attitude": scene(SHARP, GENERIC, frozenset({"attitude"})),
-    "linear impulse is zero": scene(SHARP, exact(0, 0, 0, 1, 0, 1)),
-    "trigonometric": scene(body(1, 1, 0, 0, 1, 2), GENERIC),
-    # f = (1 - z^2)^2, the separatrix: x3 tends to a pole like tanh t.
-    "repeated root": scene(PLAIN, exact("3/5", 0, "4/5", 0, "3/5", 0)),
 }
 
 

@@ -262,7 +262,7 @@ def test_a_folder_that_cannot_be_made_is_an_error_of_the_system(tmp_path: Path) 
 def test_parents_are_made(tmp_path: Path) -> None:
     """A report goes into a folder whose parents do not exist yet."""
     write(tmp_path / "a" / "b", MIXED, [])
-    assert {file.parent.name for file in publish(tmp_path / "a" / "b")} == {"tables"}
+    assert {file.parent.name for file in publish(tmp_path / "a" / "b")} == {"tables", "b"}
 
 
 def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) -> None:
@@ -276,7 +276,7 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     write(report, MIXED, [replace(RECORD, rung="f32")])
     written = publish(report)
     mine = {tables / "mine.md", tables / "mine.csv"}
-    assert set(tables.iterdir()) == {*written, *mine}
+    assert {*tables.iterdir(), report / "README.md"} == {*written, *mine}
     assert {file.name for file in records.iterdir()} == {
         "mine.json",
         "euler-generic.taylor.f32.json",
@@ -315,6 +315,78 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
     rooms = {name.split(".")[1] for name in loaded if name.startswith("verify.")}
     assert rooms == {"publish", "judge"}
+
+
+# The front page.
+
+
+def front_page(report: Path) -> str:
+    return (report / "README.md").read_text(encoding="utf-8")
+
+
+def test_every_link_of_the_front_page_leads_somewhere(report: Path) -> None:
+    """Each file and folder that it links to is there; what is not there is not linked to."""
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", front_page(report))
+    assert "tables/README.md" in links
+    assert [link for link in links if not (report / link).exists()] == []
+    assert "reference" not in links
+
+
+def test_the_front_page_links_to_the_reference_where_there_is_one(report: Path) -> None:
+    """A folder of reference motions is linked to, and left alone."""
+    file = report / "reference" / "README.md"
+    file.parent.mkdir()
+    file.write_text("mine", encoding="utf-8")
+    publish(report)
+    assert "](reference)" in front_page(report)
+    assert file.read_text(encoding="utf-8") == "mine"
+
+
+def test_the_anchor_of_the_front_page_is_a_heading_of_the_tables(report: Path) -> None:
+    """The link to the meanings of the verdicts names a heading that exists."""
+    (anchor,) = re.findall(r"tables/README\.md#([a-z-]+)", front_page(report))
+    headings = re.findall(r"^## (.*)$", (report / "tables/README.md").read_text("utf-8"), re.M)
+    assert anchor in {heading.lower().replace(" ", "-") for heading in headings}
+
+
+def test_the_headline_numbers_are_those_of_the_verdicts(tmp_path: Path) -> None:
+    """Scenes, runs and verdicts are counted; a rung's line has its median and its largest error."""
+    u = UNIT["f64"]
+    sizes = {"a": 2, "b": 3, "c": 40}
+    write(
+        tmp_path,
+        [
+            *(passed(f"euler/{n}", "f64", "omega", max=k * u, ratio=k) for n, k in sizes.items()),
+            passed("euler/a", "f64", "T", max=0.0, ratio=0.0),
+        ],
+        [],
+    )
+    publish(tmp_path)
+    text = front_page(tmp_path)
+    assert "**3** scenes, **3** runs, **4** verdicts." in text
+    assert "below **2.50** of what is attainable; 1 conserved quantities are kept exactly" in text
+    (line,) = (line for line in text.splitlines() if line.startswith("| f64"))
+    assert cells(line) == [
+        *("f64", "1.11e-16", "3", "3", "3.00", "40.0", "40.0", "`omega` of `euler/c`")
+    ]
+
+
+def test_the_front_page_hides_no_failure(report: Path) -> None:
+    """A scene that did not pass has its verdict in its line, and its rung does not count as all."""
+    by_scene = {cells(line)[0]: cells(line) for line in front_page(report).splitlines()}
+    assert by_scene["`euler/broken`"][1:] == [NOTHING, "**fail**", NOTHING, NOTHING]
+    assert by_scene["`euler/lost`"][2] == "**fail**"
+    assert by_scene["`euler/long`"][2].endswith("**fail**")
+    assert by_scene["`euler/vast`"][1] == "**refused**"
+    assert by_scene["f64"][2:4] == ["5", "**2**"]
+    assert by_scene["f64"][5] == "**no number**"
+
+
+def test_a_front_page_of_somebody_else_is_left_alone(report: Path) -> None:
+    """A README.md that does not name us as its maker is neither replaced nor reported as written."""
+    (report / "README.md").write_text("# Mine\n", encoding="utf-8")
+    assert report / "README.md" not in publish(report)
+    assert front_page(report) == "# Mine\n"
 
 
 # Cells.

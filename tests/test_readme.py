@@ -43,6 +43,9 @@ def test_every_regime_is_documented() -> None:
     """The words that `regime` can be are listed where a reader looks for them."""
     from verify.exact.euler.regime import Regime
 
-    kirchhoff = ("rest", "steady", "four-roots", "two-roots", "cubic")
+    kirchhoff = (
+        *("rest", "steady", "four-roots", "two-roots", "cubic", "hyperbolic"),
+        *("trigonometric", "algebraic", "heteroclinic", "euler-top"),
+    )
     for word in (*(regime.value for regime in Regime), *kirchhoff, "no closed form"):
         assert word in README

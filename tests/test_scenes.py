@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from fractions import Fraction
 from hashlib import sha256
-from itertools import pairwise, permutations
+from itertools import accumulate, dropwhile, pairwise, permutations
 
 import pytest
 from hypothesis import given
@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from verify.exact.route import solution
 from verify.scenes import library, tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.body_reader import obeys_triangle_inequality
 from verify.scenes.faults import Refused
 from verify.scenes.motion import IDENTITY, Impulse, Spin
@@ -265,24 +265,66 @@ def test_every_shipped_scene_is_in_the_table_of_the_readme() -> None:
 
 @pytest.mark.parametrize("folder", ["euler", "kirchhoff"])
 def test_there_are_enough_shipped_scenes(folder: str) -> None:
-    """At least seven of each model, so that an empty folder cannot pass for a suite."""
-    assert sum(name.startswith(f"{folder}/") for name in library.names()) >= 7
+    """At least sixteen of each model, so that an empty folder cannot pass for a suite."""
+    assert sum(name.startswith(f"{folder}/") for name in library.names()) >= 16
 
 
-def test_the_separatrix_is_exact() -> None:
+@pytest.mark.parametrize(
+    ("name", "middle"),
+    [("euler/separatrix", Fraction(4, 3)), ("euler/separatrix-full-tensor", Fraction(32, 27))],
+)
+def test_the_separatrix_is_exact(name: str, middle: Fraction) -> None:
     """H^2 = 2T J2 holds in rationals, and K and H are dyadic, so that it holds on every rung."""
-    scene = load("euler/separatrix")
+    scene = load(name)
     assert isinstance(scene.body, RigidBody)
     assert isinstance(scene.initial, Spin)
     omega, inverse = scene.initial.omega, scene.body.inverse_inertia
     momentum = tensors.apply(scene.body.inertia, omega)
-    middle = sorted(scene.body.inertia[i][i] for i in range(3))[1]
+    assert roots_below(scene.body.inertia, middle) == (1, 1)
     assert tensors.dot(momentum, momentum) == tensors.dot(momentum, omega) * middle
-    assert all(is_dyadic(entry) for row in (momentum, *inverse) for entry in row)
+    assert all(is_exact_on_every_rung(entry) for row in (momentum, *inverse) for entry in row)
 
 
-def is_dyadic(value: Fraction) -> bool:
-    return value.denominator & (value.denominator - 1) == 0
+def roots_below(inertia: Matrix, moment: Fraction) -> tuple[int, int]:
+    """How many principal moments lie below this one, and how many are equal to it.
+
+    Read off the signs of the characteristic polynomial of I - moment, whose roots are real
+    (Descartes' rule is then exact).
+    """
+    a, b, c = (tuple(inertia[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3))
+    trace = a[0] + b[1] + c[2]
+    pairs = ((0, 1), (1, 2), (2, 0))
+    rows = (a, b, c)
+    minors = sum(rows[i][i] * rows[j][j] - rows[i][j] ** 2 for i, j in pairs)
+    determinant = tensors.dot(a, tensors.cross(b, c))
+    # det(I - moment + s) = s^3 + trace s^2 + minors s + determinant has the roots moment - J.
+    coefficients = [Fraction(1), trace, minors, determinant]
+    equal = next(k for k, entry in enumerate(reversed(coefficients)) if entry != 0)
+    return changes([entry for entry in coefficients if entry != 0]), equal
+
+
+def is_exact_on_every_rung(value: Fraction) -> bool:
+    """A binary number of no more than the 24 bits of f32."""
+    return value.denominator & (value.denominator - 1) == 0 and abs(value.numerator) < 2**24
+
+
+def test_the_oblique_axis_of_symmetry_survives_rounding() -> None:
+    """I has the double moment 2 and no smaller one but 1.28, and its inverse is dyadic."""
+    body = load("euler/oblique-symmetry").body
+    assert isinstance(body, RigidBody)
+    assert roots_below(body.inertia, Fraction(2)) == (1, 2)
+    assert roots_below(body.inertia, Fraction(32, 25)) == (0, 1)
+    assert all(is_exact_on_every_rung(entry) for row in body.inverse_inertia for entry in row)
+    assert not tensors.is_diagonal(body.inertia)
+
+
+def test_every_regime_of_a_free_rigid_body_has_its_scene() -> None:
+    """Rest, spherical, steady, axisymmetric, separatrix and both families of orbits occur."""
+    scenes = [load(name) for name in library.names() if name.startswith("euler/")]
+    found = {solution(scene).regime for scene in scenes if scene.body.is_free}
+    assert found >= {
+        *("rest", "spherical", "steady", "axisymmetric", "separatrix", "max-axis", "min-axis"),
+    }
 
 
 def test_the_brick_ends_where_the_simulations_of_nasa_did() -> None:
@@ -316,11 +358,16 @@ def test_each_orbit_lies_on_the_side_that_its_reason_says(name: str) -> None:
     assert ORBITS[name](ratio - middle)
 
 
-# Degree of the polynomial and number of its real roots.
+# Degree of the polynomial and number of its distinct real roots.
 REGIMES = {
     "kirchhoff/four-real-roots": (4, 4),
     "kirchhoff/two-real-roots": (4, 2),
     "kirchhoff/cubic": (3, 3),
+    "kirchhoff/trigonometric": (2, 2),
+    "kirchhoff/onto-the-axis": (4, 3),
+    "kirchhoff/half-turn": (4, 2),
+    "kirchhoff/algebraic": (4, 2),
+    "kirchhoff/beside-a-stable-spin": (4, 3),
 }
 
 
@@ -331,13 +378,121 @@ def test_each_clebsch_regime_has_its_real_roots(name: str) -> None:
     assert (len(polynomial) - 1, real_roots(polynomial)) == REGIMES[name]
 
 
+# What the files say of the pole x3 = F: its multiplicity as a root, and the sign of A in 49 (25).
+POLES = {
+    "kirchhoff/onto-the-axis": (2, 1),
+    "kirchhoff/half-turn": (2, 1),
+    "kirchhoff/algebraic": (3, 0),
+    "kirchhoff/beside-a-stable-spin": (2, -1),
+    "kirchhoff/unstable-spin": (2, 1),
+    "kirchhoff/steady-spin": (2, -1),
+    "kirchhoff/through-the-pole": (1, 1),
+    "kirchhoff/from-the-axis": (1, -1),
+}
+
+
+@pytest.mark.parametrize("name", POLES)
+def test_the_pole_is_a_root_as_often_as_the_reason_says(name: str) -> None:
+    """f and its derivatives at x3 = F, exactly; A = 4 F^2 (p'-p)/r + 4 F G (q'-q)/r - G^2."""
+    scene = load(name)
+    ff, fg, y3 = invariants(scene)
+    F = square_root(ff)
+    assert fg == F * y3
+    c = clebsch(scene)
+    border = 4 * (c.p_prime - c.p) / c.r * ff + 4 * (c.q_prime - c.q) / c.r * fg - y3**2
+    assert (multiplicity(nutation_polynomial(scene), F), sign(border)) == POLES[name]
+
+
+def test_the_half_turn_ends_at_the_other_pole() -> None:
+    """Both poles are double roots, so that f is a0 times a square."""
+    scene = load("kirchhoff/half-turn")
+    F = square_root(invariants(scene)[0])
+    assert [multiplicity(nutation_polynomial(scene), z) for z in (F, -F)] == [2, 2]
+
+
+@pytest.mark.parametrize(
+    ("name", "times"), [("kirchhoff/turning-point", 1), ("kirchhoff/steady-precession", 2)]
+)
+def test_a_start_without_speed_is_a_root_of_f(name: str, times: int) -> None:
+    """A turning point is a simple root, the place of a steady precession a double one, no pole."""
+    scene = load(name)
+    assert isinstance(scene.initial, Impulse)
+    z = scene.initial.linear[2]
+    assert multiplicity(nutation_polynomial(scene), z) == times
+    assert z**2 < invariants(scene)[0]
+
+
+def test_the_orthogonal_impulses_are_orthogonal() -> None:
+    """x.y = 0 with y3 different from 0."""
+    _, fg, y3 = invariants(load("kirchhoff/orthogonal-impulses"))
+    assert fg == 0
+    assert y3 != 0
+
+
+# Their degeneracy is a relation among several numbers, and would be lost if one were rounded.
+EXACT_BODIES = [
+    *("onto-the-axis", "half-turn", "algebraic", "beside-a-stable-spin", "unstable-spin"),
+    *("steady-precession", "through-the-pole"),
+]
+EXACT_STARTS = [*EXACT_BODIES, "orthogonal-impulses", "turning-point"]
+
+
+@pytest.mark.parametrize("name", EXACT_BODIES)
+def test_a_degenerate_body_is_the_same_on_every_rung(name: str) -> None:
+    """No coefficient of T needs more than the 24 bits of f32."""
+    body = load(f"kirchhoff/{name}").body
+    assert isinstance(body, ImmersedBody)
+    assert all(is_exact_on_every_rung(entry) for row in body.energy_matrix for entry in row)
+
+
+@pytest.mark.parametrize("name", EXACT_STARTS)
+def test_a_degenerate_start_is_the_same_on_every_rung(name: str) -> None:
+    """No component of an impulse needs more than the 24 bits of f32."""
+    initial = load(f"kirchhoff/{name}").initial
+    assert isinstance(initial, Impulse)
+    assert all(is_exact_on_every_rung(entry) for entry in initial.linear + initial.angular)
+
+
+def clebsch(scene: Scene) -> Clebsch:
+    assert isinstance(scene.body, ImmersedBody)
+    assert scene.body.clebsch is not None
+    return scene.body.clebsch
+
+
+def invariants(scene: Scene) -> tuple[Fraction, Fraction, Fraction]:
+    """F^2, FG and y3."""
+    assert isinstance(scene.initial, Impulse)
+    x, y = scene.initial.linear, scene.initial.angular
+    return tensors.dot(x, x), tensors.dot(x, y), y[2]
+
+
+def square_root(value: Fraction) -> Fraction:
+    """The root of a rational square."""
+    root = Fraction(math.isqrt(value.numerator), math.isqrt(value.denominator))
+    assert root**2 == value
+    return root
+
+
+def sign(value: Fraction) -> int:
+    return (value > 0) - (value < 0)
+
+
+def multiplicity(polynomial: list[Fraction], z: Fraction) -> int:
+    """How often z is a root, by synthetic division."""
+    times = 0
+    while True:
+        quotient = list(accumulate(polynomial, lambda total, entry: total * z + entry))
+        if quotient.pop() != 0:
+            return times
+        polynomial, times = quotient, times + 1
+
+
 def nutation_polynomial(scene: Scene) -> list[Fraction]:
     """r X3 of 49 (8) as a polynomial of z = x3, highest power first."""
-    assert isinstance(scene.body, ImmersedBody)
     assert isinstance(scene.initial, Impulse)
-    c, x, y = scene.body.clebsch, scene.initial.linear, scene.initial.angular
-    assert c is not None
-    ff, fg, y3, z = tensors.dot(x, x), tensors.dot(x, y), y[2], x[2]
+    c, x, y = clebsch(scene), scene.initial.linear, scene.initial.angular
+    ff, fg, y3 = invariants(scene)
+    z = x[2]
     quadratic, linear = c.p - c.p_prime, 2 * (c.q - c.q_prime) * y3
     constant = c.r * (y[0] ** 2 + y[1] ** 2) - quadratic * z**2 - linear * z
     # (F^2 - z^2)(quadratic z^2 + linear z + constant) - r (FG - y3 z)^2
@@ -348,7 +503,7 @@ def nutation_polynomial(scene: Scene) -> list[Fraction]:
         ff * linear + 2 * c.r * fg * y3,
         ff * constant - c.r * fg**2,
     ]
-    return coefficients if coefficients[0] else coefficients[1:]
+    return list(dropwhile(lambda entry: entry == 0, coefficients))
 
 
 def real_roots(polynomial: list[Fraction]) -> int:

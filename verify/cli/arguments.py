@@ -109,6 +109,11 @@ def _add_run(found: Any) -> None:
         help="f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set",
     )
     verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
+    verb.add_argument(
+        "--against",
+        metavar="DIR",
+        help="fail if a number has left the rounding class of the one published there",
+    )
 
 
 def _add_exact(found: Any) -> None:
@@ -138,4 +143,10 @@ def _add_publish(found: Any) -> None:
     verb = _verb(found, "publish", what, "publish --from reports/local", verbs.publish)
     verb.add_argument(
         "--from", dest="folder", default="reports", metavar="DIR", help="default: reports"
+    )
+    verb.add_argument(
+        "--reference",
+        action="store_true",
+        help="instead compute the exact trajectory of every shipped scene, as CSV and JSON with "
+        "32 digits, into DIR/reference",
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
+from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
 from verify.cli.streams import say
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from verify.judge.judgement import Judgement
+    from verify.judge.verdict import Verdict
     from verify.scenes.scene import Scene
 
 _MOST_DIGITS = 10_000
@@ -46,6 +47,7 @@ def run(options: argparse.Namespace) -> Answer:
     scenes = list(dict.fromkeys(options.scenes)) or list(names())
     _read(scenes)
     folder = _writable(options.out) if options.out is not None else None
+    published = _published(options, rungs) if options.against is not None else None
     results = _judge(scenes, options.solver, rungs)
     verdicts = [verdict for result in results for verdict in result.verdicts]
     status, messages = exit_status(verdicts), []
@@ -56,9 +58,54 @@ def run(options: argparse.Namespace) -> Answer:
             # A run that took hours is shown in any case.
             messages = [f"expected to write the reports, got {error} @ --out {folder}"]
             status = WRONG_CALL
-    found = {"verdicts": [v.row() for v in verdicts], "summary": summary(verdicts)}
+    found: dict[str, Any] = {
+        "verdicts": [v.row() for v in verdicts],
+        "summary": summary(verdicts),
+    }
+    if published is not None:
+        found["against"], told = _held_against(options.against, published, verdicts)
+        messages += told
+        status = _status_against(found["against"], status)
     text = partial(verdicts_text, verdicts)
     return Answer(status, found, text, messages)
+
+
+def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdict]:
+    """What the folder of --against has of the solver, the rungs and, where named, the scenes."""
+    from verify.publish import report
+
+    try:
+        verdicts = report.load(options.against)
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected a folder of `run --out`, got no such file @ --against {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(f"{error} (--against)") from error
+    asked = [v for v in verdicts if v.solver == options.solver and v.rung in rungs]
+    return [v for v in asked if not options.scenes or v.scene in options.scenes]
+
+
+def _held_against(
+    folder: str, published: Iterable[Verdict], made: Iterable[Verdict]
+) -> tuple[dict[str, Any], list[str]]:
+    """The comparison as a document, and as messages: every departure, then how many rows."""
+    from verify.judge.rounding_class import compare
+
+    comparison = compare(published, made)
+    told = [str(departure) for departure in comparison.departures]
+    document = {"folder": folder, "compared": comparison.compared, "departures": told}
+    rows = f"{comparison.compared} rows compared with {folder}"
+    return document, [*told, f"{rows}: {len(told)} departures from their rounding class"]
+
+
+def _status_against(found: Mapping[str, Any], status: int) -> int:
+    """The graver of the run's own status and that of the comparison, undecided if it had no row."""
+    if status == WRONG_CALL:
+        return status
+    if found["departures"]:
+        return FAIL
+    return status if found["compared"] else status or UNDECIDED
 
 
 def exact(options: argparse.Namespace) -> Answer:
@@ -120,9 +167,11 @@ def explain(options: argparse.Namespace) -> Answer:
 
 
 def publish(options: argparse.Namespace) -> Answer:
-    """Tables from stored verdicts."""
+    """Tables from stored verdicts, or the exact trajectories."""
     from verify.publish import report
 
+    if options.reference:
+        return _publish_reference(options.folder)
     try:
         written = [str(path) for path in report.publish(options.folder)]
     except FileNotFoundError as error:
@@ -132,6 +181,24 @@ def publish(options: argparse.Namespace) -> Answer:
         ) from error
     except ValueError as error:
         raise WrongCall(str(error)) from error
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
+
+
+def _publish_reference(name: str) -> Answer:
+    from verify.publish import reference_files
+    from verify.reference import references
+    from verify.scenes.library import names
+
+    folder = _writable(name, "--from")
+    scenes = names()
+    ended: list[str] = []
+
+    def finished(scene: str) -> None:
+        ended.append(scene)
+        say(f"{len(ended)}/{len(scenes)} {scene}")
+
+    documents = references(scenes, finished)
+    written = [str(path) for path in reference_files.write(folder, documents)]
     return Answer(PASS, {"written": written}, lambda: "\n".join(written))
 
 
@@ -197,7 +264,7 @@ def _time(text: str) -> Fraction:
         raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
 
 
-def _writable(folder: str) -> Path:
+def _writable(folder: str, option: str = "--out") -> Path:
     """The folder, tried out before hours of work end in a refusal to write, and not yet made."""
     import tempfile
     from pathlib import Path
@@ -210,7 +277,7 @@ def _writable(folder: str) -> Path:
             return path
     except OSError as error:
         raise WrongCall(
-            f"expected a folder that can be written, got {folder!r} ({error.strerror}) @ --out"
+            f"expected a folder that can be written, got {folder!r} ({error.strerror}) @ {option}"
         ) from error
 
 

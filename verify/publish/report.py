@@ -1,4 +1,4 @@
-"""A report folder: ``data`` written after a run, and ``tables`` made from ``data`` alone."""
+"""A report folder: ``data`` written after a run; tables and front page made from ``data`` alone."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from pathlib import Path
 from verify.judge.record import Record
 from verify.judge.verdict import Verdict
 from verify.publish import data, sheets, tables
+from verify.publish.front import front
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import first_line, replace_files
 
 TABLES = "tables"
+FRONT = "README.md"
 
 
 def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Record]) -> list[Path]:
@@ -28,23 +30,30 @@ def load(folder: Path | str) -> tuple[Verdict, ...]:
 
 
 def publish(folder: Path | str) -> list[Path]:
-    """Make ``folder``/tables from ``folder``/data and return the files written.
+    """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
 
-    Tables of an earlier version that are no longer made are removed; other files are left alone.
-    Raises OSError for files that cannot be read or written, ValueError for data that are none.
+    Tables of an earlier version that are no longer made are removed; other files are left alone,
+    a README.md that is not ours among them. Raises OSError for files that cannot be read or
+    written, ValueError for data that are none.
     """
-    verdicts = load(folder)
+    place = Path(folder)
+    verdicts = load(place)
     texts = {
-        "README.md": tables.readme(verdicts),
-        "accuracy.md": tables.accuracy(verdicts),
-        "accuracy.csv": sheets.accuracy(verdicts),
-        "conserved.md": tables.conserved(verdicts),
-        "conserved.csv": sheets.conserved(verdicts),
-        "gates.md": tables.gates(verdicts),
-        "gates.csv": sheets.gates(verdicts),
+        f"{TABLES}/README.md": tables.readme(verdicts),
+        f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
+        f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
+        f"{TABLES}/conserved.md": tables.conserved(verdicts),
+        f"{TABLES}/conserved.csv": sheets.conserved(verdicts),
+        f"{TABLES}/gates.md": tables.gates(verdicts),
+        f"{TABLES}/gates.csv": sheets.gates(verdicts),
     }
-    target = Path(folder) / TABLES
-    return list(replace_files(target, texts, stale=_own_tables(target)))
+    if _is_ours_or_new(place / FRONT):
+        texts[FRONT] = front(verdicts, place)
+    return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))
+
+
+def _is_ours_or_new(file: Path) -> bool:
+    return not file.exists() or first_line(file) == MADE_BY
 
 
 def _own_tables(target: Path) -> list[Path]:

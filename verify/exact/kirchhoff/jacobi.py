@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any, final
+from typing import Any, Final, final
 
 import numpy as np
 from mpmath import mp, mpf
 
+from verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from verify.exact.kirchhoff.orbit import Axial, Orbit, transverse
 from verify.exact.kirchhoff.quartic import Nutation
 from verify.exact.kirchhoff.regime import regime
@@ -19,13 +20,18 @@ from verify.scenes.scene import Scene
 
 _GUARD_DIGITS = 12
 _ROUGH_DIGITS = 20
+_ORBITS: Final[Mapping[str, type[ElementaryOrbit] | type[Front]]] = {
+    "hyperbolic": ElementaryOrbit,
+    "trigonometric": ElementaryOrbit,
+    "algebraic": ElementaryOrbit,
+    "heteroclinic": Front,
+}
 
 
 def closed_form(scene: Scene) -> Solution:
     """The closed form of a scene with Clebsch's energy, no loads, and only the impulses tracked.
 
-    Raises NoClosedForm, with the reason, for every other scene and for the motions that ``regime``
-    refuses.
+    Raises NoClosedForm, with the reason, for every other scene.
     """
     body, start = scene.body, scene.initial
     assert isinstance(body, ImmersedBody)
@@ -38,14 +44,14 @@ def closed_form(scene: Scene) -> Solution:
         raise NoClosedForm("the attitude and the centre of Clebsch's body are not built")
     nutation = Nutation.of(body.clebsch, start)
     kind = regime(nutation)
-    if kind in ("rest", "steady"):
+    if kind in ("rest", "steady", "euler-top"):
         return Precession(kind, nutation, start)
     return NutatingBody(kind, nutation, start)
 
 
 @final
 class Precession(Solution):
-    """Rest and steady motion: x3 is constant, (x1, x2) and (y1, y2) turn about axis 3 together."""
+    """Rest, steady motion and Euler's top: x3 is constant, and x and y turn about axis 3 together."""
 
     route = "mpmath"
 
@@ -68,7 +74,7 @@ class Precession(Solution):
 
 @final
 class NutatingBody(Solution):
-    """x3 swings between two simple roots of its quartic."""
+    """x3 varies: it swings between two roots of f, or falls away from one and returns to it."""
 
     route = "mpmath"
 
@@ -76,7 +82,8 @@ class NutatingBody(Solution):
         self.regime = kind
         self._nutation = nutation
         self._start = start
-        self._orbits: dict[int, Orbit] = {}
+        self._make = _ORBITS.get(kind, Orbit)
+        self._orbits: dict[int, Orbit | ElementaryOrbit | Front] = {}
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         longest = max((abs(t) for t in elapsed), default=Fraction(0))
@@ -89,14 +96,14 @@ class NutatingBody(Solution):
             return _quantities([x for x, _ in states], [y for _, y in states])
 
     def period(self, digits: int) -> mpf:
-        """The period of nutation, to about ``digits`` digits."""
+        """The period of nutation, to about ``digits`` digits; infinite where x3 does not recur."""
         with mp.workdps(digits + _GUARD_DIGITS):
             return self._orbit(digits + _GUARD_DIGITS).period
 
-    def _orbit(self, digits: int) -> Orbit:
+    def _orbit(self, digits: int) -> Orbit | ElementaryOrbit | Front:
         """The orbit at the working precision of ``digits``, made once."""
         if digits not in self._orbits:
-            self._orbits[digits] = Orbit(self._nutation, self._start, digits)
+            self._orbits[digits] = self._make(self._nutation, self._start, digits)
         return self._orbits[digits]
 
 

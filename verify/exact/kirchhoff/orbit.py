@@ -73,23 +73,29 @@ class Pole:
 
 def _poles(nutation: Nutation, points: TurningPoints) -> tuple[Pole, Pole]:
     """The upper and the lower pole."""
-    up_1, down_1 = _distances(nutation.F2, points.z1)
-    up_2, down_2 = _distances(nutation.F2, points.z2)
-    FG, F_y3 = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2)) * mp.convert(nutation.y3)
-    pulls = [FG - F_y3, FG + F_y3]
-    # Their product is rational: the smaller one comes from it without cancellation.
-    smaller = 0 if FG * F_y3 > 0 else 1
-    if pulls[1 - smaller] != 0:
-        product = mp.convert(nutation.FG**2 - nutation.F2 * nutation.y3**2)
-        pulls[smaller] = product / pulls[1 - smaller]
+    up_1, down_1 = distances(nutation.F2, points.z1)
+    up_2, down_2 = distances(nutation.F2, points.z2)
+    pull_up, pull_down = pulls(nutation)
     zero = mpf(0)
     return (
-        Pole(1, up_1, zero if points.at_top else up_2, pulls[0], points.at_top),
-        Pole(-1, zero if points.at_bottom else down_1, down_2, pulls[1], points.at_bottom),
+        Pole(1, up_1, zero if points.at_top else up_2, pull_up, points.at_top),
+        Pole(-1, zero if points.at_bottom else down_1, down_2, pull_down, points.at_bottom),
     )
 
 
-def _distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
+def pulls(nutation: Nutation) -> tuple[mpf, mpf]:
+    """(FG - F y3, FG + F y3), zero exactly where they are."""
+    FG, F_y3 = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2)) * mp.convert(nutation.y3)
+    both = [FG - F_y3, FG + F_y3]
+    # Their product is rational: the smaller one comes from it without cancellation.
+    smaller = 0 if FG * F_y3 > 0 else 1
+    if both[1 - smaller] != 0:
+        product = mp.convert(nutation.FG**2 - nutation.F2 * nutation.y3**2)
+        both[smaller] = product / both[1 - smaller]
+    return both[0], both[1]
+
+
+def distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
     """(F - z, F + z), of which the smaller from their product, which is rational."""
     F = mp.sqrt(mp.convert(F2))
     larger = F + abs(mp.convert(z))

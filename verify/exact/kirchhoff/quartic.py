@@ -68,8 +68,13 @@ class Nutation:
 
     @cached_property
     def turn_rate(self) -> Fraction:
-        """The rate at which (x1, x2) turns about axis 3 at the start; zero where it vanishes."""
+        """The rate at which (x1, x2) turns about axis 3 at the start; zero where it vanishes.
+
+        If all of x is zero, the rate at which (y1, y2) does.
+        """
         body, z = self.body, self.z
+        if self.F2 == 0:
+            return (body.r - body.r_prime) * self.y3
         if self.F2 - z**2 == 0:
             return Fraction(0)
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
@@ -123,6 +128,20 @@ def sturm_chain(polynomial: Polynomial) -> tuple[Polynomial, ...]:
 def has_repeated_root(polynomial: Polynomial) -> bool:
     """Whether some root, real or complex, is repeated, for a polynomial of degree 1 or more."""
     return len(sturm_chain(polynomial)[-1]) > 1
+
+
+def repeated_root(polynomial: Polynomial) -> Fraction | None:
+    """The one root that is repeated, which is rational; None if there is none, or more than one."""
+    common = sturm_chain(polynomial)[-1]  # (z - d)^n up to a factor, if d is the only one
+    times = len(common) - 1
+    if times == 0:
+        return None
+    root = -common[1] / (times * common[0])
+    while len(common) > 1:
+        if value(common, root) != 0:
+            return None
+        common = derivative(common)
+    return root
 
 
 @dataclass(frozen=True)

@@ -11,33 +11,53 @@ from verify.exact.kirchhoff.quartic import (
     RealRoots,
     derivative,
     has_repeated_root,
+    repeated_root,
     value,
 )
-from verify.exact.solution import NoClosedForm, Unsettled
+from verify.exact.solution import Unsettled
 from verify.scenes.precision import floor_log2, power_of_two
 
 _NARROWINGS = 40
 
 
 def regime(nutation: Nutation) -> str:
-    """One word: rest, steady, four-roots, two-roots (of a quartic) or cubic.
+    """One word for the motion, decided in rationals.
 
-    Raises NoClosedForm, with the reason, for a motion whose closed form is not built.
+    - rest: no impulse at all;
+    - euler-top: x = 0, and y turns about axis 3 at a constant rate;
+    - steady: x3 is constant;
+    - trigonometric: f is a quadratic, or x3 swings on one side of an isolated double root;
+    - hyperbolic: x3 comes from a double root of f and returns to it (homoclinic);
+    - algebraic: the same, but the root is triple, and x3 a rational function of time;
+    - heteroclinic: x3 goes from one pole to the other, and f is a square;
+    - cubic, four-roots, two-roots: f has simple roots alone, and of a quartic four or two are real.
     """
     f = nutation.f
     if nutation.F2 == 0:
-        if nutation.m1 == 0 and nutation.y3 == 0:
-            return "rest"
-        raise NoClosedForm("the linear impulse is zero: the body turns about a fixed direction")
+        return "rest" if nutation.m1 == 0 and nutation.y3 == 0 else "euler-top"
     if nutation.speed == 0 and value(derivative(f), nutation.z) == 0:
         return "steady"
     if len(f) < 4:
-        raise NoClosedForm("x3 is a trigonometric function: the quartic has degree two or less")
+        return "trigonometric"
     if has_repeated_root(f):
-        raise NoClosedForm("x3 is an elementary function: the quartic has a repeated root")
+        return _repeated(nutation)
     if len(f) == 4:
         return "cubic"
     return "four-roots" if RealRoots(f).number == 4 else "two-roots"
+
+
+def _repeated(nutation: Nutation) -> str:
+    """The kind of motion by the curvature of f where its root is repeated.
+
+    Two repeated roots can only be the poles: f would be a square, and f(+-F) <= 0.
+    """
+    root = repeated_root(nutation.f)
+    if root is None:
+        return "heteroclinic"
+    curvature = value(derivative(derivative(nutation.f)), root)
+    if curvature == 0:
+        return "algebraic"
+    return "hyperbolic" if curvature > 0 else "trigonometric"
 
 
 @dataclass(frozen=True)

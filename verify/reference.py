@@ -1,0 +1,166 @@
+"""The exact trajectory of a shipped scene as a plain document, for those who have no Python.
+
+The numbers are those of the scene's own rational values, not of values rounded to a rung.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from fractions import Fraction
+from typing import Any, Final
+
+from verify.exact.printed import decimal_text, document
+from verify.exact.route import solution
+from verify.exact.solution import Unsettled
+from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.motion import Impulse, Spin
+from verify.scenes.reader import load
+from verify.scenes.scene import Scene
+from verify.standard import Failed, _begin_worker, available_cores, fault
+
+DIGITS: Final = 32
+
+# The names of a trajectory file; r12 is row 1, column 2.
+_COLUMNS: Final = {
+    "omega": ("w1", "w2", "w3"),
+    "linear_impulse": ("x1", "x2", "x3"),
+    "angular_impulse": ("y1", "y2", "y3"),
+    "attitude": tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)),
+    "centre": ("c1", "c2", "c3"),
+}
+
+
+def reference(scene: Scene) -> dict[str, Any]:
+    """What the scene is, in exact text, and its motion at all its instants, column by column.
+
+    A row is the motion at exactly the time printed in its column ``t``, also where the instant
+    itself has no finite decimal. ``radius`` is that of `exact`, the rounding of the digits included.
+    Raises Unsettled where the exact solution does not settle.
+    """
+    texts = [_instant(instant) for instant in scene.clock.instants]
+    times = [(text, Fraction(text)) for text in texts]
+    printed = document(scene, solution(scene), times, DIGITS)
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "source": scene.source,
+        "model": scene.model,
+        "sha256": scene.digest,
+        "regime": printed["regime"],
+        "route": printed["route"],
+        "digits": DIGITS,
+        "body": _body(scene.body),
+        "initial": _initial(scene),
+        "columns": _columns(printed["rows"]),
+    }
+
+
+def references(names: Sequence[str], finished: Callable[[str], None]) -> list[dict[str, Any]]:
+    """The documents of many scenes on all cores, in the order given.
+
+    ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
+    nothing.
+    """
+    # Not fork: who calls may have threads.
+    context = multiprocessing.get_context("spawn")
+    workers = max(1, min(available_cores(), len(names)))
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+        futures = {pool.submit(_of_name, name): name for name in sorted(names, key=_expense)}
+        try:
+            found = {}
+            for future in as_completed(futures):
+                found[futures[future]] = future.result()
+                finished(futures[future])
+        except BaseException as error:
+            # Nobody waits for the rest, and the pool would.
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.terminate()
+            if isinstance(error, BrokenProcessPool):
+                raise Failed(
+                    "a worker process was ended from outside (short of memory?)"
+                ) from error
+            raise
+    return [found[name] for name in names]
+
+
+def _of_name(name: str) -> dict[str, Any]:
+    try:
+        return reference(load(name))
+    except Exception as error:
+        # Only text is sure to pass from process to process.
+        reason = str(error) if isinstance(error, Unsettled) else fault(error)
+        raise Failed(f"{name}: {reason}") from error
+
+
+def _expense(name: str) -> tuple[int, bool]:
+    """The longest first, so that no core is left with one at the end: what is tracked tells."""
+    scene = load(name)
+    return -len(scene.track), scene.model != "kirchhoff"
+
+
+def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
+    tracked = [quantity for quantity in _COLUMNS if quantity in rows[0]]
+    columns = {"t": [row["t"] for row in rows]}
+    for quantity in tracked:
+        entries = zip(*(_entries(row[quantity]) for row in rows), strict=True)
+        for name, column in zip(_COLUMNS[quantity], entries, strict=True):
+            columns[name] = list(column)
+    return columns | {"radius": [row["radius"] for row in rows]}
+
+
+def _entries(value: Sequence[Any]) -> list[str]:
+    """A vector as it is, a matrix row by row."""
+    return [
+        entry for part in value for entry in ([part] if isinstance(part, str) else _entries(part))
+    ]
+
+
+# The question, in exact text.
+
+
+def _body(body: RigidBody | ImmersedBody) -> dict[str, Any]:
+    if isinstance(body, RigidBody):
+        return {"inertia": _exact(body.inertia), "moment": _exact(body.moment)}
+    return {
+        "linear": _exact(body.linear),
+        "coupling": _exact(body.coupling),
+        "angular": _exact(body.angular),
+        "force": _exact(body.force),
+        "couple": _exact(body.couple),
+    }
+
+
+def _initial(scene: Scene) -> dict[str, Any]:
+    """The state at the time ``t``; of attitude and centre, what the scene tracks."""
+    state = scene.initial
+    found: dict[str, Any] = {"t": _exact(scene.clock.start)}
+    if isinstance(state, Spin):
+        found["omega"] = _exact(state.omega)
+    else:
+        found["linear_impulse"] = _exact(state.linear)
+        found["angular_impulse"] = _exact(state.angular)
+    if scene.track:
+        found["attitude"] = _exact(state.attitude)
+    if isinstance(state, Impulse) and "centre" in scene.track:
+        found["centre"] = _exact(state.centre)
+    return found
+
+
+def _exact(value: Any) -> Any:
+    """Rationals as text that loses nothing: a decimal where 32 digits suffice, else a/b."""
+    if not isinstance(value, Fraction):
+        return [_exact(entry) for entry in value]
+    text = _instant(value)
+    return text if Fraction(text) == value else str(value)
+
+
+def _instant(value: Fraction) -> str:
+    """The number to 32 digits without its last zeros."""
+    mantissa, e, exponent = decimal_text(value, DIGITS).partition("e")
+    if "." in mantissa:
+        mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}{e}{exponent}"
