@@ -19,7 +19,7 @@ from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.standard import Failed, _begin_worker, available_cores, fault
+from verify.standard import Failed, available_cores, begin_worker, fault
 
 DIGITS: Final = 32
 
@@ -68,7 +68,7 @@ def references(names: Sequence[str], finished: Callable[[str], None]) -> list[di
     context = multiprocessing.get_context("spawn")
     workers = max(1, min(available_cores(), len(names)))
     others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+    with ProcessPoolExecutor(workers, context, initializer=begin_worker) as pool:
         futures = {pool.submit(_of_name, name): name for name in sorted(names, key=_expense)}
         try:
             found = {}

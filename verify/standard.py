@@ -54,7 +54,7 @@ def run_all(
     # Not fork: heyoka's threads and locks do not survive it.
     context = multiprocessing.get_context("spawn")
     others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+    with ProcessPoolExecutor(workers, context, initializer=begin_worker) as pool:
         try:
             with _interrupts_held():
                 futures = {job: pool.submit(_run, job) for job in sorted(asked, key=_expense)}
@@ -131,7 +131,7 @@ def _expense(job: Job) -> int:
     return -{"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
 
 
-def _begin_worker() -> None:
+def begin_worker() -> None:
     """A worker leaves an interrupt to its parent, and does not outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -148,7 +148,7 @@ def _end_with_parent() -> None:
 def _interrupts_held() -> Iterator[None]:
     """Keep an interrupt until the workers are started.
 
-    They inherit the mask, and so are deaf from their first instruction, before `_begin_worker`.
+    They inherit the mask, and so are deaf from their first instruction, before `begin_worker`.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

@@ -30,7 +30,7 @@ from verify.scenes.scene import Scene
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # More nodes than this refine the sum over the steps by nothing that shows in two digits.
-_MOST_NODES = 50
+_MOST_NODES = 41
 # Below this floor, rounding the scene's data moves the orbit too little to change its condition.
 _SAME_ORBIT = 1e-3
 # A rounding of the components of a unit quaternion turns the frame by twice as much.
