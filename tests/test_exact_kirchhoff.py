@@ -15,6 +15,7 @@ from verify.exact.solution import NoClosedForm, Solution
 from verify.scenes.bodies import Clebsch, ImmersedBody
 from verify.scenes.motion import Clock, Impulse
 from verify.scenes.precision import power_of_two
+from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Vector, diagonal
 
@@ -422,3 +423,17 @@ def test_the_quartic_is_the_square_of_the_speed(seed: int) -> None:
     for side in (1, -1):
         pull = solid.r * (nutation.FG - side * nutation.y3)
         assert value(nutation.f, Fraction(side)) == -(pull**2)
+
+
+@pytest.mark.parametrize("name", ["four-real-roots", "two-real-roots", "cubic", "trigonometric"])
+def test_x3_recurs_after_the_period(name: str) -> None:
+    """x3(t + P) = x3(t) for the period among the elements, and m + m' = 1 where it is elliptic."""
+    found = closed_form(load(f"kirchhoff/{name}"))
+    elements = found.elements(50)
+    with mp.workdps(60):
+        period = Fraction(*(int(part) for part in elements["period"].as_integer_ratio()))
+        now, later = found.motion([Fraction(3), Fraction(3) + period], 45)["linear_impulse"]
+        # The period is known to 50 digits, and x3 changes by some units in unit time.
+        assert abs(later[2] - now[2]) <= mpf(10) ** -43
+        if "m" in elements:
+            assert abs(elements["m"] + elements["m_prime"] - 1) <= mpf(10) ** -48

@@ -100,6 +100,13 @@ class NutatingBody(Solution):
         with mp.workdps(digits + _GUARD_DIGITS):
             return self._orbit(digits + _GUARD_DIGITS).period
 
+    def elements(self, digits: int) -> dict[str, mpf]:
+        """The period of nutation where x3 recurs; for elliptic motion also rate, m and m_prime."""
+        with mp.workdps(digits + _GUARD_DIGITS):
+            orbit = self._orbit(digits + _GUARD_DIGITS)
+            found = {"period": orbit.period} if orbit.period < mp.inf else {}
+            return found | (orbit.moduli if isinstance(orbit, Orbit) else {})
+
     def _orbit(self, digits: int) -> Orbit | ElementaryOrbit | Front:
         """The orbit at the working precision of ``digits``, made once."""
         if digits not in self._orbits:

@@ -142,6 +142,12 @@ class Orbit:
         """The period of nutation, after which x3 and the shape of (x, y) recur."""
         return self._wave.period
 
+    @property
+    def moduli(self) -> dict[str, mpf]:
+        """The rate of the elliptic argument, and the parameters m = k^2 and m_prime = 1 - k^2."""
+        wave = self._wave
+        return {"rate": wave.rate, "m": wave.m, "m_prime": wave.m_prime}
+
     def lost_digits(self, t: mpf) -> int:
         """An estimate of the digits lost by the time t >= 0.
 
