@@ -5,10 +5,7 @@ The numbers are those of the scene's own rational values, not of values rounded 
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from fractions import Fraction
 from typing import Any, Final
 
@@ -19,7 +16,7 @@ from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.standard import Failed, available_cores, begin_worker, fault
+from verify.standard import Failed, available_cores, fault, on_all_cores
 
 DIGITS: Final = 32
 
@@ -64,27 +61,8 @@ def references(names: Sequence[str], finished: Callable[[str], None]) -> list[di
     ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    # Not fork: who calls may have threads.
-    context = multiprocessing.get_context("spawn")
     workers = max(1, min(available_cores(), len(names)))
-    others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(workers, context, initializer=begin_worker) as pool:
-        futures = {pool.submit(_of_name, name): name for name in sorted(names, key=_expense)}
-        try:
-            found = {}
-            for future in as_completed(futures):
-                found[futures[future]] = future.result()
-                finished(futures[future])
-        except BaseException as error:
-            # Nobody waits for the rest, and the pool would.
-            for worker in set(multiprocessing.active_children()) - others:
-                worker.terminate()
-            if isinstance(error, BrokenProcessPool):
-                raise Failed(
-                    "a worker process was ended from outside (short of memory?)"
-                ) from error
-            raise
-    return [found[name] for name in names]
+    return on_all_cores(_of_name, names, _expense, finished, workers)
 
 
 def _of_name(name: str) -> dict[str, Any]:

@@ -8,12 +8,12 @@ import signal
 import threading
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
@@ -33,6 +33,8 @@ class Job:
 
 
 Finished = Callable[[Job], None]
+Asked = TypeVar("Asked")
+Result = TypeVar("Result")
 
 
 def jobs(scenes: Iterable[str], solver: str, rungs: Sequence[str]) -> list[Job]:
@@ -51,15 +53,34 @@ def run_all(
     workers = min(workers or available_cores(), len(asked))
     if workers <= 1:
         return _in_this_process(asked, finished)
+    results = on_all_cores(_run, asked, _expense, finished, workers)
+    return [judgement for result in results for judgement in result]
+
+
+def on_all_cores(
+    work: Callable[[Asked], Result],
+    asked: Sequence[Asked],
+    expense: Callable[[Asked], Any],
+    finished: Callable[[Asked], None],
+    workers: int,
+) -> list[Result]:
+    """The results of ``work`` in the order asked for, begun in the order of ``expense``.
+
+    ``finished`` is told of each as it ends. Whatever ends this early, an interrupt too, ends the
+    worker processes first; Failed is raised where one was lost.
+    """
     # Not fork: heyoka's threads and locks do not survive it.
     context = multiprocessing.get_context("spawn")
     others = set(multiprocessing.active_children())
-    with ProcessPoolExecutor(workers, context, initializer=begin_worker) as pool:
+    with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
         try:
             with _interrupts_held():
-                futures = {job: pool.submit(_run, job) for job in sorted(asked, key=_expense)}
-            _report(futures, finished)
-            return [judgement for job in asked for judgement in futures[job].result()]
+                futures = {one: pool.submit(work, one) for one in sorted(asked, key=expense)}
+            by_future = {future: one for one, future in futures.items()}
+            for future in as_completed(by_future):
+                future.result()
+                finished(by_future[future])
+            return [futures[one].result() for one in asked]
         except BaseException as error:
             # Nobody waits for the rest, and the pool would.
             for worker in set(multiprocessing.active_children()) - others:
@@ -113,13 +134,6 @@ def _run(job: Job) -> list[Judgement]:
     return found
 
 
-def _report(futures: dict[Job, Future[list[Judgement]]], finished: Finished) -> None:
-    by_future = {future: job for job, future in futures.items()}
-    for future in as_completed(by_future):
-        future.result()
-        finished(by_future[future])
-
-
 def _expense(job: Job) -> int:
     """The longest first, so that no core is left with one at the end: what is tracked tells.
 
@@ -131,7 +145,7 @@ def _expense(job: Job) -> int:
     return -{"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
 
 
-def begin_worker() -> None:
+def _begin_worker() -> None:
     """A worker leaves an interrupt to its parent, and does not outlive it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -148,7 +162,7 @@ def _end_with_parent() -> None:
 def _interrupts_held() -> Iterator[None]:
     """Keep an interrupt until the workers are started.
 
-    They inherit the mask, and so are deaf from their first instruction, before `begin_worker`.
+    They inherit the mask, and so are deaf from their first instruction, before `_begin_worker`.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
