@@ -47,18 +47,29 @@ class Solution(ABC):
     """The exact motion of one scene.
 
     ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
-    ``route`` is the arithmetic: ``mpmath`` (closed form) or ``taylor``.
+    ``route`` is the arithmetic: ``arb`` or ``mpmath`` (closed forms), or ``taylor``.
     """
 
     regime: str
     route: str
 
     @abstractmethod
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The tracked quantities at these times since the start, computed once at that precision.
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The motion at these times since the start, to ``digits`` digits of every vector and matrix.
 
-        Object arrays of mpf shaped as in Motion. An evaluation makes no claim about its error.
+        Raises Unsettled where that cannot be had.
         """
+
+    @abstractmethod
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The tracked quantities at these times, to about ``digits`` digits and without a claim.
+
+        Object arrays of mpf shaped as in Motion.
+        """
+
+
+class Settled(Solution):
+    """A solution that is believed when two evaluations at different precisions agree."""
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:

@@ -23,7 +23,7 @@ from verify.exact.recursion import (
     march,
     problem,
 )
-from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution
+from verify.exact.solution import NO_CLOSED_FORM, Quantities, Settled
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Motion, Quaternion, Spin, State
@@ -35,7 +35,7 @@ Triple = tuple[int, int, int]
 
 @final
 @dataclass(frozen=True)
-class TaylorSolution(Solution):
+class TaylorSolution(Settled):
     """The motion of any scene, free or loaded, by recursion on the equations of motion."""
 
     scene: Scene
@@ -75,7 +75,7 @@ def arcs(scene: Scene, starts: Sequence[State], spans: Sequence[Fraction], digit
 
 @final
 @dataclass(frozen=True)
-class _Arcs(Solution):
+class _Arcs(Settled):
     """Many short motions of one body, each from a state of its own."""
 
     scene: Scene

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 from verify.exact.euler.attitude import FrameLaw, frame_law
 from verify.exact.euler.orbit import Orbit, Precession, converted
 from verify.exact.euler.regime import FreeSpin, Regime
-from verify.exact.solution import NoClosedForm, Quantities, Solution
+from verify.exact.solution import NoClosedForm, Quantities, Settled, Solution
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Quaternion, Spin
@@ -44,7 +44,7 @@ def closed_form(scene: Scene) -> Solution:
     return FreeRotation(FreeSpin(scene.body.inertia, scene.initial.omega), attitude)
 
 
-class FreeRotation(Solution):
+class FreeRotation(Settled):
     """The torque-free motion of any rigid body: omega(t) in body axes, and R(t) from a start."""
 
     route = "mpmath"

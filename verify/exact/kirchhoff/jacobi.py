@@ -13,7 +13,7 @@ from verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from verify.exact.kirchhoff.orbit import Axial, Orbit, transverse
 from verify.exact.kirchhoff.quartic import Nutation
 from verify.exact.kirchhoff.regime import regime
-from verify.exact.solution import NoClosedForm, Quantities, Solution
+from verify.exact.solution import NoClosedForm, Quantities, Settled, Solution
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse
 from verify.scenes.scene import Scene
@@ -50,7 +50,7 @@ def closed_form(scene: Scene) -> Solution:
 
 
 @final
-class Precession(Solution):
+class Precession(Settled):
     """Rest, steady motion and Euler's top: x3 is constant, and x and y turn about axis 3 together."""
 
     route = "mpmath"
@@ -73,7 +73,7 @@ class Precession(Solution):
 
 
 @final
-class NutatingBody(Solution):
+class NutatingBody(Settled):
     """x3 varies: it swings between two roots of f, or falls away from one and returns to it."""
 
     route = "mpmath"
