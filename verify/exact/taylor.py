@@ -23,12 +23,13 @@ from verify.exact.recursion import (
     march,
     problem,
 )
+from verify.exact.rotation import rotation_matrix
 from verify.exact.solution import NO_CLOSED_FORM, Quantities, Settled
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Impulse, Motion, Quaternion, Spin, State
+from verify.scenes.motion import Impulse, Motion, Spin, State
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from verify.scenes.tensors import Vector
 
 Triple = tuple[int, int, int]
 
@@ -226,22 +227,10 @@ def _start(scene: Scene) -> Vector:
     else:
         moving = initial.linear + initial.angular
     if scene.track:
-        moving += tuple(entry for row in _rotation(initial.attitude) for entry in row)
+        moving += tuple(entry for row in rotation_matrix(initial.attitude) for entry in row)
     if "centre" in scene.track and isinstance(initial, Impulse):
         moving += initial.centre
     return moving
-
-
-def _rotation(quaternion: Quaternion) -> Matrix:
-    """The matrix R of a quaternion of any norm: rational, because R is of degree 2 in q/|q|."""
-    s, a, b, c = quaternion
-    norm = s * s + a * a + b * b + c * c
-    rows = (
-        (s * s + a * a - b * b - c * c, 2 * (a * b - s * c), 2 * (a * c + s * b)),
-        (2 * (a * b + s * c), s * s - a * a + b * b - c * c, 2 * (b * c - s * a)),
-        (2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c),
-    )
-    return tuple(tensors.scaled(1 / norm, row) for row in rows)
 
 
 # The answer.
