@@ -163,7 +163,7 @@ CASES = {
     "q' = q": (CHIRAL, GENERIC, "two-roots"),
     "start at the lower turning point": (SHARP, exact(1, 1, 2, "1/3", "1/3", 2), "four-roots"),
     "start at the upper turning point": (BLUNT, exact(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
-    "through the pole": (SHARP, exact("3/5", 0, "4/5", "1/3", "1/7", 1), "four-roots"),
+    "through the pole": (SHARP, exact("3/5", 0, "4/5", "1/3", 2, 1), "four-roots"),
     "through the lower pole": (BLUNT, exact("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
     "start on the axis": (EVEN, exact(0, 0, 1, "1/3", "1/7", 2), "cubic"),
     "start on the axis, two roots": (BLUNT, exact(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
@@ -377,7 +377,6 @@ REFUSED = {
         GENERIC,
     ),
     "a force or a couple": scene(SHARP.body(force=exact(0, 0, 1)), GENERIC),
-    "attitude": scene(SHARP, GENERIC, frozenset({"attitude"})),
 }
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from verify.exact.route import solution
-from verify.exact.solution import Solution, Unsettled
+from verify.exact.solution import Settled, Unsettled
 from verify.judge.attainable import Floor, floor
 from verify.judge.drifts import drifts
 from verify.judge.errors import Errors, arc_length, largest, state_errors
@@ -273,7 +273,7 @@ def test_sound_solver_stays_near_the_floor_and_not_far_below() -> None:
 # Truths that cannot be had.
 
 
-class Doubtful(Solution):
+class Doubtful(Settled):
     """A truth whose two evaluations never agree."""
 
     route, regime = "mpmath", "generic"

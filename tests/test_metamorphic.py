@@ -21,13 +21,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from mpmath import mp
 
 from verify.controls.defects import DEFECTS, Defect
 from verify.judge.attainable import floor
 from verify.judge.errors import largest, state_errors
 from verify.judge.gates import FACTOR
-from verify.models.form import Named, clebsch_equations, euler_equations, kirchhoff_equations
+from verify.models.form import (
+    Form,
+    Named,
+    clebsch_equations,
+    euler_equations,
+    kirchhoff_equations,
+)
 from verify.models.frame import rotation
 from verify.models.problem import Problem, pose
 from verify.scenes import tensors
@@ -673,25 +681,114 @@ def of_revolution(*, loaded: bool) -> Scene:
     return scene(pushed, IMMERSED.initial, "attitude", "centre")
 
 
-@pytest.mark.parametrize("loaded", [False, True])
-@EACH_RUNG
-def test_clebsch_form_is_the_21_coefficient_form(name: str, loaded: bool) -> None:
-    """Clebsch's equations answer as the general ones do, to ten floors each.
+def in_21_coefficients(posed: Problem) -> Problem:
+    """The same body about the same axis 3 by the general equations.
 
-    With the axis of revolution called 1 the body is nothing special to the solver, and it takes the
-    general equations with all three of y.
+    y3 is a state, and all 21 coefficients are parameters, also those that are zero.
     """
-    axes = AXES["permuted"]
+    known = {**posed.parameter, **posed.state}
+    body = {f"{m}{i}{j}": Fraction(0) for m in "ABC" for i in (1, 2, 3) for j in (1, 2, 3)}
+    for block, letter in zip("ABC", "pqr", strict=True):
+        body |= {f"{block}{i}{i}": known[letter] for i in (1, 2)}
+        body[f"{block}33"] = known[f"{letter}'"]
+    numbers = body | {name: value for name, value in known.items() if name[0] in "XL"}
+    impulses = ("x1", "x2", "x3", "y1", "y2", "y3")
+    states = (*impulses, *(name for name in posed.form.states if name not in impulses))
+    form = Form(kirchhoff_equations, states, tuple(numbers))
+    # Of A and C the equations name the upper triangles alone.
+    form = replace(form, parameters=form.entering())
+    parameters = tuple(numbers[name] for name in form.parameters)
+    initial = tuple(known[name] for name in states)
+    return replace(posed, form=form, parameters=parameters, initial=initial)
+
+
+def answered(posed: Problem) -> Run:
+    trajectory = Taylor().solve(posed)
+    assert trajectory.outcome is Outcome.FINISHED
+    return Run(posed, trajectory)
+
+
+LOADED = pytest.mark.parametrize("loaded", [False, True])
+AXIS_3_CALLED = {1: AXES["permuted"], 2: Axes((1, -1, -1, -1))}
+
+
+@LOADED
+@pytest.mark.parametrize("name", [*RUNGS, "mp100"])
+def test_clebsch_form_is_the_21_coefficient_form(name: str, loaded: bool) -> None:
+    """Clebsch's equations answer as the general ones about the same axis 3, to ten floors each.
+
+    Both start from the same numbers of the rung: only the roundings of the steps differ, in six
+    products of the state on the one side, and on the other in 21 coefficients of which 15 are zero.
+    """
     clebsch = solve(of_revolution(loaded=loaded), name)
-    general = solve(axes.of_scene(of_revolution(loaded=loaded)), name)
+    general = answered(in_21_coefficients(clebsch.problem))
+    assert clebsch.problem.form.equations is clebsch_equations
+    assert len([n for n in general.problem.form.parameters if n[0] in "ABC"]) == 21
+    assert apart(clebsch, general.motion, general.trajectory.steps) <= 1
+    # Or the two would be one set of equations, and this no test.
+    assert not same_bits(clebsch.motion, general.motion)
+
+
+@LOADED
+@pytest.mark.parametrize("axis", AXIS_3_CALLED)
+@EACH_RUNG
+def test_axis_of_revolution_may_have_any_number(name: str, axis: int, loaded: bool) -> None:
+    """With the axis of revolution called 1 or 2 the motion is the same, to ten floors each.
+
+    The body is then nothing special to the solver, and it takes the general equations with all
+    three of y.
+    """
+    axes, asked = AXIS_3_CALLED[axis], of_revolution(loaded=loaded)
+    clebsch, general = solve(asked, name), solve(axes.of_scene(asked), name)
+    assert axes.axial(vector(0, 0, 1)) == tuple(vector(1)[0] * (i == axis) for i in (1, 2, 3))
     assert clebsch.problem.form.equations is clebsch_equations
     assert general.problem.form.equations is kirchhoff_equations
     assert apart(clebsch, axes.undone(general.motion), general.trajectory.steps) <= 1
 
 
+@LOADED
+@given(st.lists(st.fractions(-9, 9, max_denominator=99), min_size=13, max_size=13))
+def test_clebsch_rates_are_the_general_rates_exactly(loaded: bool, entries: list[Fraction]) -> None:
+    """In rationals both right-hand sides are equal at any x, y, q and c, and y3' is L3."""
+    asked = replace(of_revolution(loaded=loaded), track=frozenset({"attitude", "centre"}))
+    clebsch = pose(asked, rung("f64"))
+    general = in_21_coefficients(clebsch)
+    state = dict(zip(general.form.states, entries, strict=True))
+    rates = rates_at(general, state)
+    assert rates_at(clebsch, state).items() <= rates.items()
+    assert rates["y3"] == clebsch.parameter.get("L3", 0)
+
+
+@pytest.mark.parametrize("axis", AXIS_3_CALLED)
+@given(st.lists(st.fractions(-9, 9, max_denominator=99), min_size=6, max_size=6))
+def test_clebsch_rates_are_the_permuted_rates_exactly(axis: int, entries: list[Fraction]) -> None:
+    """In rationals x' and y' of the body whose axis is called 1 or 2 are Clebsch's, permuted."""
+    axes, asked = AXIS_3_CALLED[axis], of_revolution(loaded=False)
+    clebsch, general = (pose(s, rung("f64")) for s in (asked, axes.of_scene(asked)))
+    state = dict(zip(general.form.states, entries, strict=True))
+    here = rates_at(clebsch, state) | {"y3": Fraction(0)}
+    assert permuted(axes, here) == rates_at(general, permuted(axes, state))
+
+
+def rates_at(posed: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
+    """The rates by name, at a state of more names than the problem's own: y3 may be a parameter."""
+    parameters = [{**posed.parameter, **state}[name] for name in posed.form.parameters]
+    rates = posed.form.rates([state[name] for name in posed.form.states], parameters)
+    return dict(zip(posed.form.states, rates, strict=True))
+
+
+def permuted(axes: Axes, named: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """x and y, or their rates, in the new axes."""
+    vectors = {v: axes.axial(tuple(named[f"{v}{i}"] for i in (1, 2, 3))) for v in "xy"}
+    return {f"{v}{i}": e for v, entries in vectors.items() for i, e in enumerate(entries, 1)}
+
+
 def test_wrong_munk_moment_is_not_clebschs() -> None:
-    """The general equations with the sign of x x U turned are not Clebsch's."""
+    """The general equations with the sign of x x U turned are not Clebsch's, about whichever axis."""
     axes, asked = AXES["permuted"], of_revolution(loaded=False)
-    general = solve(axes.of_scene(asked), "f64", DEFECT["munk-moment-sign"])
+    clebsch, wrong = solve(asked, "f64"), DEFECT["munk-moment-sign"]
+    general = solve(axes.of_scene(asked), "f64", wrong)
     image = axes.undone(general.motion)
-    assert apart(solve(asked, "f64"), image, general.trajectory.steps) >= BLATANT
+    assert apart(clebsch, image, general.trajectory.steps) >= BLATANT
+    same_axis = wrong.solve(in_21_coefficients(clebsch.problem))
+    assert apart(clebsch, same_axis.motion(BITS), same_axis.steps) >= BLATANT

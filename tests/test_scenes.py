@@ -12,12 +12,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from verify.exact.kirchhoff.quartic import Nutation
+from verify.exact.kirchhoff.regime import regime
 from verify.exact.route import solution
+from verify.models.problem import pose
 from verify.scenes import library, tensors
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.body_reader import obeys_triangle_inequality
 from verify.scenes.faults import Refused
 from verify.scenes.motion import IDENTITY, Impulse, Spin
+from verify.scenes.precision import rung
 from verify.scenes.reader import load, read
 from verify.scenes.scene import Scene
 from verify.scenes.table import LARGEST_EXPONENT, exact_number
@@ -234,6 +238,70 @@ def remus_inertia() -> Matrix:
     )
 
 
+def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_inverse_of_its_inertia() -> None:
+    """[[A, B], [B^T, C]] times the inertia that the file names is the identity, all 21 coefficients
+    differ from zero, and the initial impulses are that inertia times the velocities named."""
+    scene = load("kirchhoff/swimmer-vehicle")
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    inertia = swimmer_inertia()
+    energy = scene.body.energy_matrix
+    assert tensors.product(energy, inertia) == tensors.diagonal((Fraction(1),) * 6)
+    assert all(entry != 0 for row in energy for entry in row)
+    velocities = tuple(Fraction(v) for v in ("1.8", "0.1", "-0.15", "0.1", "0.15", "0.05"))
+    assert tensors.apply(inertia, velocities) == scene.initial.linear + scene.initial.angular
+
+
+def swimmer_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r, about the centre of buoyancy."""
+    length, mass, below = Fraction("5.3"), Fraction("5454.54"), Fraction("0.061")
+    entries = {
+        **{(i, i): mass for i in range(3)},
+        **{(3, 3): Fraction(2038), (4, 4): Fraction(13587), (5, 5): Fraction(13587)},
+        **{(i, j): Fraction("13.58") for i, j in ((3, 4), (4, 5), (3, 5))},
+        **{(0, 4): mass * below, (1, 3): -mass * below},
+    }
+    derivatives = {
+        **{(0, 0): "-7.6e-3", (1, 1): "-5.5e-2", (2, 2): "-2.4e-1"},  # Xu', Yv', Zw'
+        **{(1, 3): "1.2e-4", (1, 5): "1.2e-3", (2, 4): "-6.8e-3"},  # Yp', Yr', Zq'
+        **{(3, 3): "-1.0e-3", (4, 4): "-1.7e-2", (5, 5): "-3.4e-3"},  # Kp', Mq', Nr'
+        (3, 5): "-3.4e-5",  # Kr'
+    }
+    for (i, j), derivative in derivatives.items():
+        power = 3 + (i > 2) + (j > 2)
+        entries[i, j] = (
+            entries.get((i, j), Fraction(0)) - Fraction(derivative) * 500 * length**power
+        )
+    upper = [[entries.get((min(i, j), max(i, j)), Fraction(0)) for j in range(6)] for i in range(6)]
+    return tuple(tuple(row) for row in upper)
+
+
+# The upper triangle of the inverse inertia in Lauvdal's npsauv.m, as printed.
+PRINTED_INVERSE = """
+1.662e-4 1.846e-10 1.303e-7 3.726e-9 -1.132e-6 7.320e-10
+         1.052e-4 3.843e-10 9.638e-6 -3.340e-9 2.368e-6
+                  4.315e-5 7.757e-9 -2.357e-6 1.524e-9
+                           2.431e-4 -6.742e-8 -7.740e-7
+                                    2.049e-5 -1.324e-8
+                                             4.838e-5
+"""
+
+
+def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_printed_inverse() -> None:
+    """Every coefficient is the one in the transcription, to half a unit of its fourth digit: mass,
+    sign of the products of inertia, offset of the centre of mass and powers of the length are right.
+    """
+    body = load("kirchhoff/swimmer-vehicle").body
+    assert isinstance(body, ImmersedBody)
+    printed = iter(PRINTED_INVERSE.split())
+    for i in range(6):
+        for j in range(i, 6):
+            text = next(printed)
+            half_unit = Fraction(10) ** int(text.split("e")[1]) / 2000
+            assert abs(body.energy_matrix[i][j] - Fraction(text)) <= half_unit
+    assert next(printed, None) is None
+
+
 # The shipped scenes
 
 
@@ -358,6 +426,64 @@ def test_each_orbit_lies_on_the_side_that_its_reason_says(name: str) -> None:
     assert ORBITS[name](ratio - middle)
 
 
+# The words of verify/exact/kirchhoff/regime.py, and the free bodies of Clebsch's form that move so.
+MOTIONS = {
+    "rest": ("rest",),
+    "euler-top": ("zero-impulse", "euler-top"),
+    "steady": ("steady-spin", "unstable-spin", "border-spin", "steady-precession"),
+    "trigonometric": ("trigonometric", "beside-a-stable-spin", "isotropic-helicoid"),
+    "hyperbolic": ("onto-the-axis", "falling-away"),
+    "algebraic": ("algebraic", "algebraic-path"),
+    "heteroclinic": ("half-turn", "half-turn-path"),
+    "cubic": ("cubic", "later-start"),
+    "four-roots": (
+        *("four-real-roots", "whole-motion", "planar-swing", "planar-turn"),
+        *("backward", "orthogonal-impulses", "through-the-pole"),
+    ),
+    "two-roots": (
+        *("two-real-roots", "screw", "listed-times"),
+        *("from-the-axis", "turning-point", "no-axial-impulse"),
+    ),
+}
+MOTION = {f"kirchhoff/{name}": word for word, names in MOTIONS.items() for name in names}
+
+
+def test_every_free_body_of_clebschs_form_has_its_motion_named() -> None:
+    """The table above lists the shipped free bodies of Clebsch's form, each once."""
+    bodies = {name: load(name).body for name in library.names() if name.startswith("kirchhoff/")}
+    assert set(MOTION) == {
+        name
+        for name, body in bodies.items()
+        if isinstance(body, ImmersedBody) and body.is_free and body.clebsch is not None
+    }
+    assert len(MOTION) == sum(map(len, MOTIONS.values()))
+
+
+@pytest.mark.parametrize("rung_name", [None, "f32", "f64", "f128"])
+@pytest.mark.parametrize("name", MOTION)
+def test_each_scene_moves_as_its_reason_says(name: str, rung_name: str | None) -> None:
+    """The regime is the one named, of the numbers as written and as rounded to a rung."""
+    scene = load(name)
+    given_to_solver = scene if rung_name is None else pose(scene, rung(rung_name)).given
+    assert isinstance(given_to_solver.initial, Impulse)
+    nutation = Nutation.of(clebsch(given_to_solver), given_to_solver.initial)
+    assert regime(nutation) == MOTION[name]
+
+
+@pytest.mark.parametrize("word", MOTIONS)
+def test_every_motion_is_shipped_with_its_path(word: str) -> None:
+    """In each regime some scene tracks attitude and centre."""
+    tracks = [load(f"kirchhoff/{name}").track for name in MOTIONS[word]]
+    assert {"attitude", "centre"} in tracks
+
+
+def test_no_word_for_a_motion_is_without_a_scene() -> None:
+    """The words of the table are those that the docstring of ``regime`` explains."""
+    lines = (regime.__doc__ or "").splitlines()
+    heads = [line.split(":")[0] for line in lines if line.strip().startswith("- ")]
+    assert {word for head in heads for word in head.strip("- ").split(", ")} == set(MOTIONS)
+
+
 # Degree of the polynomial and number of its distinct real roots.
 REGIMES = {
     "kirchhoff/four-real-roots": (4, 4),
@@ -368,6 +494,13 @@ REGIMES = {
     "kirchhoff/half-turn": (4, 2),
     "kirchhoff/algebraic": (4, 2),
     "kirchhoff/beside-a-stable-spin": (4, 3),
+    "kirchhoff/falling-away": (4, 3),
+    "kirchhoff/half-turn-path": (4, 2),
+    "kirchhoff/algebraic-path": (4, 2),
+    "kirchhoff/isotropic-helicoid": (2, 2),
+    "kirchhoff/later-start": (3, 3),
+    "kirchhoff/no-axial-impulse": (4, 2),
+    "kirchhoff/planar-turn": (4, 4),
 }
 
 
@@ -386,6 +519,12 @@ POLES = {
     "kirchhoff/beside-a-stable-spin": (2, -1),
     "kirchhoff/unstable-spin": (2, 1),
     "kirchhoff/steady-spin": (2, -1),
+    "kirchhoff/through-the-pole": (1, 1),
+    "kirchhoff/from-the-axis": (1, -1),
+    "kirchhoff/falling-away": (2, 1),
+    "kirchhoff/algebraic-path": (3, 0),
+    "kirchhoff/border-spin": (3, 0),
+    "kirchhoff/planar-turn": (1, 1),
 }
 
 
@@ -401,14 +540,48 @@ def test_the_pole_is_a_root_as_often_as_the_reason_says(name: str) -> None:
     assert (multiplicity(nutation_polynomial(scene), F), sign(border)) == POLES[name]
 
 
-def test_the_half_turn_ends_at_the_other_pole() -> None:
-    """Both poles are double roots, so that f is a0 times a square."""
-    scene = load("kirchhoff/half-turn")
-    F = square_root(invariants(scene)[0])
-    assert [multiplicity(nutation_polynomial(scene), z) for z in (F, -F)] == [2, 2]
+@pytest.mark.parametrize("name", ["kirchhoff/half-turn", "kirchhoff/half-turn-path"])
+def test_the_half_turn_ends_at_the_other_pole(name: str) -> None:
+    """Both poles are double roots, f = a0 (z^2 - F^2)^2, whether F is rational or not."""
+    polynomial = nutation_polynomial(load(name))
+    lead, ff = polynomial[0], invariants(load(name))[0]
+    assert polynomial == [lead, 0, -2 * lead * ff, 0, lead * ff**2]
 
 
-@pytest.mark.parametrize(("name", "times"), [("kirchhoff/steady-precession", 2)])
+def test_the_half_turn_path_has_an_irrational_f() -> None:
+    """F^2 in lowest terms has a numerator that is no square."""
+    ff, _, _ = invariants(load("kirchhoff/half-turn-path"))
+    assert math.isqrt(ff.numerator) ** 2 != ff.numerator
+
+
+BORDERS = {
+    "kirchhoff/algebraic": -1,
+    "kirchhoff/algebraic-path": -1,
+    "kirchhoff/border-spin": 1,
+}
+
+
+@pytest.mark.parametrize("name", BORDERS)
+def test_beyond_the_border_b_decides(name: str) -> None:
+    """With A = 0 the sign of B = 2 F (p'-p)/r + G (q'-q)/r, 49 (25), is as the file says."""
+    scene = load(name)
+    c, (ff, fg, _) = clebsch(scene), invariants(scene)
+    # F B, so that G enters as FG.
+    assert sign((2 * ff * (c.p_prime - c.p) + fg * (c.q_prime - c.q)) / c.r) == BORDERS[name]
+
+
+@pytest.mark.parametrize("name", ["kirchhoff/algebraic-path", "kirchhoff/falling-away"])
+def test_what_starts_on_the_way_out_is_on_the_way_out(name: str) -> None:
+    """x3' = r (x1 y2 - x2 y1) is negative and x3 positive: the body leaves the axis."""
+    scene = load(name)
+    assert isinstance(scene.initial, Impulse)
+    x, y = scene.initial.linear, scene.initial.angular
+    assert x[0] * y[1] - x[1] * y[0] < 0 < x[2]
+
+
+@pytest.mark.parametrize(
+    ("name", "times"), [("kirchhoff/turning-point", 1), ("kirchhoff/steady-precession", 2)]
+)
 def test_a_start_without_speed_is_a_root_of_f(name: str, times: int) -> None:
     """A turning point is a simple root, the place of a steady precession a double one, no pole."""
     scene = load(name)
@@ -418,11 +591,67 @@ def test_a_start_without_speed_is_a_root_of_f(name: str, times: int) -> None:
     assert z**2 < invariants(scene)[0]
 
 
+VANISHING = {
+    "kirchhoff/orthogonal-impulses": (False, True, False),
+    "kirchhoff/no-axial-impulse": (False, False, True),
+    "kirchhoff/planar-turn": (False, True, True),
+    "kirchhoff/planar-swing": (False, True, True),
+    "kirchhoff/half-turn-path": (False, True, True),
+    "kirchhoff/euler-top": (True, True, False),
+    "kirchhoff/rest": (True, True, True),
+}
+
+
+@pytest.mark.parametrize("name", VANISHING)
+def test_what_vanishes_is_what_the_reason_says(name: str) -> None:
+    """Of F^2, FG and y3 those are zero, exactly, and no others."""
+    assert tuple(value == 0 for value in invariants(load(name))) == VANISHING[name]
+
+
+def test_a_thrown_body_starts_on_its_axis() -> None:
+    """x1 = x2 = 0, but y1 or y2 is not: no steady spin."""
+    initial = load("kirchhoff/from-the-axis").initial
+    assert isinstance(initial, Impulse)
+    assert not any(initial.linear[:2])
+    assert any(initial.angular[:2])
+
+
+@pytest.mark.parametrize(("name", "turns"), [("planar-swing", False), ("planar-turn", True)])
+def test_a_planar_motion_swings_or_turns_over(name: str, turns: bool) -> None:
+    """x2 = y1 = y3 = q = q' = 0 is kept by 48 (3), (4); the axis reaches both poles if
+    r y2^2 > (p'-p) (F^2 - x3^2), and neither if it is less."""
+    scene = load(f"kirchhoff/{name}")
+    assert isinstance(scene.initial, Impulse)
+    c, x, y = clebsch(scene), scene.initial.linear, scene.initial.angular
+    assert not any((x[1], y[0], y[2], c.q, c.q_prime))
+    excess = c.r * y[1] ** 2 - (c.p_prime - c.p) * x[0] ** 2
+    assert excess != 0
+    assert (excess > 0) is turns
+
+
+def test_the_isotropic_helicoid_has_no_axis() -> None:
+    """A, B and C are multiples of the unit matrix and B is not zero."""
+    c = clebsch(load("kirchhoff/isotropic-helicoid"))
+    assert (c.p, c.q, c.r) == (c.p_prime, c.q_prime, c.r_prime)
+    assert c.q != 0
+
+
+def test_time_runs_as_the_reasons_say() -> None:
+    """Backward through 0 from 12.3; forward from 1000.1, which no binary number is."""
+    backward, later = (load(f"kirchhoff/{name}").clock for name in ("backward", "later-start"))
+    assert backward.start == Fraction("12.3") > 0 > backward.instants[-1]
+    assert all(after < before for before, after in pairwise(backward.instants))
+    assert later.start == later.instants[0] == Fraction("1000.1")
+    assert not is_exact_on_every_rung(later.start)
+
+
 # Their degeneracy is a relation among several numbers, and would be lost if one were rounded.
 EXACT_BODIES = [
     *("onto-the-axis", "half-turn", "algebraic", "beside-a-stable-spin", "unstable-spin"),
-    "steady-precession",
+    *("steady-precession", "through-the-pole", "planar-turn", "border-spin"),
+    *("falling-away", "half-turn-path", "algebraic-path"),
 ]
+EXACT_STARTS = [*EXACT_BODIES, "orthogonal-impulses", "turning-point"]
 
 
 @pytest.mark.parametrize("name", EXACT_BODIES)
@@ -433,7 +662,7 @@ def test_a_degenerate_body_is_the_same_on_every_rung(name: str) -> None:
     assert all(is_exact_on_every_rung(entry) for row in body.energy_matrix for entry in row)
 
 
-@pytest.mark.parametrize("name", EXACT_BODIES)
+@pytest.mark.parametrize("name", EXACT_STARTS)
 def test_a_degenerate_start_is_the_same_on_every_rung(name: str) -> None:
     """No component of an impulse needs more than the 24 bits of f32."""
     initial = load(f"kirchhoff/{name}").initial

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from math import isfinite
 from typing import Any
 
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.exact.solution import NoClosedForm, Orbital
+from verify.exact.elements import Element, Elements, elements
+from verify.exact.solution import Unsettled
+from verify.judge.carrying import Carrying, carrying
 from verify.judge.verdict import Verdict
 from verify.models.problem import NotRepresentable, pose
 from verify.run import run
+from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
@@ -32,6 +34,8 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
     found = run(scene, "taylor", rung)
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]
+    orbit = _orbit(scene)
+    period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -48,25 +52,86 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
             "evaluations": first.evaluations,
             "seconds": first.seconds,
         },
-        "orbit": _elements(scene),
+        **orbit,
+        "condition": _condition(scene, rung_named(rung), period) if found.record else None,
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in found.verdicts],
     }
 
 
-def _elements(scene: Scene) -> dict[str, str]:
-    """Period, rate, parameter m = k^2 and 1 - m of the impulses' or omega's orbit, as decimals.
+def _orbit(scene: Scene) -> dict[str, Any]:
+    """The numbers of the orbit by name, what each of them is, and what they say in words.
 
-    They belong to the scene's own numbers, and exist where there is a closed form; attitude and
-    centre do not change them.
+    They belong to the scene's own numbers and to omega or the impulses; attitude and centre do not
+    change them. All empty where the digits cannot be had.
     """
     try:
-        exact = solution(replace(scene, track=frozenset()), "mpmath")
-    except NoClosedForm:
-        return {}
-    if not isinstance(exact, Orbital):
-        return {}
-    return {name: str(mp.nstr(v, _DIGITS)) for name, v in exact.elements(_DIGITS).items()}
+        found = elements(scene, _DIGITS)
+    except Unsettled as doubt:
+        found = Elements("", (), (str(doubt),))
+    numbers = [_element(element) for element in found.numbers]
+    return {
+        "orbit": {number["name"]: number["value"] for number in numbers},
+        "elements": numbers,
+        "sentences": list(found.sentences),
+    }
+
+
+def _element(element: Element) -> dict[str, str]:
+    value = str(mp.nstr(element.value, _DIGITS))
+    return {
+        "name": element.name,
+        "value": value,
+        "unit": element.unit,
+        "meaning": element.meaning,
+        "source": element.source,
+    }
+
+
+def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
+    """How an error at the first sample is carried along the orbit; None where that is not known."""
+    try:
+        found = carrying(scene)
+    except Unsettled:
+        return None
+    if found is None:
+        return None
+    worst, pace = found.worst, found.pace
+    per_period = None if pace is None or period is None else _finite(pace * period)
+    return {
+        "from": found.times[0],
+        "worst": _finite(found.factors[worst]),
+        "worst_at": found.times[worst],
+        "end": _finite(found.factors[-1]),
+        "end_at": found.times[-1],
+        "per_period": per_period,
+        "sentence": _condition_sentence(found, rung, per_period),
+    }
+
+
+def _condition_sentence(found: Carrying, rung: Rung, per_period: float | None) -> str:
+    """The factors in words, and what they make of one rounding of this rung."""
+    worst, u = found.worst, float(rung.unit_roundoff)
+    becomes = u * found.factors[worst]
+    growth = ""
+    if per_period is not None:
+        growth = f" It grows in proportion to time, by about {per_period:.2g} per period."
+    elif found.pace is not None:
+        growth = f" It grows in proportion to time, by about {found.pace:.2g} per time unit."
+    lost = "; nothing of the state is left then" if not becomes < 1 else ""
+    later = ""
+    if worst < len(found.times) - 1:
+        later = f", and by {found.factors[-1]:.3g} at the end (t = {found.times[-1]:g})"
+    return (
+        f"An error in the state at t = {found.times[0]:g} is multiplied, each time relative to the "
+        f"state, by {found.factors[worst]:.3g} at worst (t = {found.times[worst]:g}){later}."
+        f"{growth} On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at "
+        f"worst{lost}."
+    )
+
+
+def _finite(factor: float) -> float | None:
+    return factor if isfinite(factor) else None
 
 
 def _gate(verdict: Verdict) -> dict[str, Any]:

@@ -126,8 +126,9 @@ def _add_exact(found: Any) -> None:
     )
     verb.add_argument(
         "--route",
-        choices=("mpmath", "arb", "taylor"),
-        help="default: mpmath, the closed form; arb is not built yet; taylor needs no closed form",
+        choices=("arb", "mpmath", "taylor"),
+        help="default: arb, the closed form in balls; mpmath, the same by other formulas; taylor "
+        "needs no closed form",
     )
 
 

@@ -23,6 +23,13 @@ _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous
 # The worst first: what a line that stands for several verdicts is called.
 _GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
 
+# The unit of time is the scene's, whatever that is.
+_UNITS = {
+    "time": "time units",
+    "1/time": "per time unit",
+    "radians/time": "radians per time unit",
+}
+
 
 def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> str:
     console = _console()
@@ -189,9 +196,7 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     _line(console, "in units (exact powers of two)")
     _line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
     _line(console)
-    _line(console, Text("orbit", "bold"), f"  {found['regime']}")
-    for name, value in found["orbit"].items():
-        _line(console, f"  {name:8} {value}")
+    _print_orbit(console, found)
     truth = f"  route {found['route']}, {found['truth_digits']} digits"
     _line(console, Text("truth", "bold"), truth)
     order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
@@ -203,6 +208,29 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
         f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
         f"{cost['seconds']:.3g} s",
     )
+
+
+def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
+    """What the orbit is in words, its numbers, and how it carries an error on."""
+    _line(console, Text("orbit", "bold"), f"  {found['regime']}")
+    for sentence in found["sentences"]:
+        _indented(console, "  ", sentence)
+    numbers = found["elements"]
+    if numbers:
+        _line(console, "numbers in the scene's own units")
+    values = [
+        f"{number['value']} {_UNITS.get(number['unit'], number['unit'])}".rstrip()
+        for number in numbers
+    ]
+    name_width = max((len(number["name"]) for number in numbers), default=0)
+    value_width = max(map(len, values), default=0)
+    for number, value in zip(numbers, values, strict=True):
+        label = f"  {number['name']:{name_width}}  {value:{value_width}}  "
+        _indented(console, label, number["meaning"])
+    if found["condition"] is not None:
+        _line(console, Text("conditioning", "bold"))
+        for sentence in found["condition"]["sentence"].split(". "):
+            _indented(console, "  ", sentence.removesuffix(".") + ".")
 
 
 def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:

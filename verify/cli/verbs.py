@@ -113,11 +113,6 @@ def exact(options: argparse.Namespace) -> Answer:
     from verify.cli.progress import working
     from verify.cli.terminal import exact_text
 
-    if options.route == "arb":
-        raise WrongCall(
-            "expected --route mpmath or taylor, got arb: the route by Arb balls is not built in "
-            "this version"
-        )
     if not 1 <= options.digits <= _MOST_DIGITS:
         raise WrongCall(f"expected --digits from 1 to {_MOST_DIGITS}, got {options.digits}")
     times = [(text.strip(), _time(text)) for text in options.at.split(",")]
@@ -126,7 +121,7 @@ def exact(options: argparse.Namespace) -> Answer:
     from verify.exact.route import solution
     from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 
-    route = options.route or "mpmath"
+    route = options.route or "arb"
     try:
         with working(f"exact {scene.name}"):
             found = solution(scene, route)

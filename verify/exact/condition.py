@@ -17,6 +17,7 @@ from mpmath import libmp, mp, mpf
 
 from verify.exact.route import solution
 from verify.exact.solution import Quantities, Unsettled
+from verify.exact.variation import transition_table
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
@@ -82,6 +83,10 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
     Raises Unsettled if it never is.
     """
     exact = solution(scene)
+    if exact.route == "taylor":
+        table = transition_table(scene, exact, _units(scene), elapsed)
+        if table is not None:
+            return Transition(tuple(elapsed), table)
     ladder = _TAYLOR_DIGITS if exact.route == "taylor" else _CLOSED_FORM_DIGITS
     for exponent, digits in ladder:
         found = derivatives(scene, elapsed, exponent, digits)

@@ -53,7 +53,7 @@ def document(
 def _regime(scene: Scene, found: Solution) -> str:
     """The kind of orbit where it is known, whatever route was taken to the numbers."""
     try:
-        return solution(scene, "mpmath").regime
+        return solution(scene, "arb").regime
     except NoClosedForm:
         return found.regime
 

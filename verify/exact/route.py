@@ -3,31 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import Final
 
-from verify.exact.euler.jacobi import closed_form as euler_closed_form
-from verify.exact.kirchhoff.jacobi import closed_form as kirchhoff_closed_form
 from verify.exact.solution import NoClosedForm, Solution
 from verify.exact.taylor import TaylorSolution
 from verify.scenes.scene import Scene
 
-_CLOSED_FORMS: Final[Mapping[str, Callable[[Scene], Solution]]] = {
-    "euler": euler_closed_form,
-    "kirchhoff": kirchhoff_closed_form,
+CLOSED_ROUTES: Final = ("arb", "mpmath")
+# Each answers a scene or raises NoClosedForm. Imported when asked for: they load different libraries.
+_CLOSED_FORMS: Final[Mapping[tuple[str, str], str]] = {
+    ("euler", "arb"): "verify.exact.euler.theta:enclosed",
+    ("euler", "mpmath"): "verify.exact.euler.jacobi:closed_form",
+    ("kirchhoff", "arb"): "verify.exact.kirchhoff.weierstrass:enclosed",
+    ("kirchhoff", "mpmath"): "verify.exact.kirchhoff.jacobi:closed_form",
 }
 
 
 def solution(scene: Scene, route: str | None = None) -> Solution:
-    """The exact solution of a scene: the closed form where every tracked quantity has one, else Taylor.
+    """The exact solution of a scene: balls where every tracked quantity has a closed form, else Taylor.
 
-    With ``route="mpmath"`` only the closed form is accepted, and NoClosedForm is raised where it is
-    missing; ``route="taylor"`` takes the Taylor recursion in any case.
+    With ``route="arb"`` or ``"mpmath"`` only a closed form is accepted, and NoClosedForm is raised
+    where it is missing; ``route="taylor"`` takes the Taylor recursion in any case.
     """
     if route == "taylor":
         return TaylorSolution(scene)
+    if route is not None:
+        return _closed_form(scene, route)
     try:
-        return _CLOSED_FORMS[scene.model](scene)
+        return _closed_form(scene, "arb")
     except NoClosedForm:
-        if route is not None:
-            raise
         return TaylorSolution(scene)
+
+
+def _closed_form(scene: Scene, route: str) -> Solution:
+    module, name = _CLOSED_FORMS[scene.model, route].split(":")
+    make: Callable[[Scene], Solution] = getattr(import_module(module), name)
+    return make(scene)

@@ -125,6 +125,12 @@ def _floor(
     )
 
 
+def condition(scene: Scene) -> Transition:
+    """How errors travel along the scene's own orbit: what the floor of its runs was made with."""
+    elapsed = scene.clock.elapsed
+    return _orbit(scene, tuple(elapsed[k] for k in _nodes(len(elapsed))))
+
+
 @lru_cache(maxsize=64)
 def _orbit(scene: Scene, elapsed: tuple[Fraction, ...]) -> Transition:
     return transition(scene, elapsed)

@@ -49,9 +49,9 @@ class Course(ABC):
             return self.z, self.speed
         p, slope = (value.real for value in self.lattice.p(acb(u)))
         rise = p - self._half_b2
-        below = 2 * rise**2 - self._half_b4_a0
+        below = 2 * rise * rise - self._half_b4_a0
         step = (self._twice_b3 * rise + self._b4_b1 - self.speed * slope) / below
-        change = self._twice_b3 * slope - self.speed * (6 * p**2 - self._half_g2)
+        change = self._twice_b3 * slope - self.speed * (6 * p * p - self._half_g2)
         return self.z + step, (change - 4 * step * rise * slope) / below
 
     @final

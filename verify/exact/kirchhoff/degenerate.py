@@ -7,8 +7,10 @@ the cosh of sqrt(A) t/2 and its sinh over sqrt(A), and v = a where z is at a pol
     n = ch + (v0' + i delta) sh/(v0 - a),    delta^2 = -Q(a),    |n|^2 = (v - a)/(v0 - a),
     arg n = delta/2 int dt/(v - a),
 
-which turns the phase chi of orbit.py into one factor n of xi for each pole. Where a pole is passed,
-its delta is zero, and n is real and changes its sign.
+which turns the phases U and -D of attitude.py into one factor n for each pole: that of the upper
+pole is in b, the conjugate of that of the lower one in a, and xi has both. Where a pole is passed,
+its delta is zero, and n is real and changes its sign. Z needs no integral: if d is a repeated root,
+r F Z' is its value at x3 = d less (v'/v)'; if f is a quadratic, Z' is constant.
 """
 
 from __future__ import annotations
@@ -19,7 +21,9 @@ from typing import Protocol, final
 
 from mpmath import mp, mpc, mpf
 
-from verify.exact.kirchhoff.orbit import Axial, distances, pulls, transverse
+from verify.exact.kirchhoff.attitude import CayleyKlein
+from verify.exact.kirchhoff.centre import drift
+from verify.exact.kirchhoff.orbit import Pose, distances, pulls, transverse
 from verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
 from verify.scenes.motion import Impulse
 
@@ -61,7 +65,7 @@ class Beat:
 
 
 class Factor(Protocol):
-    """What one pole contributes to xi."""
+    """What one pole contributes to xi, up to a constant."""
 
     def at(self, beat: Beat) -> mpc: ...
 
@@ -82,6 +86,17 @@ class FactorFromAfar:
 
     def slope(self, beat: Beat) -> mpc:
         return (self.A * beat.sh + self.slant * beat.ch) / 2
+
+
+@final
+class NoFactor:
+    """1, for the pole that is d itself."""
+
+    def at(self, beat: Beat) -> mpc:
+        return mpc(1)
+
+    def slope(self, beat: Beat) -> mpc:
+        return mpc(0)
 
 
 @final
@@ -109,32 +124,44 @@ class ElementaryOrbit:
         self._FG, self._F = mp.convert(nutation.FG), mp.sqrt(mp.convert(nutation.F2))
         self._y3 = mp.convert(nutation.y3)
         self._linear = mp.convert((body.r - body.r_prime) * nutation.y3)
-        self._spin = mp.convert(body.r * nutation.y3)  # linear + r' y3
-        self._factors: list[Factor] = []
+        self._glide = mp.convert(body.q) * self._F
+        self._drift = mp.convert(drift(nutation, nutation.z if carrier.d is None else carrier.d))
         self._origin = transverse(start.linear)
         if self._origin == 0:
             # xi' = i r x3 eta on the axis, and FactorFromPole has the slope 1.
             self._origin = 1j * self._r * mp.convert(nutation.z) * transverse(start.angular)
         self._face_poles(nutation, carrier)
+        self._spin = self._r * self._y3 + self._up_rate - self._down_rate
+        self._a, self._b = self._first_parameters(nutation)
 
-    def state(self, t: mpf) -> tuple[Axial, Axial]:
-        """x and y at the time t since the start."""
+    def pose(self, t: mpf) -> Pose:
+        """x, y, the attitude and Z at the time t since the start."""
         beat = self._beat(t)
         v, v_slope = self._carried(beat)
-        turn = self._origin * mp.expj(self._linear * t + self._screw * self._integral_of_z(beat))
+        L = self._linear * t + self._screw * self._integral_of_z(beat)
+        U, D = self._up_rate * t, self._down_rate * t
+        turn = self._origin * mp.expj(L + U - D)
         shape, slope = self._product(beat)
         if self._d is None:
+            shrinking, rise = mpf(1), self._drift * t
             z, z_slope = v, v_slope
         else:
-            z, z_slope = self._d + 1 / v, -v_slope / v**2
-            shape, slope = shape * self._v0 / v, (slope - shape * v_slope / v) * self._v0 / v
+            shrinking, growth = self._v0 / v, v_slope / v
+            rise = self._drift * t - (growth - self._v0_slope / self._v0)
+            z, z_slope = self._d + 1 / v, -growth / v
+            shape, slope = shape * shrinking, (slope - shape * growth) * shrinking
         xi = turn * shape
         if 2 * abs(z) >= self._F:
             # From xi' = i r z eta - i (r' y3 + (q' - q) z) xi, which is regular at the poles.
             eta = turn * (slope / 1j + self._spin * shape) / (self._r * z)
         else:
             eta = mpc(self._FG - self._y3 * z, z_slope / self._r) / mp.conj(xi)
-        return (xi, z), (eta, self._y3)
+        half = self._glide * t / 2
+        a = self._a * mp.expj(half - L / 2 + D) * mp.conj(self._factors[1].at(beat))
+        b = self._b * mp.expj(half + L / 2 + U) * self._factors[0].at(beat)
+        size = mp.sqrt(shrinking)
+        turned = CayleyKlein(size * a, size * b)
+        return Pose((xi, z), (eta, self._y3), turned, rise / (self._r * self._F))
 
     @property
     def period(self) -> mpf:
@@ -143,7 +170,8 @@ class ElementaryOrbit:
 
     def lost_digits(self, t: mpf) -> int:
         """An estimate of the digits lost by the time t >= 0; two precisions decide."""
-        pace = abs(self._linear) + abs(self._screw) * self._F
+        pace = abs(self._linear) + abs(self._up_rate) + abs(self._down_rate)
+        pace += abs(self._screw) * self._F + abs(self._glide)
         losses = [1 + self._rate * t, 1 + pace * t]
         if self._d is not None:
             # Falling away from near d, v is a small difference on the way, and grows from another,
@@ -152,26 +180,35 @@ class ElementaryOrbit:
         return sum(int(mp.ceil(mp.log10(loss))) for loss in losses)
 
     def _face_poles(self, nutation: Nutation, carrier: Carrier) -> None:
-        """A factor for each pole that is not d itself, and the linear part of its phase."""
+        """The factor of each pole, the upper first, and the linear parts of U and D."""
         left = distances(nutation.F2, nutation.z)
         gaps = None if carrier.d is None else distances(nutation.F2, carrier.d)
+        factors: list[Factor] = []
+        rates = [mpf(0), mpf(0)]
         for k, pull in enumerate(pulls(nutation)):
-            side = 1 - 2 * k
             if gaps is None:
-                away, delta = -side * left[k], -self._r * pull
+                away, delta = (2 * k - 1) * left[k], -self._r * pull
             elif gaps[k] != 0:
                 away = left[k] * self._v0 / gaps[k]
                 delta = self._r * pull / gaps[k] ** 2
-                change = self._r / 2 * pull * side / gaps[k]
-                self._linear += change
-                self._spin += change
+                rates[k] = self._r / 2 * pull / gaps[k]
             else:
+                factors.append(NoFactor())
                 continue
             if left[k] == 0:
-                self._factors.append(FactorFromPole())
+                factors.append(FactorFromPole())
             else:
-                slant = mpc(self._v0_slope, delta) / away
-                self._factors.append(FactorFromAfar(self._A, slant))
+                factors.append(FactorFromAfar(self._A, mpc(self._v0_slope, delta) / away))
+        self._factors = factors
+        self._up_rate, self._down_rate = rates
+
+    def _first_parameters(self, nutation: Nutation) -> tuple[mpc, mpc]:
+        """a and b at the start, where a > 0; where one is zero, what its factor is to be given."""
+        _, down = distances(nutation.F2, nutation.z)
+        if down == 0:
+            return mp.conj(self._origin) / (2 * self._F), mpc(1)
+        a = mpc(mp.sqrt(down / (2 * self._F)))
+        return a, self._origin / (2 * self._F * a)
 
     def _beat(self, t: mpf) -> Beat:
         angle = self._rate * t / 2
@@ -240,16 +277,30 @@ class Front:
         self._c = mp.sqrt(mp.convert(nutation.f[0])) * (-1 if nutation.speed < 0 else 1)
         self._r, self._screw = mp.convert(body.r), mp.convert(body.q - body.q_prime)
         self._origin = transverse(start.linear)
+        self._glide = mp.convert(body.q) * self._F
+        # r F Z' = drift + c^2 (z^2 - F^2), and z' = c (F^2 - z^2).
+        self._drift = mp.convert(
+            drift(nutation, nutation.z) + nutation.f[0] * (nutation.F2 - nutation.z**2)
+        )
+        self._z0 = self._z(self._plus, self._minus)  # as at t = 0, so that Z is zero there
 
-    def state(self, t: mpf) -> tuple[Axial, Axial]:
-        """x and y at the time t since the start."""
+    def pose(self, t: mpf) -> Pose:
+        """x, y, the attitude and Z at the time t since the start."""
         growth = mp.exp(self._c * self._F * t)
         up, down = self._plus * growth, self._minus / growth
         spread = (up + down) / (2 * self._F)
         # int z dt = log(spread)/c, and F G - y3 z = 0 leaves eta = i z'/(r conj xi).
-        xi = self._origin * mp.expj(self._screw / self._c * mp.log(spread)) / spread
-        z = self._F * (up - down) / (up + down)
-        return (xi, z), (1j * self._c / self._r * xi, mpf(0))
+        L = self._screw / self._c * mp.log(spread)
+        turn = self._origin / abs(self._origin) * mp.expj(L)
+        xi = abs(self._origin) * turn / spread
+        z = self._z(up, down)
+        rise = (self._drift * t - self._c * (z - self._z0)) / (self._r * self._F)
+        a = mp.expj((self._glide * t - L) / 2) * mp.sqrt(up / (up + down))
+        b = mp.expj((self._glide * t - L) / 2) * turn * mp.sqrt(down / (up + down))
+        return Pose((xi, z), (1j * self._c / self._r * xi, mpf(0)), CayleyKlein(a, b), rise)
+
+    def _z(self, up: mpf, down: mpf) -> mpf:
+        return self._F * (up - down) / (up + down)
 
     @property
     def period(self) -> mpf:
@@ -258,5 +309,6 @@ class Front:
 
     def lost_digits(self, t: mpf) -> int:
         """An estimate of the digits lost by the time t >= 0; two precisions decide."""
-        losses = [1 + abs(self._c) * self._F * t, 1 + abs(self._screw) * self._F * t]
+        turned = abs(self._screw) * self._F + abs(self._glide)
+        losses = [1 + abs(self._c) * self._F * t, 1 + turned * t]
         return sum(int(mp.ceil(mp.log10(loss))) for loss in losses)

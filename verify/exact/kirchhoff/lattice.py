@@ -162,8 +162,10 @@ class Periods(Lattice):
         (1 - q^2n x)(1 - q^2n/x), with x = e^{2 pi i v} and q = e^{i pi tau}; no factor leaves the
         unit circle about 1. Below the real line it is the conjugate, up to a constant sign.
         """
-        magnitude = max(float(abs(v.real).upper()), 1.0)
-        with ctx.workprec(_ROUGH_BITS + int(magnitude).bit_length()):
+        whole = abs(v.real).upper().floor().unique_fmpz()
+        if whole is None:
+            raise Undecidable
+        with ctx.workprec(_ROUGH_BITS + int(whole).bit_length()):
             side = sign(v.imag)
             v = v if side > 0 else v.conjugate()
             x, q2 = (2 * v).exp_pi_i(), (2 * self._tau).exp_pi_i()

@@ -6,7 +6,8 @@ x1 + i x2 = A e^{i chi}. Derived from x' = x x Omega alone:
     chi' = (r - r') y3 - (q' - q) z + (r/2) (FG - F y3)/(F - z) - (r/2) (FG + F y3)/(F + z)
     y1 + i y2 = e^{i chi} (FG - y3 z + i z'/r)/A
 
-A has a sign, which it changes where the orbit passes a pole x3 = +-F; chi is smooth there.
+A has a sign, which it changes where the orbit passes a pole x3 = +-F; chi is smooth there. With
+L, U and D of attitude.py, chi = L + U - D: the attitude takes no other integrals than x and y do.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from typing import final
 
 from mpmath import mp, mpc, mpf
 
+from verify.exact.kirchhoff.attitude import CayleyKlein
+from verify.exact.kirchhoff.centre import Rise
 from verify.exact.kirchhoff.quartic import Nutation
 from verify.exact.kirchhoff.regime import TurningPoints, turning_points
 from verify.exact.kirchhoff.wave import CosineWave, Place, SquareWave, Swing, Wave
@@ -32,12 +35,38 @@ def transverse(vector: Sequence[Fraction]) -> mpc:
 
 
 @dataclass(frozen=True)
-class Shape:
-    """x and y turned back about axis 3 by chi: A, x3, and (y1 + i y2) e^{-i chi}."""
+class Pose:
+    """Everything about one instant, in body axes and in space axes with Z along F.
 
-    amplitude: mpf
+    ``turned`` is the attitude, and ``rise`` is Z, the way of the centre along F since the start.
+    """
+
+    x: Axial
+    y: Axial
+    turned: CayleyKlein
+    rise: mpf
+
+    @property
+    def moment(self) -> mpc:
+        """y_X + i y_Y."""
+        return self.turned.across(*self.y)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """x and y turned back about axis 3 by chi: x3, (y1 + i y2) e^{-i chi}, and the two factors of A.
+
+    They are sqrt(F - x3) and sqrt(F + x3), with the signs of Pole.root.
+    """
+
+    up: mpf
+    down: mpf
     z: mpf
     partner: mpc
+
+    @property
+    def amplitude(self) -> mpf:
+        return self.up * self.down
 
 
 @dataclass(frozen=True)
@@ -105,7 +134,7 @@ def distances(F2: Fraction, z: Fraction) -> tuple[mpf, mpf]:
 
 @final
 class Advance:
-    """One term of chi - chi(0) beyond the linear ones: bend times int a/(b + beta a) du."""
+    """What a phase has beyond its linear term: bend times int a/(b + beta a) du."""
 
     def __init__(self, bend: mpf, beta: mpf, wave: Wave) -> None:
         self.beta = beta
@@ -117,6 +146,19 @@ class Advance:
         return self._bend * (self._integral.at(place) - self._at_start)
 
 
+@final
+@dataclass(frozen=True)
+class Phase:
+    """One of L, U and D: zero at the start, and without an integral where its bend is zero."""
+
+    rate: mpf
+    advance: Advance | None = None
+
+    def at(self, t: mpf, place: Place) -> mpf:
+        linear = self.rate * t
+        return linear if self.advance is None else linear + self.advance.at(place)
+
+
 class Orbit:
     """One nutating motion, with numbers of one precision; to be used at that precision."""
 
@@ -126,16 +168,27 @@ class Orbit:
         self._r, self._y3 = mp.convert(nutation.body.r), mp.convert(nutation.y3)
         self._z1, self._width = mp.convert(points.z1), mp.convert(points.z2 - points.z1)
         self._poles = _poles(nutation, points)
-        self._linear, self._advances = self._phase(nutation)
+        self._F = mp.sqrt(mp.convert(nutation.F2))
+        self._glide = mp.convert(nutation.body.q) * self._F
+        self._spin = self._spin_phase(nutation)
+        self._up, self._down = (self._pole_phase(pole) for pole in self._poles)
+        self._rise = Rise(nutation, points.z1, self._wave)
         self._turn = self._first_turn(start)
 
-    def state(self, t: mpf) -> tuple[Axial, Axial]:
-        """x and y at the time t since the start."""
+    def pose(self, t: mpf) -> Pose:
+        """x, y, the attitude and Z at the time t since the start."""
         place = self._wave.place(self._wave.start + self._wave.rate * t)
-        shape = self._shape(self._wave.swing(place))
-        chi = self._linear * t + sum(term.at(place) for term in self._advances)
-        turn = self._turn * mp.expj(chi)
-        return (turn * shape.amplitude, shape.z), (turn * shape.partner, self._y3)
+        swing = self._wave.swing(place)
+        shape = self._shape(swing)
+        L, U, D = (phase.at(t, place) for phase in (self._spin, self._up, self._down))
+        turn = self._turn * mp.expj(L + U - D)
+        half = mp.expj((self._glide * t - L) / 2 + D) / mp.sqrt(2 * self._F)
+        return Pose(
+            x=(turn * shape.amplitude, shape.z),
+            y=(turn * shape.partner, self._y3),
+            turned=CayleyKlein(half * shape.down, half * turn * shape.up),
+            rise=self._rise.at(t, place, swing),
+        )
 
     @property
     def period(self) -> mpf:
@@ -153,28 +206,31 @@ class Orbit:
 
         It saves repetitions; whether it was enough is what two precisions decide.
         """
-        losses = [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + abs(self._linear) * t]
-        losses += [term.beta + 1 / term.beta for term in self._advances]
+        phases = (self._spin, self._up, self._down)
+        linear = abs(self._glide) + sum(abs(phase.rate) for phase in phases)
+        losses = [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t]
+        bent = [phase.advance.beta for phase in phases if phase.advance is not None]
+        losses += [beta + 1 / beta for beta in bent]
         return sum(max(0, int(mp.ceil(mp.log10(loss)))) for loss in losses)
 
-    def _phase(self, nutation: Nutation) -> tuple[mpf, list[Advance]]:
-        """chi - chi(0) = linear t + sum of advances; only the terms that are not zero are kept."""
+    def _spin_phase(self, nutation: Nutation) -> Phase:
+        """L, by x3 = z1 + width w a/(b + w a)."""
         body, wave = nutation.body, self._wave
-        linear = mp.convert((body.r - body.r_prime) * nutation.y3)
-        # x3 = z1 + width w a/(b + w a), and 1/(F -+ z) by the same with the pole's own weight.
-        per_integral = self._width * wave.weight / wave.rate
-        advances: list[Advance] = []
-        if body.q_prime != body.q:
-            pace = mp.convert(body.q - body.q_prime)
-            linear += pace * self._z1
-            advances.append(Advance(pace * per_integral, wave.weight, wave))
-        for pole in self._poles:
-            if pole.pull != 0:
-                pace = pole.side * self._r / 2 * pole.pull / pole.from_1
-                linear += pace
-                bend = pace * pole.side * per_integral / pole.from_1
-                advances.append(Advance(bend, wave.weight * pole.from_2 / pole.from_1, wave))
-        return linear, advances
+        rate = mp.convert((body.r - body.r_prime) * nutation.y3)
+        if body.q_prime == body.q:
+            return Phase(rate)
+        pace = mp.convert(body.q - body.q_prime)
+        bend = pace * self._width * wave.weight / wave.rate
+        return Phase(rate + pace * self._z1, Advance(bend, wave.weight, wave))
+
+    def _pole_phase(self, pole: Pole) -> Phase:
+        """U or D: 1/(F -+ x3) has the form of x3 with the pole's own weight."""
+        if pole.pull == 0:
+            return Phase(mpf(0))
+        wave = self._wave
+        rate = self._r / 2 * pole.pull / pole.from_1
+        bend = rate * pole.side * self._width * wave.weight / (wave.rate * pole.from_1)
+        return Phase(rate, Advance(bend, wave.weight * pole.from_2 / pole.from_1, wave))
 
     def _shape(self, swing: Swing) -> Shape:
         """The motion without its turning about axis 3."""
@@ -190,7 +246,7 @@ class Orbit:
             radial = (top.pull_on(up) + self._y3 * up) / down
         else:
             radial = (bottom.pull_on(down) - self._y3 * down) / up
-        return Shape(up * down, z, mpc(radial, slope * up_slope * down_slope / self._r))
+        return Shape(up, down, z, mpc(radial, slope * up_slope * down_slope / self._r))
 
     def _first_turn(self, start: Impulse) -> mpc:
         """e^{i chi} at the start, from x, or from y where x lies in the axis."""

@@ -131,11 +131,15 @@ class Orbit:
         self._find_factors(heteroclinic)
         self._find_rates()
         self._find_amplitudes(start)
+        # Told exactly: a centre or a y that is zero has no other narrow ball.
+        self._at_start = _as_told(start, track)
         if track:
             self._find_space(start)
 
     def at(self, u: arb) -> dict[str, Any]:
         """Every tracked quantity at the time u since the start."""
+        if u.is_zero():
+            return self._at_start
         z, speed = self._course.at(u)
         poles = [pole.jet(u, self._pole_order) for pole in self._poles]
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
@@ -293,6 +297,17 @@ class Orbit:
         X, Y = sideways
         X0, Y0 = self._start_sideways
         return [(Y - Y0) / self._F, (X0 - X) / self._F, advance / self._F]
+
+
+def _as_told(start: Impulse, track: frozenset[str]) -> dict[str, Any]:
+    """The tracked quantities of the initial state."""
+    found: dict[str, Any] = {
+        "linear_impulse": balls(start.linear),
+        "angular_impulse": balls(start.angular),
+        "attitude": [balls(row) for row in rotation_matrix(start.attitude)],
+        "centre": balls(start.centre),
+    }
+    return {name: found[name] for name in ("linear_impulse", "angular_impulse", *sorted(track))}
 
 
 def _product(factors: Sequence[acb]) -> acb:

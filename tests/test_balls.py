@@ -1,0 +1,306 @@
+"""Motions in balls: the precision rises until they are narrow, and what they claim is never too little."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+import pytest
+from flint import arb, ctx, fmpq
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from verify.exact import balls as module
+from verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, midpoint, sign, upper
+from verify.exact.solution import Unsettled
+from verify.scenes.motion import Motion
+from verify.scenes.precision import exact_value, held_exactly
+
+DIGITS = 20
+NOT_A_NUMBER, INFINITE, WIDE = arb("nan"), arb("inf"), arb(0, 1)
+
+
+@final
+class Told(Enclosed):
+    """A solution that says what it is told to, and counts how often it is asked."""
+
+    regime = "told"
+
+    def __init__(self, enclose: Callable[[Sequence[Fraction], int], Enclosure]) -> None:
+        self._enclose = enclose
+        self.asked: list[int] = []
+
+    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        self.asked.append(bits)
+        return self._enclose(elapsed, bits)
+
+
+def always(*row: arb) -> Told:
+    return Told(lambda elapsed, bits: {"omega": [list(row) for _ in elapsed]})
+
+
+def open_branch(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    raise Undecidable
+
+
+def nothing_to_divide_by(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+    raise ZeroDivisionError
+
+
+NOW = [Fraction(0)]
+
+
+# How the precision rises.
+
+
+@pytest.mark.parametrize("lost", [0, 100, 3000])
+def test_the_precision_rises_until_the_balls_are_narrow(lost: int) -> None:
+    """However many bits an evaluation loses, the radius ends below 10^-digits, and is right."""
+
+    def losing(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        big = arb(2) ** lost
+        return {"omega": [[ball(t) + big - big, arb(1)] for t in elapsed]}
+
+    third = Fraction(1, 3)
+    motion = Told(losing).motion([third], DIGITS)
+    assert motion.radius[0] <= mpf(10) ** -DIGITS
+    assert encloses(motion, {"omega": [[third, Fraction(1)]]})
+
+
+@pytest.mark.parametrize("size", [-400, 400])
+def test_a_radius_is_relative_to_numbers_of_any_size(size: int) -> None:
+    """A vector of 1e-400 or 1e400 is known to as many digits as one of order 1."""
+    value = Fraction(10) ** size / 3
+    motion = Told(lambda elapsed, bits: {"omega": [[ball(value)]]}).motion(NOW, DIGITS)
+    assert 0 < motion.radius[0] <= mpf(10) ** -DIGITS
+    assert encloses(motion, {"omega": [[value]]})
+
+
+@pytest.mark.parametrize(
+    "solution",
+    [
+        Told(open_branch),
+        Told(nothing_to_divide_by),
+        always(WIDE),
+        always(arb(1, 1e-6)),
+        always(NOT_A_NUMBER),
+        always(arb(1), NOT_A_NUMBER),
+        always(INFINITE),
+        always(arb(1), -INFINITE),
+        always(arb(0, INFINITE)),
+    ],
+    ids=["branch", "division", "zero", "coarse", "nan", "one nan", "inf", "one inf", "no bound"],
+)
+def test_what_never_narrows_is_unsettled(solution: Told) -> None:
+    """A number that is wide, infinite or none, and a branch that stays open: a dozen steps, no more."""
+    with pytest.raises(Unsettled, match="do not shrink to 20 digits"):
+        solution.motion(NOW, DIGITS)
+    assert 2 <= len(solution.asked) <= 12
+    assert solution.asked == sorted(set(solution.asked))
+
+
+@pytest.mark.parametrize("bad", [NOT_A_NUMBER, INFINITE, arb(0, INFINITE), WIDE])
+@pytest.mark.parametrize("row", [0, 1, 2])
+@pytest.mark.parametrize("quantity", ["omega", "attitude"])
+def test_one_bad_number_is_enough(quantity: str, row: int, bad: arb) -> None:
+    """A number that is none, in whichever row and quantity, sends the whole motion back."""
+
+    def bad_at_first(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        found = {
+            "omega": [[ball(t + 1)] * 3 for t in elapsed],
+            "attitude": [[[ball(t + 2)] * 3] * 3 for t in elapsed],
+        }
+        if len(solution.asked) == 1:
+            found[quantity][row] = [bad] * 3 if quantity == "omega" else [[bad] * 3] * 3
+        return found
+
+    solution = Told(bad_at_first)
+    times = [Fraction(t, 3) for t in range(3)]
+    motion = solution.motion(times, DIGITS)
+    assert len(solution.asked) == 2
+    assert all(radius <= mpf(10) ** -DIGITS for radius in motion.radius)
+    assert encloses(
+        motion,
+        {"omega": [[t + 1] * 3 for t in times], "attitude": [[[t + 2] * 3] * 3 for t in times]},
+    )
+
+
+def test_the_ambient_precision_is_restored() -> None:
+    """An attempt works at its own precision and leaves that of python-flint alone, failing or not."""
+    seen = []
+
+    def looking(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        seen.append((ctx.prec, bits))
+        raise Undecidable
+
+    before = ctx.prec
+    with pytest.raises(Unsettled):
+        Told(looking).motion(NOW, DIGITS)
+    assert ctx.prec == before
+    assert all(prec == bits for prec, bits in seen)
+
+
+def test_no_times_make_no_rows() -> None:
+    """A motion at no time at all has no rows and is settled at once."""
+    solution = Told(lambda elapsed, bits: {"omega": []})
+    assert len(solution.motion([], DIGITS).radius) == 0
+    assert len(solution.asked) == 1
+
+
+# What a radius says. Balls are made whose true value lies in a corner: no radius may be smaller.
+
+
+dyadic = st.builds(
+    lambda n, e: Fraction(n) * Fraction(2) ** e,
+    st.integers(-(2**30), 2**30).filter(bool),
+    st.integers(-60, 60),
+)
+shapes = st.sampled_from([(1,), (3,), (3, 3)])
+
+
+@st.composite
+def cornered(draw: st.DrawFn) -> tuple[Enclosure, dict[str, Any]]:
+    """Balls, and a truth in one of their corners; an entry may be zero, and its ball too."""
+    shape = draw(shapes)
+    number = int(np.prod(shape))
+    values = draw(st.lists(dyadic, min_size=number, max_size=number))
+    radii = [
+        Fraction(draw(st.integers(0, 2**20))) * Fraction(2) ** draw(st.integers(-90, -40))
+        for _ in values
+    ]
+    signs = draw(st.lists(st.sampled_from([-1, 1]), min_size=number, max_size=number))
+    with ctx.workprec(300):
+        found = [arb(ball(v), ball(r)) for v, r in zip(values, radii, strict=True)]
+    truth = [v + s * r for v, s, r in zip(values, signs, radii, strict=True)]
+    return {"omega": [_shaped(found, shape)]}, {"omega": [_shaped(truth, shape)]}
+
+
+def _shaped(entries: Sequence[Any], shape: tuple[int, ...]) -> Any:
+    array = np.empty(len(entries), dtype=object)
+    array[:] = entries
+    return array.reshape(shape).tolist()
+
+
+def encloses(motion: Motion, truth: Any) -> bool:
+    """Whether every row's error is within its radius, exactly: both are compared as rationals."""
+    for name, rows in truth.items():
+        for found, true, radius in zip(motion[name], rows, motion.radius, strict=True):
+            exact = [Fraction(t) for t in np.array(true, dtype=object).flat]
+            error = [exact_value(f) - t for f, t in zip(np.array(found).flat, exact, strict=True)]
+            size = sum(t * t for t in exact) or 1
+            if not sum(e * e for e in error) <= exact_value(radius) ** 2 * size:
+                return False
+    return True
+
+
+def measured(found: Enclosure) -> Motion:
+    with ctx.workprec(300):
+        return module._motion(found, 1, 300)
+
+
+@given(cornered())
+def test_a_radius_is_never_below_the_true_error(
+    case: tuple[Enclosure, dict[str, Any]],
+) -> None:
+    """Wherever in its ball the truth lies, a vector's or a matrix's relative error is in the radius."""
+    found, truth = case
+    motion = measured(found)
+    assert not mp.isfinite(motion.radius[0]) or encloses(motion, truth)
+
+
+@pytest.mark.parametrize("shape", [(1,), (3,), (3, 3)])
+def test_a_radius_too_small_by_half_a_digit_is_noticed(
+    shape: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A width divided by sqrt(10) no longer holds a truth that lies in the corner of its ball."""
+    number = int(np.prod(shape))
+    values, radius = [Fraction(k + 1, 4) for k in range(number)], Fraction(1, 2**40)
+    found = {"omega": [_shaped([arb(ball(v), ball(radius)) for v in values], shape)]}
+    truth = {"omega": [_shaped([v + radius for v in values], shape)]}
+    assert encloses(measured(found), truth)
+    honest = module._width
+    monkeypatch.setattr(module, "_width", lambda balls: honest(balls) / mp.sqrt(10))
+    assert not encloses(measured(found), truth)
+
+
+@given(st.lists(st.fractions(max_denominator=10**6), min_size=3, max_size=3))
+def test_a_coarse_evaluation_encloses_a_fine_one(angles: list[Fraction]) -> None:
+    """The radius at a few digits holds the midpoints found at many more."""
+    solution = Told(
+        lambda elapsed, bits: {"omega": [[ball(a).sin().exp() for a in angles] for _ in elapsed]}
+    )
+    coarse, fine = solution.motion(NOW, 3), solution.motion(NOW, 200)
+    # What the finer one does not know, 1e-200, is far below the slack of a radius of 40 bits.
+    truth = {"omega": [[exact_value(number) for number in fine["omega"][0]]]}
+    assert encloses(coarse, truth)
+
+
+def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
+    """Rows are apart from each other, and the quantities of one row are not."""
+    narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
+    with ctx.workprec(200):
+        found = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
+        motion = module._motion(found, 2, 200)
+    assert 2**-90 <= motion.radius[0] <= 2**-89
+    assert 2**-60 <= motion.radius[1] <= 2**-59
+
+
+def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
+    """Zero held exactly has radius zero; a ball about zero has no relative radius at all."""
+    assert module._width([arb(0)] * 3) == 0
+    assert not mp.isfinite(module._width([arb(0), arb(0, 1e-30)]))
+    assert not mp.isfinite(module._width([NOT_A_NUMBER]))
+    assert not mp.isfinite(module._width([arb(1), INFINITE]))
+
+
+# Between rationals, balls and mpmath.
+
+
+@given(st.fractions(), st.integers(2, 200))
+def test_a_ball_contains_its_rational(value: Fraction, bits: int) -> None:
+    """At any precision, and its relative radius is at most 2^(1 - bits)."""
+    with ctx.workprec(bits):
+        found = ball(value)
+        assert found.contains(fmpq(value.numerator, value.denominator))
+    assert exact_value(midpoint(found.rad())) <= abs(value) * Fraction(2) ** (1 - bits)
+
+
+@given(st.integers(), st.integers(-5000, 5000), st.integers(2, 60))
+def test_midpoints_are_converted_exactly(mantissa: int, exponent: int, prec: int) -> None:
+    """Whatever the precision of mpmath, and however far from 1 the number is."""
+    with ctx.workprec(max(mantissa.bit_length(), 2)):
+        found = arb(mantissa) * arb(2) ** exponent
+    with mp.workprec(prec):
+        number = midpoint(found)
+    assert exact_value(number) == Fraction(mantissa) * Fraction(2) ** exponent
+
+
+@given(dyadic, st.integers(2, 100))
+def test_an_upper_end_is_above(value: Fraction, bits: int) -> None:
+    """Rounded, if at all, upwards."""
+    with ctx.workprec(bits):
+        found = ball(value)
+        end = upper(found)
+    assert exact_value(end) >= value
+
+
+def test_what_is_not_finite_is_not_taken_for_a_number() -> None:
+    """NaN stays NaN; the larger of NaN and anything is NaN."""
+    assert mp.isnan(upper(NOT_A_NUMBER))
+    assert mp.isinf(upper(INFINITE))
+    one = held_exactly(Fraction(1))
+    assert mp.isnan(module.max_or_nan(one, mp.nan))
+    assert mp.isnan(module.max_or_nan(mp.nan, one))
+    assert module.max_or_nan(one, mp.inf) == mp.inf
+
+
+def test_a_sign_is_proven_or_left_open() -> None:
+    """A ball that touches zero has no sign."""
+    assert sign(arb(1, 0.5)) == 1
+    assert sign(arb(-1, 0.5)) == -1
+    for undecided in (arb(0), arb(1, 1.5), arb(1, 1), NOT_A_NUMBER):
+        with pytest.raises(Undecidable):
+            sign(undecided)

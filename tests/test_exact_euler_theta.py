@@ -1,0 +1,660 @@
+"""The free body in balls: proven radii, against the other closed form, Taylor and the equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import acb, arb, arb_mat, ctx
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from verify.exact import balls
+from verify.exact.balls import Enclosed, Enclosure, ball
+from verify.exact.euler import jacobi, phase
+from verify.exact.euler.moduli import Moduli
+from verify.exact.euler.orbit import Orbit
+from verify.exact.euler.principal import principal_balls
+from verify.exact.euler.regime import FreeSpin, Regime
+from verify.exact.euler.theta import FreeRotationBalls, enclosed, quaternions
+from verify.exact.euler.tumbling import Tumbling
+from verify.exact.solution import NoClosedForm
+from verify.exact.taylor import TaylorSolution
+from verify.scenes import tensors
+from verify.scenes.bodies import RigidBody
+from verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
+from verify.scenes.precision import exact_value
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import Matrix, Vector
+
+DIGITS = 50
+LONG = Fraction(10) ** 12
+TINY = Fraction(1, 10**30)
+# Neither of unit length nor with a rational norm.
+TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
+
+
+# Bodies, exactly
+
+
+def vector(*entries: int | str | Fraction) -> Vector:
+    return tuple(Fraction(entry) for entry in entries)
+
+
+def rotation(*quaternion: int) -> Matrix:
+    """The exact rational rotation of an integer quaternion, scalar first."""
+    w, x, y, z = (Fraction(entry) for entry in quaternion)
+    n = w * w + x * x + y * y + z * z
+    rows = (
+        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+    return tuple(tensors.scaled(1 / n, row) for row in rows)
+
+
+def turned(matrix: Matrix, spin: FreeSpin) -> FreeSpin:
+    """The same motion in other body axes: (Q I Q^T, Q w)."""
+    inertia = tensors.product(tensors.product(matrix, spin.inertia), tensors.transpose(matrix))
+    return FreeSpin(inertia, tensors.apply(matrix, spin.omega))
+
+
+def spinning(moments: Vector, omega: Vector) -> FreeSpin:
+    return FreeSpin(tensors.diagonal(moments), omega)
+
+
+OBLIQUE = rotation(3, 1, -2, 1)
+# J_a (J_a - J_b) w_a^2 = J_c (J_b - J_c) w_c^2 with J = 4, 5/2, 1 asks for w_c = 2 w_a.
+ON_SEPARATRIX = spinning(vector(4, "5/2", 1), vector("1/3", "-3/5", "2/3"))
+
+
+def near_separatrix(tiny: Fraction) -> FreeSpin:
+    """ON_SEPARATRIX with one component changed, so that m' is a number like ``tiny``."""
+    a, b, c = ON_SEPARATRIX.omega
+    return FreeSpin(ON_SEPARATRIX.inertia, (a * (1 + tiny), b, c))
+
+
+# Every regime, about every axis and in either sense, and the borders between them.
+SPINS = {
+    "max-axis": spinning(vector(1, 2, 3), vector("0.3", "0.2", 1)),
+    "max-axis, backward": spinning(vector(3, 2, 1), vector("-1.3", "0.2", "-0.4")),
+    "max-axis, cn < 0 at the start": spinning(vector(2, 1, 3), vector("0.2", "-0.5", -1)),
+    "max-axis, oblique": turned(OBLIQUE, spinning(vector(2, 3, 5), vector("0.2", "-0.3", "-0.9"))),
+    "min-axis": spinning(vector(1, 3, 2), vector("0.9", "0.1", "-0.5")),
+    "min-axis, backward": spinning(vector(3, 1, 2), vector("0.3", "-1", "0.4")),
+    "min-axis, oblique": turned(OBLIQUE, spinning(vector(5, 3, 2), vector("0.2", "-0.3", "-0.9"))),
+    "max-axis, w_b = 0": spinning(vector(3, 2, 1), vector(-1, 0, "-0.5")),
+    "max-axis, w_c = 0": spinning(vector(3, 2, 1), vector(1, "-0.7", 0)),
+    "min-axis, w_c = 0": spinning(vector(3, 2, 1), vector(0, "0.7", -1)),
+    "min-axis, w_c = 0, oblique": turned(OBLIQUE, spinning(vector(3, 2, 1), vector(0, "-0.7", -1))),
+    "separatrix": ON_SEPARATRIX,
+    "separatrix, backward": FreeSpin(
+        ON_SEPARATRIX.inertia, tensors.scaled(Fraction(-1), ON_SEPARATRIX.omega)
+    ),
+    "separatrix, oblique": turned(OBLIQUE, ON_SEPARATRIX),
+    "axisymmetric, oblate": spinning(vector(2, 5, 2), vector(1, "-0.4", "0.2")),
+    "axisymmetric, oblique": turned(OBLIQUE, spinning(vector(1, 4, 4), vector(1, "0.3", "0.2"))),
+    "spherical": spinning(vector(2, 2, 2), vector(1, 2, -3)),
+    "steady": spinning(vector(1, 2, 3), vector(0, "-0.8", 0)),
+    "rest": spinning(vector(1, 2, 3), vector(0, 0, 0)),
+}
+
+EXTREMES = {
+    "m' ~ 1e-60": near_separatrix(Fraction(-1, 10**60)),
+    "m' ~ 1e-60, oblique": turned(OBLIQUE, near_separatrix(Fraction(1, 10**60))),
+    "on the separatrix, beside its saddle": spinning(
+        vector(4, "5/2", 1), vector(TINY, "-3/5", 2 * TINY)
+    ),
+    "beside the unstable axis": spinning(vector(3, 2, 1), vector(TINY, 1, 2 * TINY)),
+    "beside the unstable axis, w_c = 0, oblique": turned(
+        OBLIQUE, spinning(vector(1, 2, 3), vector(0, 1, -TINY))
+    ),
+    "beside the stable axis": spinning(vector(3, 2, 1), vector(-1, 0, -TINY)),
+    "beside the stable axis, oblique": turned(
+        OBLIQUE, spinning(vector(1, 2, 3), vector(1, TINY, -TINY))
+    ),
+    "upper gap 1e-30": spinning(vector(2, 2 + TINY, 1), vector("0.6", -1, "0.3")),
+    "upper gap 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(2, 2 + TINY, 1), vector("0.6", -1, "0.3"))
+    ),
+    "lower gap 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(1, 1 + TINY, 2), vector("0.3", "-0.4", "0.2"))
+    ),
+    "both gaps 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(1, 1 + TINY, 1 - 2 * TINY), vector("0.3", "-0.4", "0.2"))
+    ),
+    "ratio 1e12": spinning(vector(1, 10**6, 10**12), vector("0.3", "-0.4", "0.2")),
+    "ratio 1e12, oblique": turned(
+        OBLIQUE, spinning(vector("1e12", 3, 1), vector("1e-6", 2, "0.3"))
+    ),
+}
+
+
+# Bodies drawn at random
+
+SMALL = st.integers(-20, 20)
+QUATERNIONS = st.tuples(SMALL, SMALL, SMALL, SMALL).filter(any)
+TIMES = st.one_of(
+    st.fractions(-50, 50, max_denominator=60), st.integers(-(10**12), 10**12).map(Fraction)
+)
+
+
+@st.composite
+def spins(draw: st.DrawFn) -> FreeSpin:
+    """Any free motion; often with a tiny gap, a huge ratio, a zero component or a near-separatrix."""
+    if draw(st.booleans()):
+        sign, exponent = draw(st.sampled_from((-1, 1))), draw(st.integers(1, 60))
+        spin = near_separatrix(Fraction(sign, 10**exponent))
+    else:
+        moments = [Fraction(draw(st.integers(1, 60))) for _ in range(3)]
+        kind = draw(st.sampled_from(("plain", "near", "ratio")))
+        if kind == "near":
+            moments[1] = moments[0] * (1 + Fraction(1, 10 ** draw(st.integers(1, 30))))
+        if kind == "ratio":
+            moments[2] *= 10 ** draw(st.integers(1, 12))
+        omega = tuple(Fraction(draw(SMALL), 10 ** draw(st.integers(0, 8))) for _ in range(3))
+        spin = spinning(tuple(moments), omega)
+    order = draw(st.permutations(range(3)))
+    permuted = spinning(
+        tuple(spin.inertia[i][i] for i in order), tuple(spin.omega[i] for i in order)
+    )
+    return turned(rotation(*draw(QUATERNIONS)), permuted) if draw(st.booleans()) else permuted
+
+
+# Measures
+
+
+def scene(spin: FreeSpin, attitude: Quaternion = TILTED) -> Scene:
+    clock = Clock(Fraction(0), (Fraction(1),))
+    start = Spin(spin.omega, attitude)
+    return Scene(
+        "free", "", "euler", frozenset({"attitude"}), RigidBody(spin.inertia), start, clock
+    )
+
+
+def times(*entries: int | str | Fraction) -> list[Fraction]:
+    return [Fraction(entry) for entry in entries]
+
+
+def overlap(p: Motion, q: Motion) -> bool:
+    """Whether no vector or matrix of the two differs by more than both radii allow."""
+    with mp.workdps(2 * DIGITS + 20):
+        return all(
+            _norm(x - y) <= r * _scale(x) + s * _scale(y)
+            for name in p.quantities
+            for x, y, r, s in zip(p[name], q[name], p.radius, q.radius, strict=True)
+        )
+
+
+def _norm(entries: np.ndarray[Any, Any]) -> mpf:
+    return mp.norm(list(entries.flat))
+
+
+def _scale(entries: np.ndarray[Any, Any]) -> mpf:
+    """What a radius is relative to."""
+    return _norm(entries) or mpf(1)
+
+
+def flat(rows: Any) -> list[arb]:
+    return list(np.array(rows, dtype=object).flat)
+
+
+def agrees_with_mpmath(spin: FreeSpin, at: Sequence[Fraction]) -> None:
+    """The proven balls meet the other closed form, and are as narrow as was asked."""
+    found = enclosed(scene(spin)).motion(at, DIGITS)
+    other = jacobi.closed_form(scene(spin)).motion(at, DIGITS)
+    assert set(found.quantities) == set(other.quantities) == {"omega", "attitude"}
+    assert all(r <= mpf(10) ** -DIGITS for r in found.radius)
+    assert overlap(found, other)
+
+
+def keeps_its_integrals(spin: FreeSpin, at: Sequence[Fraction], bits: int = 600) -> None:
+    """The balls of 2T, H^2, R^T R and R I w contain what they were at the start, exactly."""
+    with ctx.workprec(bits):
+        found = FreeRotationBalls(spin, IDENTITY).enclose(at, bits)
+        inertia = arb_mat([[ball(entry) for entry in row] for row in spin.inertia])
+        for omega, rows in zip(found["omega"], found["attitude"], strict=True):
+            w, R = arb_mat(3, 1, omega), arb_mat(rows)
+            H = inertia * w
+            assert holds((w.transpose() * H)[0, 0], spin.twice_energy)
+            assert holds((H.transpose() * H)[0, 0], spin.momentum_squared)
+            gram, space = R.transpose() * R, R * H
+            assert all(gram[i, j].contains(int(i == j)) for i in range(3) for j in range(3))
+            assert all(holds(space[i, 0], spin.momentum[i]) for i in range(3))
+            # The statement has content: of 180 digits, time takes 12, and tiny numbers twice 60.
+            assert all(entry.rad() <= arb(10) ** -40 for entry in gram.entries())
+
+
+def holds(found: arb, value: Fraction | int) -> bool:
+    """Whether a ball contains a rational, which is itself a ball, but a far narrower one."""
+    with ctx.workprec(10_000):
+        return bool(found.contains(ball(value)))
+
+
+def obeys_its_equations(spin: FreeSpin, t: Fraction, bits: int = 1200) -> None:
+    """I w' - (I w) x w and R' - R [w]x, with central differences in balls, contain zero.
+
+    The remainder of a difference of step h is h^2/6 |f'''| at most. |d^n w/dt^n| <= n! rho^n |w| with
+    rho = |H| |I^-1|; and R''' = R (W'' + 2 W W' + W' W + W^3) with W = [w]x. The numbers are doubled
+    for the motion within h of t.
+    """
+    h = Fraction(1, 10**60)
+    with ctx.workprec(bits):
+        before, now, after = range(3)
+        found = FreeRotationBalls(spin, TILTED).enclose([t - h, t, t + h], bits)
+        omega, rows = found["omega"], found["attitude"]
+        size = sum((abs(w) for w in omega[now]), arb(0)).upper()
+        inverse = tensors.inverse(spin.inertia)
+        rho = ball(sum(map(abs, spin.momentum), Fraction(0)))
+        rho *= ball(sum((inverse[i][i] for i in range(3)), Fraction(0)))
+        step = ball(h)
+        third = 2 * step**2 / 6 * arb(0, 1)
+        w_error = third * (6 * rho**3 * size)
+        R_error = third * (2 * rho**2 * size + 3 * rho * size**2 + size**3)
+        slope = [(p - q) / (2 * step) + w_error for p, q in zip(*_ends(omega), strict=True)]
+        inertia = arb_mat([[ball(entry) for entry in row] for row in spin.inertia])
+        w = arb_mat(3, 1, omega[now])
+        torque = inertia * arb_mat(3, 1, slope) - _cross(inertia * w, w)
+        assert all(0 in entry for entry in torque.entries())
+        x, y, z = omega[now]
+        spun = arb_mat(rows[now]) * arb_mat([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        turning = (arb_mat(rows[after]) - arb_mat(rows[before])) / (2 * step)
+        assert all(0 in entry + R_error for entry in (turning - spun).entries())
+        # The statement has content: the balls are narrow beside the terms that cancel.
+        assert all(entry.rad() <= size * arb(10) ** -40 for entry in slope)
+
+
+def _ends(rows: Sequence[Any]) -> tuple[Any, Any]:
+    return rows[2], rows[0]
+
+
+def _cross(p: arb_mat, q: arb_mat) -> arb_mat:
+    (a, b, c), (x, y, z) = p.entries(), q.entries()
+    return arb_mat(3, 1, [b * z - c * y, c * x - a * z, a * y - b * x])
+
+
+# Against the other routes
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_agrees_with_mpmath(name: str) -> None:
+    """Theta functions with an addition theorem, and AGM with R_J, lead to the same motion."""
+    agrees_with_mpmath(SPINS[name], times(0, "7/3", "-5/2", 31, LONG))
+
+
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extremes_agree_with_mpmath(name: str) -> None:
+    """So they do next to the separatrix, the axes and symmetric bodies, and for thin rods."""
+    agrees_with_mpmath(EXTREMES[name], times("7/3", -LONG))
+
+
+@given(spins(), TIMES)
+@settings(max_examples=25)
+def test_any_body_agrees_with_mpmath(spin: FreeSpin, t: Fraction) -> None:
+    """Whatever the body, the start and the time, the two closed forms differ by no more than proven."""
+    agrees_with_mpmath(spin, [t])
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_agrees_with_taylor(name: str) -> None:
+    """The Taylor recursion, which knows no elliptic function, finds the same motion."""
+    at = times("7/3", "-5/2", 11)
+    found = enclosed(scene(SPINS[name])).motion(at, 40)
+    assert overlap(found, TaylorSolution(scene(SPINS[name])).motion(at, 40))
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_obeys_its_equations(name: str) -> None:
+    """Put back into I w' = (I w) x w and R' = R [w]x, the balls leave zero."""
+    obeys_its_equations(SPINS[name], Fraction(37, 11))
+
+
+@given(spins().filter(lambda spin: any(spin.omega)), TIMES)
+@settings(max_examples=40)
+def test_any_body_keeps_its_integrals(spin: FreeSpin, t: Fraction) -> None:
+    """Energy, |H|, orthogonality and the momentum in space lie in their balls, as exact rationals."""
+    keeps_its_integrals(spin, [t])
+
+
+# The radius
+
+
+class Coarse(Enclosed):
+    """One quantity at times that are known only to ``spread``: its balls must hold all of them."""
+
+    def __init__(self, rotation: FreeRotationBalls, name: str, spread: Fraction) -> None:
+        self.regime = rotation.regime
+        self._rotation, self._name, self._spread = rotation, name, spread
+
+    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        course, spread = self._rotation.course(bits), arb(0, ball(self._spread))
+        found = [course.at(ball(t) + spread, True) for t in elapsed]
+        return {self._name: [row[self._name == "attitude"] for row in found]}
+
+
+def radius_covers_the_error(spin: FreeSpin) -> None:
+    """A midpoint is off by its radius at most, where the true error is known and nearly as large."""
+    rotation, spread = FreeRotationBalls(spin, TILTED), Fraction(1, 10**25)
+    at = [Fraction(k, 3) for k in range(40)]
+    for name in ("omega", "attitude"):
+        found = Coarse(rotation, name, spread).motion(at, 20)
+        for moved in (spread, -spread):
+            true = rotation.motion([t + moved for t in at], DIGITS)
+            with mp.workdps(2 * DIGITS):
+                rows = zip(found[name], true[name], found.radius, true.radius, strict=True)
+                assert all(_norm(x - y) <= r * _scale(x) + s * _scale(y) for x, y, r, s in rows)
+
+
+RADIUS_SPINS = ("max-axis", "min-axis", "separatrix", "axisymmetric, oblate", "steady")
+
+
+@pytest.mark.parametrize("name", RADIUS_SPINS)
+def test_radius_covers_the_error(name: str) -> None:
+    """What a row says about its error holds where the error is known: at times blurred on purpose."""
+    radius_covers_the_error(SPINS[name])
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_coarse_balls_contain_the_fine_ones(name: str) -> None:
+    """Every entry computed with 60 bits contains the one computed with 400."""
+    rotation, at = FreeRotationBalls(SPINS[name], TILTED), times(0, "7/3", "-5/2", 1000)
+    coarse, fine = rotation.enclose(at, 60), rotation.enclose(at, 400)
+    assert set(coarse) == {"omega", "attitude"}
+    for quantity in coarse:
+        pairs = list(zip(flat(coarse[quantity]), flat(fine[quantity]), strict=True))
+        # A ball that is not finite contains everything.
+        assert all(wide.is_finite() for wide, _ in pairs)
+        assert all(wide.contains(narrow) for wide, narrow in pairs)
+
+
+# Broken twins
+
+
+def _wrong_sign_of_the_phase(patch: pytest.MonkeyPatch) -> None:
+    right = phase._on_circle
+    patch.setattr(phase, "_on_circle", lambda factor, sense, angle: right(factor, -sense, angle))
+
+
+def _modulus_for_parameter(patch: pytest.MonkeyPatch) -> None:
+    right = Moduli.__init__
+
+    def wrong(self: Moduli, spin: FreeSpin) -> None:
+        right(self, spin)
+        self.m = self.m.sqrt()
+        self.m_prime = 1 - self.m
+
+    patch.setattr(Moduli, "__init__", wrong)
+
+
+def _axes_exchanged(patch: pytest.MonkeyPatch) -> None:
+    right = phase.Periodic.functions
+
+    def wrong(self: phase.Periodic, t: arb) -> tuple[arb, arb, arb]:
+        dn, sn, cn = right(self, t)
+        return cn, sn, dn
+
+    patch.setattr(phase.Periodic, "functions", wrong)
+
+
+def _transposed(patch: pytest.MonkeyPatch) -> None:
+    right = Tumbling._attitude
+    patch.setattr(
+        Tumbling,
+        "_attitude",
+        lambda self, t, functions: [
+            list(row) for row in zip(*right(self, t, functions), strict=True)
+        ],
+    )
+
+
+def _turns_forgotten(patch: pytest.MonkeyPatch) -> None:
+    def wrong(self: phase.Periodic, t: arb, functions: Any) -> tuple[arb, arb]:
+        root = acb(*self.phase(t, functions)).sqrt()
+        return root.real, root.imag
+
+    patch.setattr(phase.Periodic, "half_phase", wrong)
+
+
+def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
+    right = balls._width
+    patch.setattr(balls, "_width", lambda row: right(row) / mp.sqrt(10))
+
+
+MPMATH, EQUATIONS, INTEGRALS = "agrees with mpmath", "obeys its equations", "keeps its integrals"
+CHECKS: dict[str, Callable[[FreeSpin], None]] = {
+    MPMATH: lambda spin: agrees_with_mpmath(spin, [Fraction(7, 3)]),
+    EQUATIONS: lambda spin: obeys_its_equations(spin, Fraction(7, 3)),
+    INTEGRALS: lambda spin: keeps_its_integrals(spin, [Fraction(7, 3)]),
+    "radius covers the error": radius_covers_the_error,
+    "moves without a jump": lambda spin: moves_without_a_jump(spin),
+}
+TWINS: list[tuple[Callable[[pytest.MonkeyPatch], None], str]] = [
+    (_wrong_sign_of_the_phase, MPMATH),
+    (_wrong_sign_of_the_phase, EQUATIONS),
+    (_modulus_for_parameter, MPMATH),
+    (_modulus_for_parameter, INTEGRALS),
+    (_axes_exchanged, MPMATH),
+    (_axes_exchanged, INTEGRALS),
+    (_transposed, MPMATH),
+    (_transposed, EQUATIONS),
+    (_transposed, INTEGRALS),
+    (_half_a_digit_too_narrow, "radius covers the error"),
+    (_turns_forgotten, "moves without a jump"),
+]
+
+
+@pytest.mark.parametrize("name", ["max-axis", "min-axis, backward"])
+@pytest.mark.parametrize(("twin", "check"), TWINS)
+def test_broken_twin_is_caught(
+    twin: Callable[[pytest.MonkeyPatch], None],
+    check: str,
+    name: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each deliberate mistake fails the check named beside it, which the right code passes."""
+    CHECKS[check](SPINS[name])
+    twin(monkeypatch)
+    with pytest.raises(AssertionError):
+        CHECKS[check](SPINS[name])
+
+
+# Zeros, moduli and frames
+
+
+def test_exact_zeros_survive() -> None:
+    """A component that is zero at the start in exact rationals is an exact zero, not a small ball."""
+    for moments, omega in (
+        (vector(3, 2, 1), vector(1, 0, "0.5")),
+        (vector(3, 2, 1), vector(1, "-0.7", 0)),
+        (vector(1, 3, 2), vector("0.9", "0.1", 0)),
+    ):
+        found = FreeRotationBalls(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
+        assert [w.is_zero() for w in found["omega"][0]] == [w == 0 for w in omega]
+
+
+@pytest.mark.parametrize("oblique", [False, True])
+@pytest.mark.parametrize("exponent", [3, 20, 60])
+def test_complementary_parameter_keeps_its_digits(exponent: int, oblique: bool) -> None:
+    """m' is known to the working precision relatively, however small it is, and m + m' = 1."""
+    spin = near_separatrix(Fraction(1, 10**exponent))
+    with ctx.workprec(200):
+        found = Moduli(turned(OBLIQUE, spin) if oblique else spin)
+        # A few dozen roundings; the rotation of this tensor costs a handful of bits more.
+        assert found.m_prime.rel_accuracy_bits() >= 180
+        assert (found.m + found.m_prime).contains(1)
+
+
+@pytest.mark.parametrize("gap", [Fraction(1), Fraction(1, 10**6), TINY])
+@pytest.mark.parametrize("lower", [False, True])
+def test_gaps_of_a_full_tensor_keep_their_digits(gap: Fraction, lower: bool) -> None:
+    """The gaps of two nearly equal moments are exact to the working precision, relatively."""
+    moments = (2 + gap, Fraction(2), Fraction(1)) if not lower else (4, 2 + gap, Fraction(2))
+    spin = turned(OBLIQUE, spinning(vector(*moments), vector(1, 2, 3)))
+    with ctx.workprec(300):
+        frame = principal_balls(spin)
+        J1, J2, J3 = moments
+        for found, exact in (
+            *zip(frame.moments, moments, strict=True),
+            (frame.upper_gap, J1 - J2),
+            (frame.lower_gap, J2 - J3),
+            (frame.whole_gap, J1 - J3),
+        ):
+            assert holds(found, exact)
+            # A dozen roundings.
+            assert found.rel_accuracy_bits() >= 290
+
+
+@given(spins().filter(lambda s: s.regime in (Regime.MAX_AXIS, Regime.MIN_AXIS, Regime.SEPARATRIX)))
+@settings(max_examples=40)
+def test_principal_frame_is_right_handed_and_diagonalises(spin: FreeSpin) -> None:
+    """(a, b, c) are orthonormal with determinant +1, and I e = J e, all within the balls."""
+    with ctx.workprec(800):
+        found = Moduli(spin)
+        axes = arb_mat([list(axis) for axis in found.axes])
+        inertia = arb_mat([[ball(entry) for entry in row] for row in spin.inertia])
+        gram, image = axes * axes.transpose(), axes * inertia
+        assert all(gram[i, j].contains(int(i == j)) for i in range(3) for j in range(3))
+        assert axes.det() > 0
+        for i, J in enumerate(found.moments):
+            assert all(0 in image[i, j] - J * axes[i, j] for j in range(3))
+
+
+# The quaternion
+
+
+def rate_bound(spin: FreeSpin) -> Fraction:
+    """|omega| <= |H| |I^-1|, with norms that are rational."""
+    inverse = tensors.inverse(spin.inertia)
+    size = sum(map(abs, spin.momentum), Fraction(0))
+    return size * sum((inverse[i][i] for i in range(3)), Fraction(0))
+
+
+def is_periodic(spin: FreeSpin) -> bool:
+    return spin.regime in (Regime.MAX_AXIS, Regime.MIN_AXIS)
+
+
+def period(spin: FreeSpin) -> Fraction:
+    """That of omega, from the other route, to a hundred digits."""
+    with mp.workdps(110):
+        return exact_value(Orbit(spin).period)
+
+
+def moves_without_a_jump(spin: FreeSpin) -> None:
+    """The quaternion is continuous over a period, or on both sides of the start if there is none."""
+    # At most two radians a step: a chord of 2 sin(1/2) < 1, where a change of sign has 2 cos(1/2).
+    h = 2 / (rate_bound(spin) + Fraction(1, 10))
+    at = [k * h for k in range(int(period(spin) / h) + 2)] if is_periodic(spin) else []
+    at = at or [k * h for k in range(-100, 100)]
+    found = quaternions(scene(spin), at, 15)
+    with mp.workdps(30):
+        assert all(mp.norm(list(q - p)) < 1 for p, q in pairwise(found))
+
+
+def matrix_of(q: Sequence[mpf]) -> np.ndarray[Any, Any]:
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ],
+        dtype=object,
+    )
+
+
+def hamilton(p: Sequence[mpf], q: Sequence[mpf]) -> list[mpf]:
+    a, b, c, d = p
+    w, x, y, z = q
+    return [
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    ]
+
+
+@pytest.mark.parametrize("name", [*SPINS, "m' ~ 1e-60", "ratio 1e12, oblique"])
+def test_quaternion_squares_to_the_attitude(name: str) -> None:
+    """The quaternion has unit length, and its rotation is R, however late."""
+    spin = {**SPINS, **EXTREMES}[name]
+    at = times(0, "7/3", "-5/2", 31, LONG, -LONG)
+    rotation = enclosed(scene(spin))
+    found, frames = rotation.quaternion(at, DIGITS), rotation.motion(at, DIGITS)["attitude"]
+    assert all(r <= mpf(10) ** -DIGITS for r in found.radius)
+    with mp.workdps(2 * DIGITS):
+        # R is quadratic in q: at most four radii per entry and its own, on nine entries.
+        bound = 15 * mpf(10) ** -DIGITS
+        for q, R in zip(found["quaternion"], frames, strict=True):
+            assert abs(mp.norm(list(q)) - 1) <= bound
+            assert _norm(matrix_of(q) - R) <= bound
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_quaternion_starts_as_the_scene_has_it(name: str) -> None:
+    """At the start it is the quaternion given over its norm, in its own sign."""
+    for sign in (1, -1):
+        given_one: Quaternion = tuple(sign * c for c in TILTED)  # type: ignore[assignment]
+        (found,) = quaternions(scene(SPINS[name], given_one), [Fraction(0)], DIGITS)
+        with mp.workdps(2 * DIGITS):
+            exact = [mp.convert(c) / mp.sqrt(15) for c in given_one]
+            assert mp.norm([p - q for p, q in zip(found, exact, strict=True)]) <= mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("name", [*SPINS, "m' ~ 1e-60", "beside the unstable axis"])
+def test_quaternion_never_jumps(name: str) -> None:
+    """In a step h the body turns by |omega| h at most, and the quaternion moves by less than half that.
+
+    Over the whole period of omega, or as much before the start as after it where there is none.
+    """
+    moves_without_a_jump({**SPINS, **EXTREMES}[name])
+
+
+@pytest.mark.parametrize("name", [name for name, spin in SPINS.items() if is_periodic(spin)])
+def test_quaternion_keeps_its_sign_for_a_million_million_seconds(name: str) -> None:
+    """q(n P + r) = s^n q(r) with s = q(P)/q(0), where P is the period of omega: the sign included."""
+    spin, r = SPINS[name], Fraction(5, 7)
+    once_round = period(spin)
+    turns = int(LONG / once_round)
+    at = [Fraction(0), once_round, r, turns * once_round + r]
+    start, once, early, late = quaternions(scene(spin), at, 80)
+    with mp.workdps(100):
+        step = hamilton(once, [start[0], *(-c for c in start[1:])])
+        power = [mpf(1), mpf(0), mpf(0), mpf(0)]
+        for bit in f"{turns:b}":
+            power = hamilton(power, power)
+            power = hamilton(power, step) if bit == "1" else power
+        expected = hamilton(power, early)
+        # An error of 1e-80 in s, 1e12 times.
+        assert mp.norm([p - q for p, q in zip(late, expected, strict=True)]) <= mpf(10) ** -66
+
+
+# The scene
+
+
+def test_route_and_regime_are_named() -> None:
+    """The route is arb, and the word of the regime is the one the other route prints."""
+    for name, spin in SPINS.items():
+        found = enclosed(scene(spin))
+        assert (found.route, found.regime) == ("arb", name.split(",")[0])
+
+
+def test_only_what_is_tracked_is_answered() -> None:
+    """A scene that does not track its attitude gets omega alone."""
+    untracked = replace(scene(SPINS["max-axis"]), track=frozenset())
+    assert set(enclosed(untracked).motion([Fraction(1)], 20).quantities) == {"omega"}
+
+
+def test_a_moment_has_no_closed_form_here() -> None:
+    """A constant moment is refused, not ignored."""
+    loaded = replace(
+        scene(SPINS["max-axis"]),
+        body=RigidBody(SPINS["max-axis"].inertia, vector(0, 0, 1)),
+    )
+    with pytest.raises(NoClosedForm, match="moment"):
+        enclosed(loaded)

@@ -1,0 +1,362 @@
+"""Weierstrass's p in balls: its equation, its inverse, its derivatives and the turning of its sigma."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+
+import pytest
+from flint import acb, arb, ctx
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from verify.exact.balls import Undecidable, ball
+from verify.exact.kirchhoff.lattice import Lattice, lattice
+
+BITS = 400
+# Balls that overlap say nothing unless they are narrow: a quarter of the bits may be lost, half of
+# them where the roots are 1e-60 apart or an argument is within rounding of a half period.
+NARROW = arb(2) ** -100
+TINY = Fraction(1, 10**60)
+
+Invariants = tuple[Fraction, Fraction]
+
+
+def from_roots(e1: Fraction, e2: Fraction) -> Invariants:
+    """4 (X - e1)(X - e2)(X + e1 + e2)."""
+    e3 = -e1 - e2
+    return -4 * (e1 * e2 + e1 * e3 + e2 * e3), 4 * e1 * e2 * e3
+
+
+def from_pair(middle: Fraction, square: Fraction) -> Invariants:
+    """4 (X + 2c)((X - c)^2 + n^2), from c and n^2."""
+    return 12 * middle**2 - 4 * square, -8 * middle * (middle**2 + square)
+
+
+ONE, FAR = Fraction(1), Fraction(10) ** 12
+CASES: dict[str, Invariants] = {
+    "three real roots": from_roots(Fraction(3), Fraction(-1, 2)),
+    "one real root, positive": from_pair(-ONE, Fraction(2)),
+    "one real root, negative": from_pair(ONE, Fraction(1, 3)),
+    "square": (Fraction(4), Fraction(0)),
+    "diamond": (Fraction(-4), Fraction(0)),
+    "hexagon": (Fraction(0), Fraction(4)),
+    "hexagon, turned": (Fraction(0), Fraction(-4)),
+    "large roots close": from_roots(ONE + TINY, ONE),
+    "small roots close": from_roots(-ONE, -ONE - TINY),
+    "pair near the real line, right": from_pair(ONE, TINY),
+    "pair near the real line, left": from_pair(-ONE, TINY),
+    "nearly g3 = 0": (Fraction(4), TINY),
+    "nearly g2 = 0": (TINY, ONE),
+    "all roots large": from_roots(3 * FAR, -FAR / 2),
+    "all roots small": from_pair(1 / FAR, 1 / FAR**2),
+    "double root, negative": from_roots(-ONE, -ONE),
+    "double root, positive": from_roots(ONE / 7, ONE / 7),
+    "triple root": (Fraction(0), Fraction(0)),
+}
+by_case = pytest.mark.parametrize("invariants", list(CASES.values()), ids=list(CASES))
+ELLIPTIC = [name for name, (g2, g3) in CASES.items() if g2**3 != 27 * g3**2]
+PERIODIC = [*ELLIPTIC, "double root, negative"]
+
+
+@contextmanager
+def at_work(invariants: Invariants) -> Iterator[tuple[Lattice, arb]]:
+    """The lattice, and a length of its size."""
+    with ctx.workprec(BITS):
+        found = lattice(*invariants)
+        yield found, scale(invariants)
+
+
+def scale(invariants: Invariants) -> arb:
+    """About a tenth of a period: u^4 g2 and u^6 g3 are dimensionless."""
+    g2, g3 = (abs(ball(g)) for g in invariants)
+    size = g2.root(4) + g3.root(6)
+    return arb(1) / (5 * size) if not size.is_zero() else arb(1)
+
+
+def points(length: arb) -> list[acb]:
+    """Here and there in the plane, real and not."""
+    places = [(1, 0), (3, 0), (-2, 0), (0, 2), (1, 1), (2, -1), (-3, 2), (7, 1), (-5, -3)]
+    return [acb(length * a, length * b / 2) for a, b in places]
+
+
+def close(a: acb | arb, b: acb | arb) -> bool:
+    """Whether the balls overlap and are narrow beside their size."""
+    size = abs(a) + 1
+    return bool(acb(a).overlaps(acb(b)) and abs(a).rad() + abs(b).rad() <= NARROW * size)
+
+
+def same(found: tuple[acb, acb], expected: tuple[acb, acb]) -> bool:
+    return all(close(a / b, acb(1)) for a, b in zip(found, expected, strict=True))
+
+
+# p
+
+
+@by_case
+def test_p_obeys_its_equation(invariants: Invariants) -> None:
+    """p'^2 = 4 p^3 - g2 p - g3."""
+    with at_work(invariants) as (cell, length):
+        for u in points(length):
+            p, slope = cell.p(u)
+            cubic = 4 * p**3 - ball(invariants[0]) * p - ball(invariants[1])
+            assert close(cubic / slope**2, acb(1))
+
+
+@by_case
+def test_p_begins_as_it_should(invariants: Invariants) -> None:
+    """p = 1/u^2 + g2 u^2/20 + g3 u^4/28 + ..., so it is Weierstrass's, and p' is its derivative."""
+    with at_work(invariants) as (cell, length):
+        g2, g3 = (ball(g) for g in invariants)
+        u = acb(length, length / 3) / 2**30
+        p, slope = cell.p(u)
+        # The next terms are below (|u|/length)^8 of the first, times a number below 1: 2^-238.
+        bound = arb(2) ** -238
+        assert abs(u**2 * p - 1 - g2 * u**4 / 20 - g3 * u**6 / 28) <= bound
+        assert abs(u**3 * slope + 2 - g2 * u**4 / 10 - g3 * u**6 / 7) <= 8 * bound
+
+
+@by_case
+def test_p_is_even_and_real_on_the_real_line(invariants: Invariants) -> None:
+    """p(-u) = p(u), p'(-u) = -p'(u), and conjugate arguments have conjugate values."""
+    with at_work(invariants) as (cell, length):
+        for u in points(length):
+            p, slope = cell.p(u)
+            assert same(cell.p(-u), (p, -slope))
+            mirrored = cell.p(u.conjugate())
+            assert same((mirrored[0].conjugate(), mirrored[1].conjugate()), (p, slope))
+
+
+@pytest.mark.parametrize("name", PERIODIC)
+def test_p_has_its_period(name: str) -> None:
+    """p(u + L) = p(u), and on the real line it is above its least value, which is at L/2."""
+    with at_work(CASES[name]) as (cell, length):
+        period = cell.period
+        assert period is not None
+        for u in points(length):
+            assert same(cell.p(u + period), cell.p(u))
+        least, level = cell.p(acb(period / 2))
+        assert level.contains(0)
+        assert abs(level) <= NARROW * abs(least) ** 2 + NARROW
+        for k in (1, 3, 6, 7):
+            assert cell.p(acb(period * k / 8))[0].real > least.real
+
+
+@pytest.mark.parametrize("name", ["double root, positive", "triple root"])
+def test_without_a_period_there_is_none(name: str) -> None:
+    """A double root e > 0 or a triple one leaves p without a real period."""
+    with at_work(CASES[name]) as (cell, _):
+        assert cell.period is None
+
+
+# The argument
+
+
+@by_case
+def test_the_argument_leads_back_to_its_point(invariants: Invariants) -> None:
+    """p and p' at argument(p(u), p'(u)) are those at u, which only periods leave alike."""
+    with at_work(invariants) as (cell, length):
+        for u in points(length):
+            there = cell.p(u)
+            found = cell.p(cell.argument(*there))
+            assert same(found, there)
+            assert not found[1].overlaps(-there[1])
+
+
+@by_case
+def test_the_opposite_point_has_the_opposite_argument(invariants: Invariants) -> None:
+    """argument(X, -Y) + argument(X, Y) is a period: there s vanishes."""
+    with at_work(invariants) as (cell, length):
+        for u in points(length):
+            X, Y = cell.p(u)
+            both = cell.argument(X, Y) + cell.argument(X, -Y)
+            value, slope = cell.jet(both, 1)
+            assert value.contains(0)
+            assert abs(value) <= NARROW * abs(slope) * length
+
+
+fractions = st.fractions(-3, 3, max_denominator=50)
+
+
+@settings(max_examples=40)
+@given(fractions, fractions, st.integers(-5, 5), st.integers(-5, 5))
+def test_any_argument_in_any_lattice(g2: Fraction, g3: Fraction, a: int, b: int) -> None:
+    """Whatever the invariants and the point."""
+    assume((a, b) != (0, 0))
+    with at_work((g2, g3)) as (cell, length):
+        u = acb(length * a, length * b)
+        there = cell.p(u)
+        assume(all(value.is_finite() for value in there))
+        assume(not there[1].contains(0))
+        assert same(cell.p(cell.argument(*there)), there)
+
+
+@pytest.mark.parametrize("root", [1, 0, -1])
+def test_a_root_is_a_half_period_exactly(root: int) -> None:
+    """Y = 0 exactly is met by a half period without the loss of half the digits."""
+    with at_work((Fraction(4), Fraction(0))) as (cell, length):
+        w = cell.argument(acb(root), acb(0))
+        p, slope = cell.p(w)
+        assert close(p, acb(root))
+        assert close(slope, acb(0))
+        value = cell.jet(2 * w, 0)[0]
+        assert value.contains(0)
+        assert abs(value) <= NARROW * length
+        assert not cell.jet(w, 0)[0].contains(0)
+
+
+@pytest.mark.parametrize("name", ELLIPTIC)
+def test_a_half_period_is_told_from_the_others(name: str) -> None:
+    """Each half period comes back from (p, 0), also where two of the roots are 1e-60 apart."""
+    with at_work(CASES[name]) as (cell, _):
+        period = cell.period
+        assert period is not None
+        X = cell.p(acb(period / 2))[0]
+        w = cell.argument(X, acb(0))
+        assert any(close(w / period, acb(half) / 2) for half in (-1, 1))
+
+
+def test_half_periods_that_cannot_be_told_apart_are_left_open() -> None:
+    """Where the ball of X holds two roots, none is chosen."""
+    with at_work((Fraction(4), Fraction(0))) as (cell, _), pytest.raises(Undecidable):
+        cell.argument(acb(arb(0, 2)), acb(0))
+
+
+@pytest.mark.parametrize("name", ELLIPTIC)
+def test_beside_a_half_period_both_signs_are_covered(name: str) -> None:
+    """From a ball of Y that holds zero comes a ball of u that holds both u and -u, up to a period."""
+    with at_work(CASES[name]) as (cell, length):
+        period = cell.period
+        assert period is not None
+        u = acb(period / 2 + length * arb(2) ** -300)
+        X, Y = cell.p(u)
+        blurred = acb(Y.real + arb(0, 2 * abs(Y).upper()), Y.imag)
+        found = cell.argument(X, blurred)
+        shifts = [found - period * k for k in (-1, 0, 1)]
+        assert any(shift.contains(u.mid()) for shift in shifts)
+        assert any((-shift).contains(u.mid()) for shift in shifts)
+
+
+# The jets of s
+
+
+@by_case
+def test_s_is_odd_with_a_simple_zero(invariants: Invariants) -> None:
+    """s(-u) = -s(u); s(0) = s''(0) = 0 and s'(0) is not zero."""
+    with at_work(invariants) as (cell, length):
+        for u in points(length):
+            assert close(cell.jet(-u, 0)[0] / cell.jet(u, 0)[0], acb(-1))
+        value, slope, bend = cell.jet(acb(0), 2)
+        assert value.contains(0)
+        assert bend.contains(0)
+        assert not slope.contains(0)
+
+
+@by_case
+def test_derivatives_of_s_are_those_of_differences(invariants: Invariants) -> None:
+    """s' and s'' against central differences."""
+    with at_work(invariants) as (cell, length):
+        h = length / 2**60
+        for u in points(length):
+            value, slope, bend = cell.jet(u, 2)
+            after, before = cell.jet(u + h, 1), cell.jet(u - h, 1)
+            # The error is h^2/6 of a third derivative, which here is below 2^20 s/length^3.
+            bound = arb(2) ** -90 * (abs(value) + length * abs(slope) + length**2 * abs(bend))
+            assert abs((after[0] - before[0]) / (2 * h) - slope) * length <= bound
+            assert abs((after[1] - before[1]) / (2 * h) - bend) * length**2 <= bound
+
+
+@by_case
+def test_the_second_logarithmic_derivative_of_s_is_minus_p(invariants: Invariants) -> None:
+    """s''/s - (s'/s)^2 + p is the same everywhere: s is sigma but for exp(a u^2)."""
+    with at_work(invariants) as (cell, length):
+        levels = []
+        for u in points(length):
+            s0, s1, s2 = cell.jet(u, 2)
+            levels.append(s2 / s0 - (s1 / s0) ** 2 + cell.p(u)[0])
+        for level in levels:
+            assert close(level * length**2, levels[0] * length**2)
+
+
+# The turn
+
+
+def off_the_line(cell: Lattice, length: arb) -> list[acb]:
+    """Arguments that are not real, nearer to the real line than to the next row of periods."""
+    found = [acb(length, length / 5), acb(-3 * length, -length / 3), acb(0, length / 2)]
+    return [w for w in found if _has_turn(cell, w)]
+
+
+def _has_turn(cell: Lattice, w: acb) -> bool:
+    try:
+        cell.turn(arb(0), w, acb(1))
+    except Undecidable:
+        return False
+    return True
+
+
+def turned(cell: Lattice, u: arb, w: acb) -> arb:
+    return cell.turn(u, w, cell.jet(u - w, 0)[0] / cell.jet(-w, 0)[0])
+
+
+@by_case
+def test_the_turn_begins_at_zero_and_is_continuous(invariants: Invariants) -> None:
+    """Along a fine line it never jumps, and it is an argument of the quotient all the way."""
+    with at_work(invariants) as (cell, length):
+        offsets = off_the_line(cell, length)
+        assert offsets
+        for w in offsets:
+            # A step of a fifth of the distance from the zeros turns by less than a fifth radian
+            # around each of them, and by as little around the rest together.
+            step = abs(w.imag) / 5
+            previous = turned(cell, arb(0), w)
+            assert close(previous, arb(0))
+            for k in range(1, 60):
+                u = step * k
+                now = turned(cell, u, w)
+                assert abs(now - previous) <= 1
+                quotient = cell.jet(u - w, 0)[0] / cell.jet(-w, 0)[0]
+                assert close((acb(0, 1) * now).exp(), quotient / abs(quotient))
+                previous = now
+
+
+@by_case
+def test_conjugate_offsets_turn_against_each_other(invariants: Invariants) -> None:
+    """The turn about the conjugate of w is minus that about w."""
+    with at_work(invariants) as (cell, length):
+        for w in off_the_line(cell, length):
+            for k in (3, -20):
+                u = length * k
+                assert close(turned(cell, u, w.conjugate()), -turned(cell, u, w))
+
+
+@pytest.mark.parametrize("name", PERIODIC)
+@pytest.mark.parametrize("number", [1, 7, -(10**6), 10**12])
+def test_the_turn_of_many_periods_is_that_of_one(name: str, number: int) -> None:
+    """turn(u + n L) = turn(u) + n turn(L): no turn is lost, and none is counted twice."""
+    with at_work(CASES[name]) as (cell, length):
+        period = cell.period
+        assert period is not None
+        for w in off_the_line(cell, length):
+            single = turned(cell, period, w)
+            assert close(abs(single), arb.pi())
+            there, here = turned(cell, length + number * period, w), turned(cell, length, w)
+            assert close((there - here) / number, single)
+
+
+@by_case
+def test_the_turn_about_a_real_argument_is_left_open(invariants: Invariants) -> None:
+    """On the line itself s vanishes: there is no turn."""
+    with at_work(invariants) as (cell, length), pytest.raises(Undecidable):
+        cell.turn(length, acb(length * 2), acb(1))
+
+
+def test_a_turn_at_a_time_beyond_all_doubles() -> None:
+    """An argument of 1e400 is no obstacle but a matter of precision."""
+    invariants = CASES["one real root, positive"]
+    far = Fraction(10) ** 400
+    with ctx.workprec(2000):
+        cell = lattice(*invariants)
+        w = acb(1, scale(invariants))
+        assert turned(cell, ball(far), w).rad() <= NARROW
