@@ -109,7 +109,7 @@ def test_one_bad_number_is_enough(quantity: str, row: int, bad: arb) -> None:
     """A number that is none, in whichever row and quantity, sends the whole motion back."""
 
     def bad_at_first(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        found = {
+        found: dict[str, Any] = {
             "omega": [[ball(t + 1)] * 3 for t in elapsed],
             "attitude": [[[ball(t + 2)] * 3] * 3 for t in elapsed],
         }
@@ -242,7 +242,7 @@ def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
     """Rows are apart from each other, and the quantities of one row are not."""
     narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
     with ctx.workprec(200):
-        found = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
+        found: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
         motion = module._motion(found, 2, 200)
     assert 2**-90 <= motion.radius[0] <= 2**-89
     assert 2**-60 <= motion.radius[1] <= 2**-59

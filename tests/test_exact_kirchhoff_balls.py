@@ -19,6 +19,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
+from verify.exact.balls import Undecidable, ball
 from verify.exact.kirchhoff import course as course_module
 from verify.exact.kirchhoff import lattice as lattice_module
 from verify.exact.kirchhoff.course import Course, course
@@ -31,6 +32,7 @@ from verify.exact.taylor import TaylorSolution
 from verify.scenes.bodies import Clebsch, ImmersedBody
 from verify.scenes.library import names
 from verify.scenes.motion import Clock, Impulse, Motion
+from verify.scenes.precision import exact_value
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 
@@ -101,6 +103,22 @@ CASES: dict[str, tuple[Clebsch, State, str]] = {
     "start at the upper turning point": (BLUNT, exact(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
     "through the pole": (SHARP, exact("3/5", 0, "4/5", "1/3", "1/7", 1), "four-roots"),
     "through the lower pole": (BLUNT, exact("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
+    # A third is no ball of radius zero: that the pole is a root is then told by rationals alone.
+    "through the pole, F = 1/3": (
+        SHARP,
+        exact("1/5", 0, "4/15", "1/3", "1/7", 1),
+        "four-roots",
+    ),
+    "through the lower pole, F = 1/3": (
+        BLUNT,
+        exact("1/5", 0, "4/15", -3, "1/7", 1),
+        "two-roots",
+    ),
+    "at a turning point and to the pole, F = 1/3": (
+        SHARP,
+        exact("1/5", 0, "4/15", "1/3", 0, 1),
+        "four-roots",
+    ),
     "from the axis": (EVEN, UPRIGHT, "cubic"),
     "from the axis, two roots": (BLUNT, exact(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
     "planar, over both poles": (
@@ -219,6 +237,31 @@ def test_begins_as_told(solid: Clebsch, start: State, kind: str) -> None:
                 assert abs(a - b) <= motion.radius[0] * 10
 
 
+@by_case
+@pytest.mark.parametrize("bits", [60, 100, 170])
+def test_a_ball_at_any_precision_holds_the_truth(
+    solid: Clebsch, start: State, kind: str, bits: int
+) -> None:
+    """Component by component, however coarse: what is found with 80 digits lies in every ball."""
+    problem, times = scene(solid, start), exact("3/2", -40, 1000)
+    if kind in ("hyperbolic", "heteroclinic"):
+        times = times[:2]
+    fine = enclosed(problem).motion(times, 80)
+    with ctx.workprec(bits):
+        try:
+            coarse = enclosed(problem).enclose(times, bits)
+        except Undecidable:
+            pytest.skip("a branch is open at this precision")
+    for name, rows in coarse.items():
+        found = np.array(rows, dtype=object).flat
+        for narrow, wide in zip(fine[name].flat, found, strict=True):
+            # The finer number is known to 80 digits of its vector, which is below 10000.
+            blur = Fraction(1, 10**76)
+            exactly = exact_value(narrow)
+            with ctx.workprec(400):
+                assert wide.overlaps(arb(ball(exactly), ball(blur)))
+
+
 # The equations of motion
 
 # Central differences at h: the error is h^2/6 of a third derivative. No rate here is above 10 per
@@ -314,6 +357,16 @@ def test_difficult_bodies_agree_with_taylor(solid: Clebsch, start: State) -> Non
 def test_difficult_bodies_agree_with_jacobi_for_long(solid: Clebsch, start: State) -> None:
     """And so they do after 1e6 units of time, beside a separatrix and elsewhere."""
     assert agrees_with_jacobi(scene(solid, start), exact("17/3", Fraction(-(10**6))))
+
+
+@by_difficulty
+def test_difficult_bodies_settle_to_few_digits_and_to_many(solid: Clebsch, start: State) -> None:
+    """Three digits are not refused because the way there takes hundreds, and hold what 150 find."""
+    problem, times = scene(solid, start), exact(2, Fraction(-(10**12)), Fraction(1, 10**100))
+    few, many = (enclosed(problem).motion(times, digits) for digits in (3, 150))
+    assert is_narrow(few, 3)
+    assert is_narrow(many, 150)
+    assert overlap(few, many)
 
 
 @pytest.mark.parametrize("power", [6, 12])

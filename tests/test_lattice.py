@@ -322,6 +322,19 @@ def test_the_turn_begins_at_zero_and_is_continuous(invariants: Invariants) -> No
 
 
 @by_case
+def test_conjugate_offsets_have_conjugate_quotients(invariants: Invariants) -> None:
+    """On the real line s(u - w)/s(-w) and its derivatives, for w and its conjugate."""
+    with at_work(invariants) as (cell, length):
+        for w in off_the_line(cell, length):
+            for u in (length, -20 * length):
+                for order in (0, 1, 2):
+                    one, other = (
+                        cell.jet(u - a, 2)[order] / cell.jet(-a, 0)[0] for a in (w, w.conjugate())
+                    )
+                    assert close(one.conjugate() * length**order, other * length**order)
+
+
+@by_case
 def test_conjugate_offsets_turn_against_each_other(invariants: Invariants) -> None:
     """The turn about the conjugate of w is minus that about w."""
     with at_work(invariants) as (cell, length):

@@ -12,7 +12,9 @@ from functools import cached_property
 from typing import Any, final
 
 import numpy as np
+from mpmath import mp
 
+from verify.exact.guided import crosswise, placed
 from verify.exact.recursion import (
     Equations,
     Polynomial,
@@ -33,6 +35,9 @@ from verify.scenes.tensors import Vector
 
 Triple = tuple[int, int, int]
 
+# What a division by the impulse may cost the centre.
+_MOST_LOST_BITS = 20
+
 
 @final
 @dataclass(frozen=True)
@@ -51,18 +56,35 @@ class TaylorSolution(Settled):
         state, times what the orbit makes of a rounding. Raises Unsettled when the span would take
         more than a million steps.
         """
-        grid = self._problem.grid(digits)
+        problem = self._problem
+        grid = problem.grid(digits)
         later = sorted({t for t in elapsed if t >= 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         states: dict[Fraction, list[int]] = {}
         for times in filter(None, (later, earlier)):
-            width = first_width(self._problem, times[-1], grid)
-            states.update(march(self._problem, times, grid, width))
-        return _quantities(self.scene, [self._problem.reals(states[t], grid) for t in elapsed])
+            width = first_width(problem, times[-1], grid)
+            states.update(march(problem, times, grid, width))
+        rows = [problem.reals(states[t], grid) for t in elapsed]
+        if not self._is_guided:
+            return _quantities(self.scene, rows)
+        with mp.workprec(grid.bits):
+            return _guided_quantities(self.scene, rows)
+
+    @cached_property
+    def _is_guided(self) -> bool:
+        """Whether the impulse leads the frame: it is constant in space, and not too small to divide by."""
+        start, body = self.scene.initial, self.scene.body
+        if not (isinstance(start, Impulse) and isinstance(body, ImmersedBody)):
+            return False
+        if not (self.scene.track and body.is_free and any(start.linear)):
+            return False
+        units = _kirchhoff_units(body, start.linear + start.angular)
+        impulse, moment, speed = units.variables[0], exponent(start.angular), units.variables[6]
+        return moment is None or moment <= impulse + speed + units.time + _MOST_LOST_BITS
 
     @cached_property
     def _problem(self) -> Problem:
-        return _problem(self.scene)
+        return _guided_problem(self.scene) if self._is_guided else posed(self.scene)
 
 
 def arcs(scene: Scene, starts: Sequence[State], spans: Sequence[Fraction], digits: int) -> Motion:
@@ -89,13 +111,13 @@ class _Arcs(Settled):
         ends: list[list[Any]] = []
         width: Fraction | None = None
         for start, span in zip(self.starts, elapsed, strict=True):
-            posed = _problem(replace(self.scene, initial=start))
-            grid = posed.grid(digits)
-            guess = width or first_width(posed, span, grid)
+            arc = posed(replace(self.scene, initial=start))
+            grid = arc.grid(digits)
+            guess = width or first_width(arc, span, grid)
             # The arcs follow each other, so that the next one goes on at the same pace; an arc
             # of no length says nothing about it, not even the direction.
             width = guess if span else None
-            ends.append(posed.reals(march(posed, [span], grid, guess)[span], grid))
+            ends.append(arc.reals(march(arc, [span], grid, guess)[span], grid))
         return _quantities(self.scene, ends)
 
 
@@ -124,13 +146,18 @@ def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Eq
     size = 6 + 9 * with_attitude + 3 * with_centre
     velocity: Triple = (size, size + 1, size + 2)
     omega: Triple = (size + 3, size + 4, size + 5)
-    right = _cross(x, omega)
-    right += [_sum(p, q) for p, q in zip(_cross(y, omega), _cross(x, velocity), strict=True)]
+    right = _impulse_rates(x, y, velocity, omega)
     if with_attitude:
         right += [p for row in _rows_from(6) for p in _cross(row, omega)]
     if with_centre:
         right += [_dot(row, velocity) for row in _rows_from(6)]
     return Equations(body.force + body.couple, body.energy_matrix, tuple(right))
+
+
+def _impulse_rates(x: Triple, y: Triple, velocity: Triple, omega: Triple) -> list[Polynomial]:
+    """x x Omega, and y x Omega + x x U."""
+    turned = zip(_cross(y, omega), _cross(x, velocity), strict=True)
+    return _cross(x, omega) + [_sum(p, q) for p, q in turned]
 
 
 def _euler_units(body: RigidBody, start: Vector) -> Units:
@@ -210,13 +237,35 @@ def _sum(*polynomials: Polynomial) -> Polynomial:
     return {pair: coefficient for pair, coefficient in total.items() if coefficient}
 
 
-def _problem(scene: Scene) -> Problem:
+def posed(scene: Scene) -> Problem:
     """The scene's equations and initial state, in units of their size."""
     start, body = _start(scene), scene.body
     if isinstance(body, RigidBody):
         return problem(_euler(body, bool(scene.track)), _euler_units(body, start), start, moving=3)
     equations = _kirchhoff(body, bool(scene.track), "centre" in scene.track)
     return problem(equations, _kirchhoff_units(body, start), start, moving=6)
+
+
+def _guided_problem(scene: Scene) -> Problem:
+    """x, y, a row across x, and int x.U: what guided.placed makes attitude and centre of."""
+    start, body = scene.initial, scene.body
+    assert isinstance(start, Impulse)
+    assert isinstance(body, ImmersedBody)
+    x, y, row = (0, 1, 2), (3, 4, 5), (6, 7, 8)
+    velocity, omega = (10, 11, 12), (13, 14, 15)
+    right = _impulse_rates(x, y, velocity, omega) + _cross(row, omega) + [_dot(x, velocity)]
+    equations = Equations(body.force + body.couple, body.energy_matrix, tuple(right))
+    moving = start.linear + start.angular
+    units = _kirchhoff_units(body, moving)
+    across = crosswise(start)
+    linear, speed = units.variables[0], units.variables[6]
+    sizes = units.variables[:6] + (exponent(across) or 0,) * 3 + (linear + speed + units.time,)
+    return problem(
+        equations,
+        Units(sizes + units.variables[6:], units.time),
+        moving + across + (Fraction(0),),
+        moving=6,
+    )
 
 
 def _start(scene: Scene) -> Vector:
@@ -234,6 +283,15 @@ def _start(scene: Scene) -> Vector:
 
 
 # The answer.
+
+
+def _guided_quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:
+    z = np.array(states, dtype=object)
+    assert isinstance(scene.initial, Impulse)
+    found = placed(scene.initial, z)
+    if "centre" not in scene.track:
+        del found["centre"]
+    return {"linear_impulse": z[:, :3], "angular_impulse": z[:, 3:6], **found}
 
 
 def _quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:

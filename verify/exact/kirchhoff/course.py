@@ -26,11 +26,12 @@ class Course(ABC):
     """z(u), z'(u) and their integrals, with numbers of one precision and to be used at that one.
 
     ``poles`` are the arguments of the poles of z, each of order ``order``, those at a double point
-    left out.
+    left out. ``are_conjugate`` says that there are two, and that so also are the quotients N of both.
     """
 
     poles: tuple[acb, ...]
     order: int = 1
+    are_conjugate: bool = False
 
     def __init__(self, nutation: Nutation) -> None:
         self._about_start = _about(nutation.f, nutation.z)
@@ -100,6 +101,7 @@ class QuarticCourse(Course):
         upper = [self._pole(sign) for sign in self._signs]
         if a0 < 0:
             upper[1] = upper[0].conjugate()  # z is real
+            self.are_conjugate = True
         self.poles = tuple(upper)
         jets = [self.lattice.jet(-w, 2) for w in self.poles]
         slopes = [s1 / s0 for s0, s1, _ in jets]

@@ -141,7 +141,7 @@ class Orbit:
         if u.is_zero():
             return self._at_start
         z, speed = self._course.at(u)
-        poles = [pole.jet(u, self._pole_order) for pole in self._poles]
+        poles = self._pole_jets(u, self._pole_order)
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
         screw = (_I * self._screw * along).exp()
         above = self._alpha.at(u), self._beta.at(u)
@@ -252,15 +252,18 @@ class Orbit:
 
     # What is found at every time.
 
-    def _pole_jets(self, u: arb) -> list[list[acb]]:
-        return [pole.jet(u, 1) for pole in self._poles]
+    def _pole_jets(self, u: arb, order: int) -> list[list[acb]]:
+        if not self._course.are_conjugate:
+            return [pole.jet(u, order) for pole in self._poles]
+        jet = self._poles[0].jet(u, order)
+        return [jet, [value.conjugate() for value in jet]]
 
     def _eta_near_pole(self, u: arb, z: arb, xi: acb, turn: acb, above: tuple[acb, acb]) -> acb:
         """From xi' = i r z eta - i (r' y3 + (q' - q) z) xi, without a division by xi."""
         alpha, beta = above[0].conjugate(), above[1]
         alpha_slope, beta_slope = (factor.jet(u, 1)[1] for factor in (self._alpha, self._beta))
         growth = alpha_slope.conjugate() * beta + alpha * beta_slope
-        slopes = sum((slope / value for value, slope in self._pole_jets(u)), acb(0))
+        slopes = sum((slope / value for value, slope in self._pole_jets(u, 1)), acb(0))
         pull = self._xi_rate - self._course.order * slopes - _I * self._screw * z
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
