@@ -62,9 +62,18 @@ class TurningBody(Enclosed):
             columns = [_applied(to_space, _turned(self._axis, row, t)) for row in turn]
             found["attitude"] = [list(row) for row in zip(*columns, strict=True)]
             if "centre" in self._track:
-                path = _applied(to_space, _swept(self._axis, self._velocity, t))
-                found["centre"] = [c + v for c, v in zip(balls(start.centre), path, strict=True)]
+                found["centre"] = self._centre(t)
         return found
+
+    def _centre(self, t: Fraction) -> list[arb]:
+        start = self._start
+        to_space = rotation_matrix(start.attitude)
+        if not any(tensors.cross(self._axis, self._velocity)):
+            # A straight path is rational, and may pass through the origin of space exactly.
+            path = tensors.apply(to_space, tensors.scaled(t, self._velocity))
+            return balls(tensors.plus(start.centre, path))
+        swept = _applied([balls(row) for row in to_space], _swept(self._axis, self._velocity, t))
+        return [c + v for c, v in zip(balls(start.centre), swept, strict=True)]
 
 
 def _turned(axis: Vector, v: Sequence[arb], t: Fraction) -> list[arb]:
@@ -78,8 +87,6 @@ def _swept(axis: Vector, velocity: Vector, t: Fraction) -> list[arb]:
     def weights(a: arb, angle: arb) -> tuple[arb, arb, arb]:
         return ball(t), _versed(angle) / a**2, (angle - angle.sin()) / a**3
 
-    if not any(axis):
-        return balls(tensors.scaled(t, velocity))
     return _combined(axis, balls(velocity), weights, t)
 
 
