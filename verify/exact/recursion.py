@@ -9,7 +9,7 @@ rational: nothing is rounded but the states.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, lcm
 from operator import mul
@@ -78,16 +78,19 @@ class Combination:
 class Grid:
     """The fixed point: integers count 2^-bits of a unit.
 
-    A series has ``order`` terms, the last of which is to fall below 2^slack last bits.
+    A series has ``order`` terms, the last of which is to fall below 2^slack last bits; ``cut`` limits
+    their number.
     """
 
     bits: int
     slack: int
     orders_per_bit: float
+    cut: int | None = None
 
     @property
     def order(self) -> int:
-        return ceil((self.bits - self.slack) * self.orders_per_bit)
+        whole = ceil((self.bits - self.slack) * self.orders_per_bit)
+        return whole if self.cut is None else min(whole, self.cut)
 
     def integers(self, values: Iterable[Fraction]) -> list[int]:
         return [_Integer(round(value * 2**self.bits)) for value in values]
@@ -187,6 +190,26 @@ def march(
         # A little wider than this step, because the next one may be longer.
         width = _dyadic(width, min(growth + 0.06, 1.0))
     return reached
+
+
+def leap(problem: Problem, span: Fraction, grid: Grid) -> tuple[list[int], int]:
+    """The state after a short time, by one series where one reaches, and the order that it took.
+
+    Orders beyond the last term that matters are work for nothing: a next leap like this one needs
+    few more than it took.
+    """
+    width = span / power_of_two(problem.units.time)
+    if not width:
+        return grid.integers(problem.start), grid.order
+    series = _series(problem, grid.integers(problem.start), width, grid)
+    if _log2_reach(series, problem.moving, grid) < 0:
+        whole = replace(grid, cut=None)
+        return march(problem, [span], whole, first_width(problem, span, whole))[span], whole.order
+    enough = 1 << grid.slack
+    last = max(
+        k for k in range(grid.order + 1) if k == 0 or any(abs(z[k]) > enough for z in series)
+    )
+    return _value(series, Fraction(1), grid), last
 
 
 def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:

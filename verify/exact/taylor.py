@@ -22,6 +22,7 @@ from verify.exact.recursion import (
     Units,
     exponent,
     first_width,
+    leap,
     march,
     problem,
 )
@@ -35,6 +36,7 @@ from verify.scenes.tensors import Vector
 
 Triple = tuple[int, int, int]
 
+_MORE_ORDERS = 4
 # What a division by the impulse may cost the centre.
 _MOST_LOST_BITS = 20
 
@@ -68,7 +70,7 @@ class TaylorSolution(Settled):
         if not self._is_guided:
             return _quantities(self.scene, rows)
         with mp.workprec(grid.bits):
-            return _guided_quantities(self.scene, rows)
+            return _guided_quantities(self.scene, elapsed, rows)
 
     @cached_property
     def _is_guided(self) -> bool:
@@ -109,15 +111,14 @@ class _Arcs(Settled):
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         ends: list[list[Any]] = []
-        width: Fraction | None = None
+        cut: int | None = None
         for start, span in zip(self.starts, elapsed, strict=True):
             arc = posed(replace(self.scene, initial=start))
-            grid = arc.grid(digits)
-            guess = width or first_width(arc, span, grid)
-            # The arcs follow each other, so that the next one goes on at the same pace; an arc
-            # of no length says nothing about it, not even the direction.
-            width = guess if span else None
-            ends.append(arc.reals(march(arc, [span], grid, guess)[span], grid))
+            grid = replace(arc.grid(digits), cut=cut)
+            end, order = leap(arc, span, grid)
+            # The arcs follow each other, so that the next one needs about as many orders.
+            cut = order + order // 8 + _MORE_ORDERS
+            ends.append(arc.reals(end, grid))
         return _quantities(self.scene, ends)
 
 
@@ -285,10 +286,16 @@ def _start(scene: Scene) -> Vector:
 # The answer.
 
 
-def _guided_quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:
+def _guided_quantities(
+    scene: Scene, elapsed: Sequence[Fraction], states: Sequence[Sequence[Any]]
+) -> Quantities:
     z = np.array(states, dtype=object)
-    assert isinstance(scene.initial, Impulse)
-    found = placed(scene.initial, z)
+    start = scene.initial
+    assert isinstance(start, Impulse)
+    found = placed(start, z)
+    at_start = [k for k, t in enumerate(elapsed) if t == 0]
+    # As told: a centre at the origin has no digits but exact ones.
+    found["centre"][at_start] = [mp.convert(c) for c in start.centre]
     if "centre" not in scene.track:
         del found["centre"]
     return {"linear_impulse": z[:, :3], "angular_impulse": z[:, 3:6], **found}
