@@ -6,7 +6,7 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify test test-all reports check-reports lint clean
+.PHONY: help verify test test-all bench reports check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -20,7 +20,11 @@ test: lint  ## Check style and types, then run all but the slow tests
 test-all: lint  ## The same with the slow tests
 	@$(BIN)/python -m pytest -n 2
 
+bench: $(INSTALLED)  ## Time the exact solutions, in ratios within one run
+	@$(BIN)/python tests/bench.py
+
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, and reports/reference
+	@$(BIN)/taylor-verify publish --controls > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish --reference > /dev/null
 

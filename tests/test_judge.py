@@ -101,6 +101,15 @@ def test_floor_that_reaches_the_motion_is_vacuous_but_excuses_nothing_before() -
     assert judge(errors_of([1e-13, 0.9]), attainable, "").status is Status.FAIL
 
 
+def test_what_left_the_orbit_does_not_come_back() -> None:
+    """After a bound as large as the motion a smaller one binds nobody, and counts for no ratio."""
+    attainable = np.array([1e-15, 0.2, 1e-3])
+    finding = judge(errors_of([2e-15, 0.9, 0.9]), attainable, "")
+    assert finding.status is Status.VACUOUS
+    assert (finding.ratio, finding.ratio_at) == (pytest.approx(2), 0)
+    assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, "").status is Status.FAIL
+
+
 def test_no_floor_and_an_error_is_a_fail() -> None:
     """Where nothing can be lost (a body at rest) any error is infinitely many times the floor."""
     finding = judge(errors_of([0.0, 1e-300]), np.zeros(2), "")

@@ -71,10 +71,81 @@ def test_the_installed_copy_is_the_one_that_runs(installed: Path, tmp_path: Path
     assert Path(answer.strip()) == installed.resolve() / "verify" / "cases"
 
 
-def run(installed: Path, folder: Path, *command: str) -> str:
-    """Standard output of a command that sees the installed copy first, run in another folder."""
-    environment = {**os.environ, "PYTHONPATH": str(installed)}
-    done = subprocess.run(
-        command, cwd=folder, env=environment, check=True, stdout=subprocess.PIPE, text=True
+# What another project writes to hold its simulator to the exact motion: two lines a test.
+ANOTHER_PROJECT = """
+import pathlib, shlex, sys
+import pytest
+import verify
+
+OUTSIDE = pathlib.Path(verify.__file__).parent / "solvers" / "outside"
+RK4 = "process:" + shlex.join([sys.executable, str(OUTSIDE / "rk4.py"), "0.05"])
+
+def still(problem):
+    return [problem.given.initial.omega] * len(problem.times)
+
+def test_callable(verify_solver):
+    verify_solver("euler/spherical", still)
+
+def test_program(verify_solver):
+    verify_solver("euler/generic", RK4, tolerance=1e-6)
+
+@pytest.mark.verify_scenes("euler/steady-*", "euler/rest", rung="f32")
+def test_scene(verify_scene):
+    verify_scene(still)
+
+def test_wrong(verify_solver):
+    verify_solver("euler/generic", still)
+
+def test_coarse(verify_solver):
+    verify_solver("euler/generic", RK4)
+"""
+
+
+def test_another_project_has_the_plugin_by_installing_the_wheel(
+    installed: Path, tmp_path: Path
+) -> None:
+    """Its tests find the fixtures and the marker without a line of configuration, and may fail."""
+    (tmp_path / "test_simulator.py").write_text(ANOTHER_PROJECT)
+    pytest_of_it = (sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--strict-markers")
+    done = launch(installed, tmp_path, *pytest_of_it, "-rA")
+    assert done.returncode == pytest.ExitCode.TESTS_FAILED, done.stdout
+    ended = dict(line.split()[:2][::-1] for line in done.stdout.splitlines() if "py::" in line)
+    assert {name.partition("::")[2]: outcome for name, outcome in ended.items()} == {
+        "test_callable": "PASSED",
+        "test_program": "PASSED",
+        "test_scene[euler/steady-middle-axis-f32]": "PASSED",
+        "test_scene[euler/rest-f32]": "PASSED",
+        "test_wrong": "FAILED",
+        "test_coarse": "FAILED",
+    }
+    assert (
+        "Failed: still on euler/generic, f64: 1 of 3 judged quantities are no pass" in done.stdout
     )
+    assert "omega: fail, the error reaches" in done.stdout
+
+
+def test_the_plugin_can_be_left_out(installed: Path, tmp_path: Path) -> None:
+    """`-p no:taylor-verify` leaves a session without the plugin, by the name it is installed as."""
+    (tmp_path / "test_alone.py").write_text(
+        "import sys\ndef test_it(): assert 'verify.pytest_plugin' not in sys.modules\n"
+        "def test_none(verify_solver): pass\n"
+    )
+    options = ("-p", "no:cacheprovider", "-p", "no:taylor-verify")
+    done = launch(installed, tmp_path, sys.executable, "-m", "pytest", *options)
+    assert "1 passed, 1 error" in done.stdout
+    assert "fixture 'verify_solver' not found" in done.stdout
+
+
+def run(installed: Path, folder: Path, *command: str) -> str:
+    """Standard output of a command that sees the installed copy first, and succeeds."""
+    done = launch(installed, folder, *command)
+    done.check_returncode()
     return done.stdout
+
+
+def launch(installed: Path, folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    """A command that sees the installed copy first, run in another folder."""
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    return subprocess.run(
+        command, cwd=folder, env=environment, check=False, stdout=subprocess.PIPE, text=True
+    )

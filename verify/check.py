@@ -1,8 +1,9 @@
-"""Judge a solver of one's own."""
+"""Judge a solver of one's own, or a trajectory that is already in a file."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from verify.callable_module import make_callable
@@ -10,19 +11,37 @@ from verify.judge.judgement import Judgement
 from verify.models.problem import Problem
 from verify.run import run
 from verify.scenes.precision import Rung
+from verify.scenes.precision import rung as rung_named
+from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback
 
 
 def check(
-    scene: Scene | str, solve: Callable[[Problem], Any], rung: Rung | str = "f64"
+    scene: Scene | str,
+    solve_or_file: Callable[[Problem], Any] | str | Path,
+    rung: Rung | str = "f64",
+    accept_conventions: bool = False,
 ) -> Judgement:
-    """Judge ``solve(problem) -> states`` on a scene; states has shape (samples, n).
+    """Judge ``solve(problem) -> states`` or a trajectory file on a scene.
 
-    Row k is the state at problem.times[k]: omega, q0..q3 or x, y, q0..q3, centre, untracked groups
-    absent, in the scene's own units; ``problem.given`` holds the exact body, start and instants.
+    A callable returns states of shape (samples, n). Row k is the state at problem.times[k]: omega,
+    q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own units;
+    ``problem.given`` holds the exact body, start and instants.
+
+    A file (CSV, NPZ, Parquet, JSON; see solvers.file) was made in the arithmetic of ``rung``. Its
+    judgement is a judge.answer.FileJudgement, which says what was found out about its conventions;
+    they are corrected with ``accept_conventions`` only. Raises scenes.faults.Refused for a file that
+    cannot be judged, with every fault of it.
     """
-    return run(scene, Callback(solve), rung)
+    if not isinstance(solve_or_file, str | Path):
+        return run(scene, Callback(solve_or_file), rung)
+    from verify.judge.answer import judge_file
+    from verify.solvers.file import read
+
+    scene = load(scene) if isinstance(scene, str) else scene
+    rung = rung_named(rung) if isinstance(rung, str) else rung
+    return judge_file(read(solve_or_file), scene, rung, accept_conventions)
 
 
 make_callable(__name__, check)

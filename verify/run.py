@@ -5,7 +5,10 @@ The module is callable, so that `verify.run(scene, solver, rung)` is this chain.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from verify.callable_module import make_callable
+from verify.judge.costs import SOLVING, Costs, total
 from verify.judge.judgement import Judgement, judgement, unjudged
 from verify.judge.verdict import Status
 from verify.models.problem import NotRepresentable, pose
@@ -32,8 +35,11 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
         problem = pose(scene, rung)
     except NotRepresentable as reason:
         return unjudged(scene, solver, rung, Status.REFUSED, str(reason))
-    trajectory = solver.solve(problem)
-    return judgement(problem, solver, trajectory)
+    costs = Costs()
+    with costs.of(SOLVING):
+        trajectory = solver.solve(problem)
+    found = judgement(problem, solver, trajectory)
+    return replace(found, costs=total([costs.seconds, found.costs]))
 
 
 make_callable(__name__, run)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from verify.cli import verbs
+from verify.cli import ci, verbs
 from verify.cli.answer import Answer
 
 _DEFAULT_DIGITS = 30
@@ -70,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_list(found)
     _add_run(found)
     _add_exact(found)
+    _add_check(found)
     _add_explain(found)
     _add_publish(found)
     return parser
@@ -114,6 +115,7 @@ def _add_run(found: Any) -> None:
         metavar="DIR",
         help="fail if a number has left the rounding class of the one published there",
     )
+    ci.add_options(verb)
 
 
 def _add_exact(found: Any) -> None:
@@ -132,6 +134,36 @@ def _add_exact(found: Any) -> None:
     )
 
 
+def _add_check(found: Any) -> None:
+    what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON"
+    verb = _verb(
+        found, "check", what, "check mine.csv --scene euler/generic --rung f64", verbs.check
+    )
+    verb.add_argument(
+        "file",
+        metavar="FILE",
+        help="columns t and any of w1 w2 w3 (angular velocity, body axes); x1 x2 x3 y1 y2 y3 "
+        "(impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 "
+        "(centre, space axes)",
+    )
+    verb.add_argument(
+        "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
+    )
+    verb.add_argument(
+        "--rung",
+        default="f64",
+        metavar="R",
+        help="precision of the arithmetic that made the file; default: f64",
+    )
+    verb.add_argument(
+        "--accept-conventions",
+        action="store_true",
+        help="correct what was found out (order of the quaternion, axes, units, time, ...) and judge "
+        "the rest; without it the file is judged as it stands",
+    )
+    ci.add_options(verb)
+
+
 def _add_explain(found: Any) -> None:
     what = "show the equations as built, the regime of the orbit and the arithmetic of each gate"
     verb = _verb(found, "explain", what, "explain kirchhoff/screw --rung f80", verbs.explain)
@@ -145,9 +177,16 @@ def _add_publish(found: Any) -> None:
     verb.add_argument(
         "--from", dest="folder", default="reports", metavar="DIR", help="default: reports"
     )
-    verb.add_argument(
+    made = verb.add_mutually_exclusive_group()
+    made.add_argument(
         "--reference",
         action="store_true",
         help="instead compute the exact trajectory of every shipped scene, as CSV and JSON with "
         "32 digits, into DIR/reference",
+    )
+    made.add_argument(
+        "--controls",
+        action="store_true",
+        help="instead run the solvers that are broken on purpose, and write what each gate sees of "
+        "them into DIR/data and DIR/tables",
     )

@@ -16,6 +16,14 @@ def say(message: str) -> None:
         _abandon(sys.stderr)
 
 
+def tell_runner(line: str) -> None:
+    """A line for the runner of a CI, which reads stderr too, and commands only at a line's start."""
+    try:
+        print(line, file=sys.stderr, flush=True)
+    except OSError:
+        _abandon(sys.stderr)
+
+
 def print_out(text: str = "") -> None:
     """Print the answer, if any is left, and mind it not if its reader went away (`| head`)."""
     try:

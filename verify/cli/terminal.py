@@ -13,12 +13,16 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from verify.judge.answer import FileJudgement
     from verify.judge.verdict import Verdict
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 _PIPED_WIDTH = 140
 _ROOMY = 120
 _STATES = ("omega", "impulse", "attitude", "centre")
+# What a reason is made of.
+_RULE = "10 x attainable"
+_AS_A_SHIFT = "; as a shift of time: "
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
 # The worst first: what a line that stands for several verdicts is called.
 _GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
@@ -127,16 +131,105 @@ def _told(verdict: Verdict) -> str:
 
 def _error(gate: Mapping[str, Any]) -> str:
     """One gate's numbers, from a row or an explanation: null is an error that is not finite."""
-    size = "not finite" if gate["max"] is None else f"{gate['max']:.3g}"
+    size, bound = _figure(gate["max"]), _figure(gate["bound"])
     ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
     return (
-        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {gate['bound']:.3g} "
+        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} "
         f"is allowed; largest error/attainable {ratio} at t = {gate['ratio_at']:g}"
     )
 
 
 def _status(status: str) -> Text:
     return Text(status, _COLOURS.get(status, "magenta"))
+
+
+# check
+
+
+def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
+    """What the file is, what its conventions are, a line for each quantity, and every reason."""
+    from verify.judge.verdict import summary
+
+    console = _console()
+    _line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
+    _line(console, f"judged as an answer to {scene} in {rung} arithmetic")
+    _print_conventions(console, judged)
+    _line(console)
+    if any(verdict.at is not None for verdict in judged.verdicts):
+        console.print(_quantities_table(judged.verdicts))
+        _line(console)
+        _line(console, "allowed: ten times what rounding the input and every step would leave;")
+        _line(console, "/floor: the largest error over what it would leave, of all rows.")
+    for note in judged.notes:
+        _line(console, Text("note", "yellow"), f"  {note}")
+    others = [verdict for verdict in judged.verdicts if verdict.verdict.value != "pass"]
+    if others:
+        _line(console)
+    for verdict in others:
+        _line(console, _status(verdict.verdict.value), f"  {verdict.quantity}")
+        _print_reason(console, verdict)
+    counts = ", ".join(f"{n} {status}" for status, n in summary(judged.verdicts).items() if n)
+    _line(console, f"\n{counts}")
+    return _text(console)
+
+
+def _extent(judged: FileJudgement) -> str:
+    times = judged.file.times
+    rows = f"{len(times)} row{'s' if len(times) > 1 else ''}"
+    return f"{rows} from t = {float(times[0]):g} to t = {float(times[-1]):g}"
+
+
+def _print_conventions(console: Console, judged: FileJudgement) -> None:
+    found = judged.conventions
+    if not found:
+        return
+    _line(console)
+    certain = any(finding.is_certain for finding in found)
+    if not certain:
+        heading = (
+            "the file departs from the scene's conventions in a way that this motion cannot tell"
+        )
+    elif judged.accepted:
+        heading = "the file departs from the scene's conventions, and was corrected"
+    else:
+        heading = "the file departs from the scene's conventions, and was judged as it stands"
+    _line(console, Text(heading, "bold yellow"))
+    for finding in found:
+        _indented(console, "  ", finding.sentence)
+    if certain and not judged.accepted:
+        _line(console, "  (--accept-conventions corrects this and judges the rest)")
+
+
+def _print_reason(console: Console, verdict: Verdict) -> None:
+    """What is wrong, where, what a shift of time makes of it, and why so much is allowed."""
+    if verdict.at is None:
+        _indented(console, "    ", verdict.because)
+        return
+    said, rule, why = verdict.because.rpartition(_RULE)
+    bound, meaning, shift = (rule + why).partition(_AS_A_SHIFT)
+    if said:
+        _indented(console, "    ", said.removesuffix("; "))
+    _indented(console, "    ", _error(verdict.row()))
+    if meaning:
+        _indented(console, "    ", f"{meaning.removeprefix('; ')}{shift}")
+    _indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {bound}")
+
+
+def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
+    numbers = ("largest error", "at t", "allowed", "/floor", "late by", "error left")
+    for heading in ("quantity", "verdict", *numbers, "unit"):
+        table.add_column(heading, justify="right" if heading in numbers else "left", no_wrap=True)
+    for v in verdicts:
+        figures = (v.max, v.at, v.bound, v.ratio)
+        shift = (None, None) if v.shift in (None, "none") else (v.time_shift, v.residual)
+        cells = [*(_figure(f) for f in figures), *("" if f is None else _figure(f) for f in shift)]
+        table.add_row(v.quantity, _status(v.verdict.value), *cells, v.unit)
+    return table
+
+
+def _figure(value: float | None) -> str:
+    return "not finite" if value is None or value != value else f"{value:.3g}"
 
 
 # exact

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
     from verify.judge.verdict import Verdict
     from verify.scenes.scene import Scene
+    from verify.solvers.file import TrajectoryFile
 
 _MOST_DIGITS = 10_000
 
@@ -37,6 +38,7 @@ def list_all(options: argparse.Namespace) -> Answer:
 
 def run(options: argparse.Namespace) -> Answer:
     """The whole chain for some scenes, or for the standard set."""
+    from verify.cli.ci import outputs, tell
     from verify.cli.terminal import verdicts_text
     from verify.judge.verdict import exit_status, summary
     from verify.scenes.library import names
@@ -48,6 +50,7 @@ def run(options: argparse.Namespace) -> Answer:
     _read(scenes)
     folder = _writable(options.out) if options.out is not None else None
     published = _published(options, rungs) if options.against is not None else None
+    asked = outputs(options)
     results = _judge(scenes, options.solver, rungs)
     verdicts = [verdict for result in results for verdict in result.verdicts]
     status, messages = exit_status(verdicts), []
@@ -66,8 +69,19 @@ def run(options: argparse.Namespace) -> Answer:
         found["against"], told = _held_against(options.against, published, verdicts)
         messages += told
         status = _status_against(found["against"], status)
+    again = _asked_again(asked.baseline or (), options, rungs)
+    to_ci = tell(asked, verdicts, status, again)
     text = partial(verdicts_text, verdicts)
-    return Answer(status, found, text, messages)
+    messages += [*to_ci.messages, *_dearest(scenes, results)]
+    return Answer(to_ci.status, {**found, **to_ci.document}, text, messages)
+
+
+def _dearest(scenes: Sequence[str], results: Iterable[Judgement]) -> list[str]:
+    """Where the time of a set of scenes went."""
+    from verify.judge.costs import sentence, total
+
+    spent = total(result.costs for result in results)
+    return [sentence(spent)] if len(scenes) > 1 and spent else []
 
 
 def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdict]:
@@ -82,6 +96,13 @@ def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdic
         ) from error
     except ValueError as error:
         raise WrongCall(f"{error} (--against)") from error
+    return _asked_again(verdicts, options, rungs)
+
+
+def _asked_again(
+    verdicts: Iterable[Verdict], options: argparse.Namespace, rungs: Sequence[str]
+) -> list[Verdict]:
+    """The rows of the solver, the rungs and, where named, the scenes of this call."""
     asked = [v for v in verdicts if v.solver == options.solver and v.rung in rungs]
     return [v for v in asked if not options.scenes or v.scene in options.scenes]
 
@@ -148,6 +169,50 @@ def _without_rows(scene: Scene, digits: int, route: str, regime: str, because: s
     return Answer(UNDECIDED, found, _no_text, [because])
 
 
+def check(options: argparse.Namespace) -> Answer:
+    """The judgement of somebody's trajectory."""
+    from verify.cli.ci import outputs, tell
+    from verify.cli.progress import working
+    from verify.cli.terminal import check_text
+    from verify.judge.answer import judge_file
+    from verify.judge.verdict import exit_status
+    from verify.scenes.precision import rung
+
+    (name,) = _known_rungs([options.rung])
+    scene, file = _scene_and_file(options.scene, options.file)
+    asked = outputs(options)
+    with working(f"check {options.file}"):
+        judged = judge_file(file, scene, rung(name), options.accept_conventions)
+    text = partial(check_text, judged, scene.name, name)
+    again = [v for v in asked.baseline or () if _run_of(v) == _run_of(judged.verdicts[0])]
+    to_ci = tell(asked, judged.verdicts, exit_status(judged.verdicts), again)
+    document = {**judged.document(), **to_ci.document}
+    return Answer(to_ci.status, document, text, to_ci.messages)
+
+
+def _run_of(verdict: Verdict) -> tuple[str, ...]:
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
+
+
+def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:
+    """Both read; the faults of both are reported at once."""
+    from verify.scenes.faults import Refused
+    from verify.solvers.file import read
+
+    faults: list[str] = []
+    try:
+        scenes = _read([scene])
+    except WrongCall as error:
+        faults.append(str(error))
+    try:
+        found = read(file)
+    except Refused as error:
+        faults.append(str(error))
+    if faults:
+        raise WrongCall("\n".join(faults))
+    return scenes[0], found
+
+
 def explain(options: argparse.Namespace) -> Answer:
     """The arithmetic of one run."""
     from verify.cli.progress import working
@@ -162,11 +227,13 @@ def explain(options: argparse.Namespace) -> Answer:
 
 
 def publish(options: argparse.Namespace) -> Answer:
-    """Tables from stored verdicts, or the exact trajectories."""
+    """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
     from verify.publish import report
 
     if options.reference:
         return _publish_reference(options.folder)
+    if options.controls:
+        return _publish_controls(options.folder)
     try:
         written = [str(path) for path in report.publish(options.folder)]
     except FileNotFoundError as error:
@@ -197,6 +264,23 @@ def _publish_reference(name: str) -> Answer:
     return Answer(PASS, {"written": written}, lambda: "\n".join(written))
 
 
+def _publish_controls(name: str) -> Answer:
+    from verify.controls.defects import DEFECTS
+    from verify.controls.sight import document, sights
+    from verify.publish import report
+
+    folder = _writable(name, "--from")
+    ended: list[str] = []
+
+    def finished(defect: str) -> None:
+        ended.append(defect)
+        say(f"{len(ended)}/{len(DEFECTS)} {defect}")
+
+    found = document(sights(DEFECTS, finished))
+    written = [str(path) for path in report.publish_controls(folder, found)]
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
+
+
 # What the verbs share.
 
 
@@ -224,10 +308,12 @@ def _known_rungs(rungs: Iterable[str]) -> list[str]:
 
 
 def _known_solver(name: str) -> None:
-    from verify.solvers.registry import NAMES, unknown_solver
+    from verify.solvers.registry import check_name
 
-    if name not in NAMES:
-        raise WrongCall(f"{unknown_solver(name)} @ --solver")
+    try:
+        check_name(name)
+    except ValueError as error:
+        raise WrongCall(f"{error} @ --solver") from error
 
 
 def _read(names: Sequence[str], warn: bool = True) -> list[Scene]:

@@ -1,7 +1,8 @@
 """The truth: exact motions, conserved quantities and the condition of an orbit.
 
-The room is callable: `verify.exact(scene, times, digits)`. It imports nothing of models, solvers or
-judge, because what it is compared with must not be part of it.
+The room is callable: `verify.exact(scene, times, digits)`. How a motion changes with its start and its
+body: `verify.exact.sensitivity.sensitivity(scene, times_elapsed, digits)`. The room imports nothing of
+models, solvers or judge, because what it is compared with must not be part of it.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from math import ceil, log2
 from typing import Any, Final, final
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 from mpmath import libmp, mp, mpf
 
 from verify.exact.solution import Quantities, Solution, Unsettled
@@ -29,6 +29,7 @@ _ATTEMPTS: Final = 12
 # The worst orbits of the tests lose twice the digits asked for; what would take this many times is
 # an equality that no precision decides.
 _MOST_BITS_PER_BIT: Final = 32
+_LEAST_LIMIT: Final = 8192
 
 
 class Undecidable(ArithmeticError):
@@ -64,7 +65,7 @@ class Enclosed(Solution):
                 return motion
             else:
                 bits += missing + _FIRST_GUARD_BITS // 2
-            if bits > _MOST_BITS_PER_BIT * (target + _FIRST_GUARD_BITS):
+            if bits > max(_LEAST_LIMIT, _MOST_BITS_PER_BIT * (target + _FIRST_GUARD_BITS)):
                 break
         raise Unsettled(f"the balls of the exact solution do not shrink to {digits} digits")
 
@@ -95,26 +96,35 @@ def _missing_bits(motion: Motion | None, target: int) -> int | None:
 
 def _motion(found: Enclosure, count: int, bits: int) -> Motion:
     """Midpoints and radii; the radius of a row is that of its widest quantity."""
-    quantities = {}
-    radius = [mpf(0)] * count
+    quantities, radii = {}, {}
+    widest = [mpf(0)] * count
     for name, rows in found.items():
         balls = np.array(rows, dtype=object)
         quantities[name] = np.frompyfunc(midpoint, 1, 1)(balls)
-        radius = [
-            max_or_nan(r, _width(list(row.flat))) for r, row in zip(radius, balls, strict=True)
-        ]
-    return Motion(quantities, np.array(radius, dtype=object))
+        widths = [_width(list(row.flat)) for row in balls]
+        radii[name] = np.array(widths, dtype=object)
+        widest = [max_or_nan(w, width) for w, width in zip(widest, widths, strict=True)]
+    return Motion(quantities, np.array(widest, dtype=object), radii)
 
 
 def _width(balls: Sequence[arb]) -> mpf:
     """An upper bound of the error of the vector relative to its norm; absolute where that is zero."""
-    if not all(b.is_finite() for b in balls):
+    size = _square(balls)
+    if not size.is_finite():
         return mp.inf
-    error = sum((b.rad() ** 2 for b in balls), arb(0)).sqrt()
-    size = sum((b * b for b in balls), arb(0))
+    error = _square([b.rad() for b in balls])
     if size.is_zero():
-        return upper(error)
-    return upper(error / size.nonnegative_part().sqrt())
+        return upper(error.sqrt())
+    return upper((error / size.nonnegative_part()).sqrt())
+
+
+def _square(vector: Sequence[arb]) -> arb:
+    """The sum of squares, as one product of matrices: a row is measured at every time.
+
+    Not finite where an entry is not.
+    """
+    row = arb_mat(1, len(vector), vector)
+    return (row * row.transpose())[0, 0]
 
 
 def max_or_nan(a: mpf, b: mpf) -> mpf:

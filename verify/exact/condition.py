@@ -7,7 +7,7 @@ nothing with the equations the solver was given.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 from typing import Any, Final
@@ -15,15 +15,16 @@ from typing import Any, Final
 import numpy as np
 from mpmath import libmp, mp, mpf
 
+from verify.exact.inputs import momentum
 from verify.exact.route import solution
+from verify.exact.sensitivity import difference, real
 from verify.exact.solution import Quantities, Unsettled
 from verify.exact.variation import transition_table
-from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
-from verify.scenes.precision import floor_log2, power_of_two
+from verify.scenes.precision import floor_log2
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from verify.scenes.tensors import Vector
 
 Array = np.ndarray[Any, Any]
 FloatArray = np.ndarray[Any, np.dtype[np.float64]]
@@ -124,103 +125,44 @@ def derivatives(
     scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
 ) -> Derivatives:
     """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
-    units, start = _units(scene), _momentum(scene)
+    start = momentum(scene)
     step = Fraction(1, 10**exponent)
     with mp.workdps(digits):
         here = solution(scene).evaluate(elapsed, digits)
         columns: list[dict[str, Array]] = []
-        for j, unit in enumerate(units):
-            moved = tuple(z + step * unit * (i == j) for i, z in enumerate(start))
-            there = solution(_started(scene, moved)).evaluate(elapsed, digits)
-            columns.append(_difference(scene, here, there, mp.convert(step)))
+        for j, unit in enumerate(start.units):
+            there = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
+            columns.append(_momentum_first(scene, difference(here, there, mp.convert(step))))
         stacked = {
             name: np.stack([column[name] for column in columns], axis=2) for name in columns[0]
         }
         return Derivatives(
             digits=digits,
-            units=units,
-            momentum=stacked.pop("momentum") / _real((units,)).T,
+            units=start.units,
+            momentum=stacked.pop("momentum") / real((start.units,)).T,
             others=stacked,
             centre=_path(scene, here),
         )
 
 
-def _difference(scene: Scene, here: Quantities, there: Quantities, step: mpf) -> dict[str, Array]:
-    """The change of every quantity per step, momenta first and under one name."""
-    change = {name: (there[name] - here[name]) / step for name in here}
-    found: dict[str, Array] = {}
+def _momentum_first(scene: Scene, change: dict[str, Array]) -> dict[str, Array]:
+    """The same change with the momenta under one name: H beside omega, or x and y as one vector."""
     if isinstance(scene.body, RigidBody):
-        found["momentum"] = change["omega"] @ _real(scene.body.inertia).T
-        found["omega"] = change["omega"]
-    else:
-        both = [change["linear_impulse"], change["angular_impulse"]]
-        found["momentum"] = np.concatenate(both, axis=1)
-    if "attitude" in here:
-        turns = there["attitude"] @ here["attitude"].transpose(0, 2, 1)
-        found["attitude"] = _rotation_vectors(turns) / step
-    if "centre" in here:
-        found["centre"] = change["centre"]
-    return found
-
-
-def _rotation_vectors(turns: Array) -> Array:
-    """The rotation vector of small rotations: the antisymmetric part of their matrices."""
-    j, k = [1, 2, 0], [2, 0, 1]
-    return (turns[:, k, j] - turns[:, j, k]) / 2
+        return {"momentum": change["omega"] @ real(scene.body.inertia).T, **change}
+    both = [change.pop("linear_impulse"), change.pop("angular_impulse")]
+    return {"momentum": np.concatenate(both, axis=1), **change}
 
 
 def _path(scene: Scene, here: Quantities) -> Array:
     """The centre from its place at the start; no rows where it is not tracked."""
     if "centre" not in here or isinstance(scene.initial, Spin):
         return np.empty((0, 3), dtype=object)
-    return here["centre"] - _real((scene.initial.centre,))
-
-
-# The initial momentum and its perturbation, exactly.
-
-
-def _momentum(scene: Scene) -> Vector:
-    initial = scene.initial
-    if isinstance(initial, Spin):
-        return tensors.apply(_rigid(scene).inertia, initial.omega)
-    return initial.linear + initial.angular
-
-
-def _started(scene: Scene, momentum: Vector) -> Scene:
-    """The same scene with another initial momentum."""
-    initial = scene.initial
-    if isinstance(initial, Spin):
-        omega = tensors.apply(_rigid(scene).inverse_inertia, momentum)
-        return replace(scene, initial=replace(initial, omega=omega))
-    moved = replace(initial, linear=momentum[:3], angular=momentum[3:])
-    return replace(scene, initial=moved)
-
-
-def _rigid(scene: Scene) -> RigidBody:
-    """The body of a scene whose initial state is a Spin."""
-    if not isinstance(scene.body, RigidBody):
-        raise TypeError(f"expected a rigid body with a spin, got {type(scene.body).__name__}")
-    return scene.body
+    return here["centre"] - real((scene.initial.centre,))
 
 
 def _units(scene: Scene) -> Vector:
-    """For each component of the momentum a power of two near the size of its block.
-
-    A block that is zero takes the size that would hold the kinetic energy; 1 in a body at rest.
-    """
-    momentum = _momentum(scene)
-    if isinstance(scene.body, RigidBody):
-        energy, stiffness = [scene.body.inverse_inertia], scene.body.inverse_inertia
-    else:
-        energy, stiffness = [scene.body.linear, scene.body.angular], scene.body.energy_matrix
-    twice_energy = tensors.dot(momentum, tensors.apply(stiffness, momentum))
-    units: Vector = ()
-    for index, matrix in enumerate(energy):
-        block = momentum[3 * index : 3 * index + 3]
-        trace = sum((matrix[i][i] for i in range(3)), Fraction(0))
-        square = tensors.dot(block, block) or twice_energy / trace or Fraction(1)
-        units += (power_of_two(floor_log2(square) // 2),) * 3
-    return units
+    """For each component of the momentum a power of two near the size of its block."""
+    return momentum(scene).units
 
 
 # Norms. The products are of Python's integers, which NumPy multiplies as objects: they count
@@ -296,10 +238,6 @@ def _cross(arms: Array, turn: Array) -> Array:
     j, k = [1, 2, 0], [2, 0, 1]
     across: Array = arms[:, j, None] * turn[None, k] - arms[:, k, None] * turn[None, j]
     return across
-
-
-def _real(matrix: Matrix) -> Array:
-    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
 
 
 def _log2_size(*arrays: Array) -> int:

@@ -6,7 +6,7 @@ The truth is independent of what it judges: nothing here imports models, solvers
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final, Protocol, final, runtime_checkable
 
@@ -86,11 +86,14 @@ class Settled(Solution):
         for _ in range(_ATTEMPTS):
             better = self.evaluate(elapsed, working + SETTLING_STEP_DIGITS)
             with mp.workdps(working + SETTLING_STEP_DIGITS):
-                radius = _largest_difference(poorer, better)
-                worst = max(radius, default=mpf(0))
+                radii = _differences(poorer, better)
+                radius = np.array(
+                    [_largest(row) for row in zip(*radii.values(), strict=True)], dtype=object
+                )
+                worst = _largest(radius)
                 # Written so that a NaN is not agreement.
                 if worst <= mpf(10) ** -digits:
-                    return Motion(better, radius)
+                    return Motion(better, radius, radii)
             poorer, working = better, working + SETTLING_STEP_DIGITS
         raise Unsettled(
             f"two evaluations of the exact solution at {working - SETTLING_STEP_DIGITS} and {working} "
@@ -98,13 +101,19 @@ class Settled(Solution):
         )
 
 
-def _largest_difference(poorer: Quantities, better: Quantities) -> np.ndarray[Any, Any]:
-    """Row by row, the largest relative Frobenius distance over the quantities."""
-    by_quantity = [
-        [_distance(p, b) for p, b in zip(poorer[name], better[name], strict=True)]
-        for name in better
-    ]
-    return np.array([max(row) for row in zip(*by_quantity, strict=True)], dtype=object)
+def _differences(poorer: Quantities, better: Quantities) -> Quantities:
+    """Row by row, the relative Frobenius distance of every quantity."""
+    return {
+        name: np.array(
+            [_distance(p, b) for p, b in zip(poorer[name], rows, strict=True)], dtype=object
+        )
+        for name, rows in better.items()
+    }
+
+
+def _largest(differences: Iterable[mpf]) -> mpf:
+    """The largest, or a NaN if there is one (Python's max would lose it); 0 of none."""
+    return max(differences, key=lambda d: (d != d, d), default=mpf(0))
 
 
 def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:

@@ -21,7 +21,8 @@ class Errors:
     """The error of one quantity at every sample, as mpf, in ``unit``.
 
     ``parts`` names the quantities of the motion that it compares, each with the scale its error is
-    divided by; ``truth_radius`` is how wide the truth is, in the same unit.
+    divided by; ``truth_radius`` is how wide the truth is, in the same unit. ``is_state`` tells the
+    quantities that say where the body is from those it conserves.
     """
 
     quantity: str
@@ -29,6 +30,7 @@ class Errors:
     values: Column
     truth_radius: Column
     parts: dict[str, Any]
+    is_state: bool = False
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
@@ -51,8 +53,21 @@ def _vector_error(
     """Each part over the largest norm it reaches (absolute where that is zero); the larger counts."""
     scales = {part: or_one(largest(norms(truth[part]))) for part in parts}
     by_part = [norms(answer[part] - truth[part]) / scales[part] for part in parts]
-    values = np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
-    return Errors(quantity, unit, values, truth.radius, scales)
+    values = _larger(by_part)
+    radius = _larger([_width(truth, part) / scales[part] for part in parts])
+    return Errors(quantity, unit, values, radius, scales, is_state=True)
+
+
+def _larger(by_part: Sequence[Column]) -> Column:
+    """Sample by sample the largest of all parts."""
+    return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
+
+
+def _width(truth: Motion, quantity: str) -> Column:
+    """How wrong each vector of the truth may be, in its own unit."""
+    sizes = [or_one(size) for size in norms(truth[quantity])]
+    width: Column = truth.radius_of(quantity) * np.array(sizes, dtype=object)
+    return width
 
 
 def _attitude_error(truth: Motion, answer: Motion) -> Errors:
@@ -60,7 +75,8 @@ def _attitude_error(truth: Motion, answer: Motion) -> Errors:
     chords = norms(answer["attitude"] - truth["attitude"]) / (2 * mp.sqrt(2))
     values = np.array([_angle(chord) for chord in chords], dtype=object)
     # |R|_F is sqrt 3, so a relative radius is less than this many radians.
-    return Errors("attitude", "rad", values, 2 * truth.radius, {"attitude": mpf(1)})
+    radius = 2 * truth.radius_of("attitude")
+    return Errors("attitude", "rad", values, radius, {"attitude": mpf(1)}, is_state=True)
 
 
 def _angle(half_chord: Any) -> Any:
@@ -71,8 +87,8 @@ def _centre_error(scene: Scene, truth: Motion, answer: Motion) -> Errors:
     """Relative to the whole arc length of the path (absolute where that is zero)."""
     scale = or_one(arc_length(scene, truth))
     values = norms(answer["centre"] - truth["centre"]) / scale
-    radius = truth.radius * norms(truth["centre"]) / scale
-    return Errors("centre", "arc length", values, radius, {"centre": scale})
+    radius = _width(truth, "centre") / scale
+    return Errors("centre", "arc length", values, radius, {"centre": scale}, is_state=True)
 
 
 def arc_length(scene: Scene, truth: Motion) -> Any:

@@ -35,15 +35,18 @@ class Finding:
 
 
 def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
-    """Hold every sample's error against FACTOR times the attainable one."""
+    """Hold every sample's error against FACTOR times the attainable one.
+
+    The ratio is the largest of the samples that are asked, or of all if none is.
+    """
     bounds = FACTOR * attainable
     worst = index_of_largest(errors.values)
     ratios = [_ratio(e, a) for e, a in zip(errors.values, attainable, strict=True)]
-    ratio_at = index_of_largest(ratios)
+    ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
     status = _status(errors, bounds)
     because = f"{FACTOR} x attainable; {reason}"
     if status is Status.VACUOUS:
-        because = f"the floor has reached the size of the motion itself; {because}"
+        because = f"{_vacuous(errors, bounds)}; {because}"
     if status is Status.UNDECIDED:
         because = f"the truth is wider than 1/{_TRUTH_SHARE} of the bound; {because}"
     return Finding(status, worst, float(ratios[ratio_at]), ratio_at, because)
@@ -53,14 +56,31 @@ def _status(errors: Errors, bounds: Floats) -> Status:
     if any(mp.isnan(value) for value in errors.values):
         return Status.FAIL
     within = [bool(error <= bound) for error, bound in zip(errors.values, bounds, strict=True)]
-    if not np.max(bounds) < _VACUOUS:
+    asked = _asked(bounds)
+    if asked < len(bounds):
         # What the floor does not excuse still fails: the samples before it reached the motion.
-        meaningful = [ok for ok, bound in zip(within, bounds, strict=True) if bound < _VACUOUS]
-        return Status.VACUOUS if all(meaningful) else Status.FAIL
+        return Status.VACUOUS if all(within[:asked]) else Status.FAIL
     narrow = zip(errors.truth_radius, bounds, strict=True)
     if not all(bool(radius * _TRUTH_SHARE <= bound) for radius, bound in narrow):
         return Status.UNDECIDED
     return Status.PASS if all(within) else Status.FAIL
+
+
+def _asked(bounds: Floats) -> int:
+    """How many samples the gate asks: those before the bound reaches the size of the motion.
+
+    A floor may fall again afterwards, as the orbit's own condition does after a flip. But it is that
+    of small errors, and one as large as the motion has left the orbit: nothing brings it back.
+    """
+    lost = np.flatnonzero(~(bounds < _VACUOUS))
+    return int(lost[0]) if len(lost) else len(bounds)
+
+
+def _vacuous(errors: Errors, bounds: Floats) -> str:
+    """Why the gate forbids nothing, and what is gated in its place."""
+    open_at = f"the bound reaches {float(np.max(bounds)):.2g}, and the answer zero is off by 1"
+    instead = "; only the conserved quantities are gated there" if errors.is_state else ""
+    return f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"
 
 
 def _ratio(error: Any, attainable: float) -> Any:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, log10
 from typing import Any
@@ -13,11 +13,13 @@ from mpmath import mp
 from verify.exact.route import solution
 from verify.exact.solution import Solution, Unsettled
 from verify.judge.attainable import Floats, Floor, floor
+from verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
 from verify.judge.drifts import drifts
 from verify.judge.errors import Errors, state_errors
-from verify.judge.gates import FACTOR, index_of_largest, judge
+from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
+from verify.judge.shift import Shift, time_shifts
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import Problem
 from verify.scenes.precision import Rung, hexadecimal
@@ -38,6 +40,7 @@ class Judgement:
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
+    costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -89,31 +92,65 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
     problem, trajectory = run.problem, run.trajectory
     given, bits = problem.given, problem.rung.bits
     digits = ceil(bits * log10(2)) + _MORE_DIGITS
-    truth = exact.motion(given.clock.elapsed, digits)
-    start = exact.motion([Fraction(0)], digits + _MORE_DIGITS)
+    costs = Costs()
+    with costs.of(TRUTH):
+        truth = exact.motion(given.clock.elapsed, digits)
+        start = exact.motion([Fraction(0)], digits + _MORE_DIGITS)
     answer = trajectory.motion(bits + _SPARE_BITS)
     with mp.workprec(bits + _SPARE_BITS):
-        base = floor(given, problem.scene, truth, problem.rung.unit_roundoff, trajectory.steps)
-        compared = [
-            (errors, base.of_state(errors), "orbit")
-            for errors in state_errors(given, truth, answer)
-        ]
-        compared += [
-            (errors, base.of_invariant(invariant, truth, _scale(errors)), "gradient")
-            for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
-        ]
-        verdicts = [_verdict(run, base, *item) for item in compared]
-        gates = tuple(_gate(errors, attainable) for errors, attainable, _ in compared)
-    return Judgement(tuple(verdicts), _record(run, exact, digits, gates))
+        with costs.of(CONDITION):
+            base = floor(given, problem.scene, truth, problem.rung.unit_roundoff, trajectory.steps)
+        with costs.of(ERRORS):
+            states = state_errors(given, truth, answer)
+            shifts = time_shifts(given, exact, truth, answer, digits, states)
+            gated = [
+                _state(run, base, errors, shift)
+                for errors, shift in zip(states, shifts, strict=True)
+            ]
+        with costs.of(CONSERVED):
+            gated += [
+                _conserved(run, base, base.of_invariant(invariant, truth, _scale(errors)), errors)
+                for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
+            ]
+    record = _record(run, exact, digits, tuple(gate for _, gate in gated))
+    return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
 
 
 def _scale(errors: Errors) -> Any:
     return next(iter(errors.parts.values()))
 
 
-def _verdict(run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str) -> Verdict:
-    reason = base.reason(attainable, index_of_largest(errors.values), carried)
-    finding = judge(errors, attainable, reason)
+Gated = tuple[Verdict, GateRecord]
+
+
+def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated:
+    attainable = base.of_state(errors)
+    finding = judge(errors, attainable, _reason(base, errors, attainable, "orbit"))
+    if shift is None:
+        return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+    passed = finding.status is Status.PASS
+    if not passed:
+        meaning = f"as a shift of time: {shift.sentence()}"
+        finding = replace(finding, because=f"{finding.because}; {meaning}")
+    verdict = replace(
+        _verdict(run, errors, attainable, finding),
+        time_shift=shift.time_shift,
+        residual=shift.residual,
+        shift=shift.kind.value,
+    )
+    return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+
+
+def _conserved(run: _Run, base: Floor, attainable: Floats, errors: Errors) -> Gated:
+    finding = judge(errors, attainable, _reason(base, errors, attainable, "gradient"))
+    return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+
+
+def _reason(base: Floor, errors: Errors, attainable: Floats, carried: str) -> str:
+    return base.reason(attainable, index_of_largest(errors.values), carried)
+
+
+def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
     instants = run.problem.given.clock.instants
     worst = finding.worst
     return run.verdict(
@@ -132,13 +169,14 @@ def _verdict(run: _Run, base: Floor, errors: Errors, attainable: Floats, carried
     )
 
 
-def _gate(errors: Errors, attainable: Floats) -> GateRecord:
+def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> GateRecord:
     return GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
         errors=_four_digits(errors.values),
         attainable=_four_digits(attainable),
         truth_radius=max(_floats(errors.truth_radius)),
+        shifts=_four_digits(shifts),
     )
 
 

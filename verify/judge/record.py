@@ -8,13 +8,18 @@ from typing import Any
 
 @dataclass(frozen=True)
 class GateRecord:
-    """The samples of one gate, ``errors`` and ``attainable``, to the four digits a picture needs."""
+    """The samples of one gate, ``errors`` and ``attainable``, to the four digits a picture needs.
+
+    ``shifts`` are the shifts of time of a state quantity whose gate did not pass; empty else, where
+    they are as random as the roundings behind them.
+    """
 
     quantity: str
     unit: str
     errors: tuple[float, ...]
     attainable: tuple[float, ...]
     truth_radius: float
+    shifts: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ come again is therefore the verdict, the cost and the size of the error:
     max, mean, final, ratio            new <= FACTOR max(old, LEVEL attainable), and the reverse
 
 (``ratio`` is in units of attainable already; for the others the larger attainable of both counts.)
+``time_shift``, ``residual`` and ``shift`` have no class. Of a gate that passed they are read from
+roundings alone, whose sign and course in time are drawn anew: only those of a failed gate are published.
 
 FACTOR and LEVEL come from the distribution of the maximum of a random walk, in units of its standard
 deviation, which attainable is. A maximum can be small by chance: the error of an orbit with one
@@ -33,6 +35,7 @@ the same anywhere. Until that has been seen on unlike processors it has the same
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -45,7 +48,7 @@ LEVEL: Final = 0.5
 SLACK: Final = 0.1
 FEW_STEPS: Final = 2
 
-_ERRORS = ("max", "mean", "final", "ratio")
+ERRORS: Final = ("max", "mean", "final", "ratio")
 _SAME = ("verdict", "outcome", "unit", "roundoff")
 
 Key = tuple[str, str, str, str]
@@ -81,15 +84,38 @@ def compare(published: Iterable[Verdict], made: Iterable[Verdict]) -> Comparison
     A row of one side alone is a departure. Only runs on a rung that either machine does not have are
     left out: there is nothing to compare.
     """
+    rows = paired(published, made)
+    missing = [_row(verdict, "this row", "none") for verdict in rows.missing]
+    extra = [_row(verdict, "no such row", "one") for verdict in rows.extra]
+    found = [departure for pair in rows.shared for departure in departures(*pair)]
+    return Comparison(len(rows.shared), (*missing, *extra, *found))
+
+
+@dataclass(frozen=True)
+class Paired:
+    """Rows of before and of now: those of one side alone, and the pairs as (before, now).
+
+    ``absent`` are rows of runs on a rung that one of the two machines does not have.
+    """
+
+    missing: tuple[Verdict, ...]
+    extra: tuple[Verdict, ...]
+    shared: tuple[tuple[Verdict, Verdict], ...]
+    absent: tuple[Verdict, ...]
+
+
+def paired(published: Iterable[Verdict], made: Iterable[Verdict]) -> Paired:
+    """Every row beside the one of the same scene, solver, setting, rung and quantity."""
     old, new = list(published), list(made)
-    absent = {_run(v) for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
-    before = {_key(v): v for v in old if _run(v) not in absent}
-    after = {_key(v): v for v in new if _run(v) not in absent}
-    missing = [_row(v, "this row", "none") for key, v in before.items() if key not in after]
-    extra = [_row(v, "no such row", "one") for key, v in after.items() if key not in before]
-    shared = [(before[key], verdict) for key, verdict in after.items() if key in before]
-    found = [departure for pair in shared for departure in departures(*pair)]
-    return Comparison(len(shared), (*missing, *extra, *found))
+    unavailable = {_run(v) for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
+    before = {_key(v): v for v in old if _run(v) not in unavailable}
+    after = {_key(v): v for v in new if _run(v) not in unavailable}
+    return Paired(
+        missing=tuple(v for key, v in before.items() if key not in after),
+        extra=tuple(v for key, v in after.items() if key not in before),
+        shared=tuple((before[key], v) for key, v in after.items() if key in before),
+        absent=tuple(v for v in (*old, *new) if _run(v) in unavailable),
+    )
 
 
 def departures(old: Verdict, new: Verdict) -> Iterator[Departure]:
@@ -105,7 +131,7 @@ def departures(old: Verdict, new: Verdict) -> Iterator[Departure]:
     if old.at == new.at:
         for name in ("attainable", "bound"):
             yield from _unlike(old, new, name, getattr(old, name), getattr(new, name))
-    for name in _ERRORS:
+    for name in ERRORS:
         yield from _unlike_errors(old, new, name)
 
 
@@ -131,20 +157,29 @@ def _unlike(
     else:
         same = abs(now - was) <= max(few, SLACK * min(abs(now), abs(was)))
     if not same:
-        expected = f"{_told(was)} within {SLACK:.0%}"
-        yield Departure(new.scene, new.rung, new.quantity, name, expected, _told(now))
+        expected = f"{told(was)} within {SLACK:.0%}"
+        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
 
 
 def _unlike_errors(old: Verdict, new: Verdict, name: str) -> Iterator[Departure]:
-    was, now = (row.row()[name] for row in (old, new))
+    was, now = finite(old, name), finite(new, name)
+    level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
+    if has_grown(was, now, level) or has_grown(now, was, level):
+        expected = f"{told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
+        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
+
+
+def finite(verdict: Verdict, name: str) -> float | None:
+    """A number of a verdict as its row has it: None for NaN and the infinities."""
+    value: float | None = getattr(verdict, name)
+    return value if value is not None and math.isfinite(value) else None
+
+
+def has_grown(was: float | None, now: float | None, level: float) -> bool:
+    """Whether an error has left its class upwards; to be no finite number is beyond every error."""
     if was is None or now is None:
-        same, level = was is now, 0.0
-    else:
-        level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
-        same = now <= FACTOR * max(was, level) and was <= FACTOR * max(now, level)
-    if not same:
-        expected = f"{_told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
-        yield Departure(new.scene, new.rung, new.quantity, name, expected, _told(now))
+        return now is None and was is not None
+    return not now <= FACTOR * max(was, level)
 
 
 def _attainable(old: Verdict, new: Verdict) -> float:
@@ -152,7 +187,7 @@ def _attainable(old: Verdict, new: Verdict) -> float:
     return max(old.attainable or 0.0, new.attainable or 0.0)
 
 
-def _told(value: float | None) -> str:
+def told(value: float | None) -> str:
     return "no finite number" if value is None else f"{value:.3g}"
 
 

@@ -26,8 +26,12 @@ class Verdict:
 
     ``max``, ``mean`` and ``final`` are errors in ``unit``, ``at`` the time of the largest; ``bound``
     and ``attainable`` hold at that time. ``ratio`` is the largest error over attainable of all
-    samples and ``ratio_at`` its time: the gate asks every sample, so ``ratio`` decides. A number that
-    does not exist, or is not finite, is None.
+    samples (those before a vacuous gate's bound reached the size of the motion) and ``ratio_at`` its
+    time: the gate asks each of them, so ``ratio`` decides. For a state
+    quantity ``time_shift`` is the constant c with answer(t) ~ exact(t - c), in the unit of t and
+    positive if the answer is late, ``residual`` the largest error that it leaves, in ``unit``, and
+    ``shift`` what a shift of time makes of the error: constant, drifting, wandering, or none (it
+    explains less than half). A number that does not exist, or is not finite, is None.
     """
 
     scene: str
@@ -47,6 +51,9 @@ class Verdict:
     attainable: float | None = None
     ratio: float | None = None
     ratio_at: float | None = None
+    time_shift: float | None = None
+    residual: float | None = None
+    shift: str | None = None
     roundoff: float | None = None
     exponent: float | None = None
     steps: int = 0

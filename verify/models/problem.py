@@ -96,6 +96,50 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     )
 
 
+def adopt(scene: Scene, rung: Rung, instants: tuple[Fraction, ...]) -> Problem:
+    """The problem that somebody else's answer solves, at the times it has rows for.
+
+    Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
+    to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. The instants are exact. The
+    rest is as `pose` would have it. Raises NotRepresentable where the rounded data are no body.
+    """
+    posed, clock = pose(scene, rung), Clock(scene.clock.start, instants)
+    body, initial = _stored(scene, _Rounding(rung))
+    return replace(
+        posed,
+        scene=replace(scene, clock=clock),
+        times=tuple(t / posed.units.time for t in clock.elapsed),
+        given=replace(scene, body=body, initial=initial, clock=clock),
+    )
+
+
+def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
+    """Body and initial state, each number of the scene rounded once where it stands."""
+    one, body, start = Fraction(1), scene.body, scene.initial
+    attitude = _rounded_quaternion(start.attitude, rounded)
+    if isinstance(body, RigidBody):
+        assert isinstance(start, Spin)
+        inertia = rounded.matrix(body.inertia, one)
+        if not tensors.is_positive_definite(inertia):
+            raise NotRepresentable(
+                f"rounded to {rounded.rung.name}, the inertia tensor is not positive definite"
+            )
+        solid = RigidBody(inertia, rounded.vector(body.moment, one))
+        return solid, Spin(rounded.vector(start.omega, one), attitude)
+    assert isinstance(start, Impulse)
+    immersed = ImmersedBody(
+        rounded.matrix(body.linear, one),
+        rounded.matrix(body.coupling, one),
+        rounded.matrix(body.angular, one),
+        rounded.vector(body.force, one),
+        rounded.vector(body.couple, one),
+    )
+    if not tensors.is_positive_definite(immersed.energy_matrix):
+        raise NotRepresentable(f"rounded to {rounded.rung.name}, T is not positive definite")
+    linear, angular = rounded.vector(start.linear, one), rounded.vector(start.angular, one)
+    return immersed, Impulse(linear, angular, attitude, rounded.vector(start.centre, one))
+
+
 @dataclass(frozen=True)
 class _Data:
     """Rounded numbers by name, which of them are states, and the exact body and start they define."""

@@ -1,6 +1,7 @@
 """Verdicts and records as JSON files: what a run found, apart from how long it took and where.
 
-    verdicts.json   every verdict, one a line; the same on any machine that computes the same
+    verdicts.json   every verdict, one a line; the same on any machine that computes the same;
+                    shifts of time of failed gates alone: a passed one has them of its roundings
     timings.json    seconds of every run; Python, processor and command of every machine
     records/        one file a run: the equations built and every sample's error
 
@@ -29,6 +30,7 @@ RECORDS: Final = "records"
 _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 # What the numbers do not depend on: it may differ where verdicts.json may not.
 _MACHINE = ("processor", "command")
+_SHIFT = ("time_shift", "residual", "shift")
 _RUN = ("scene", "solver", "setting", "rung")
 
 
@@ -42,10 +44,10 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     data = folder / FOLDER
     # The verdicts come last: once they are in place, what they speak of is there.
     texts = _record_texts(records)
-    texts[TIMINGS] = _laid_out({**_MADE_BY, **_timings(found)})
+    texts[TIMINGS] = laid_out({**_MADE_BY, **_timings(found)})
     rows = [_row(verdict) for run in found for verdict in run.verdicts]
     same = versions(verdict for run in found for verdict in run.verdicts)
-    texts[VERDICTS] = _laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
+    texts[VERDICTS] = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
     return replace_files(data, texts, stale=_own_records(data))
 
 
@@ -56,9 +58,9 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     ValueError for files that hold something else. Timings may be missing.
     """
     file = folder / FOLDER / VERDICTS
-    stored = _document(file)
+    stored = read_document(file)
     timed = _timed(folder / FOLDER / TIMINGS)
-    with _expecting("verdicts", file):
+    with expecting("verdicts", file):
         same = stored["versions"]
         return tuple(_verdict(row, same, timed.get(_key(row), {})) for row in stored["verdicts"])
 
@@ -82,6 +84,10 @@ def _numerical(found: Mapping[str, str]) -> dict[str, str]:
 def _row(verdict: Verdict) -> dict[str, Any]:
     row = verdict.row()
     del row["seconds"]
+    if verdict.verdict is not Status.FAIL:
+        # Which way roundings push the time is another draw on every machine.
+        for name in _SHIFT:
+            del row[name]
     apart = ("versions", *_MACHINE)
     row["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
     return row
@@ -113,7 +119,7 @@ def _record_texts(records: Iterable[Record]) -> dict[str, str]:
     texts: dict[str, str] = {}
     for record in records:
         name = f"{record.scene.replace('/', '-')}.{record.solver}.{record.rung}.json"
-        text = _laid_out({**_MADE_BY, **record.document()})
+        text = laid_out({**_MADE_BY, **record.document()})
         if texts.setdefault(f"{RECORDS}/{name}", text) != text:
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
     return texts
@@ -121,11 +127,11 @@ def _record_texts(records: Iterable[Record]) -> dict[str, str]:
 
 def _own_records(data: Path) -> list[Path]:
     """The records of an earlier run: files that name their maker, and no others."""
-    maker = _laid_out(_MADE_BY).removesuffix("}\n") + ","
+    maker = laid_out(_MADE_BY).removesuffix("}\n") + ","
     return [file for file in (data / RECORDS).glob("*.json") if first_line(file) == maker]
 
 
-def _laid_out(document: Mapping[str, Any]) -> str:
+def laid_out(document: Mapping[str, Any]) -> str:
     """JSON with a line for every key and for every row of a list of rows."""
     keys = (f"{_json(key)}: {_value(value)}" for key, value in document.items())
     return "{" + ",\n ".join(keys) + "}\n"
@@ -154,7 +160,8 @@ def _finite(value: Any) -> Any:
 # Reading.
 
 
-def _document(file: Path) -> dict[str, Any]:
+def read_document(file: Path) -> dict[str, Any]:
+    """The JSON object in a file; ValueError, with the file, for anything else."""
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
     except ValueError as fault:
@@ -168,8 +175,8 @@ def _timed(file: Path) -> dict[tuple[str, ...], dict[str, Any]]:
     """Each run's seconds and machine; nothing where there is no such file."""
     if not file.exists():
         return {}
-    stored = _document(file)
-    with _expecting("timings", file):
+    stored = read_document(file)
+    with expecting("timings", file):
         machines = stored["machines"]
         return {
             _key(timing): {"seconds": timing["seconds"], "machine": machines[timing["machine"]]}
@@ -192,7 +199,8 @@ def _verdict(row: dict[str, Any], same: dict[str, str], timing: dict[str, Any]) 
 
 
 @contextmanager
-def _expecting(what: str, file: Path) -> Iterator[None]:
+def expecting(what: str, file: Path) -> Iterator[None]:
+    """Whatever goes wrong in reading stored rows is told as a ValueError that names the file."""
     try:
         yield
     except (AttributeError, LookupError, TypeError, ValueError) as fault:

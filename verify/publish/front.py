@@ -13,6 +13,7 @@ from verify.publish.data import versions
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY, counts
 from verify.publish.runs import STATE_QUANTITIES, Run, gravest, is_scored, place_of_rung, runs
+from verify.publish.sights import CONTROLS
 
 REFERENCE: Final = "reference"
 
@@ -43,13 +44,18 @@ _CONTENTS = (
     ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
     ("[data/records](data/records)", "of each run the equations and every sample's error"),
 )
+_CONTROLS = ("[tables/controls.md](tables/controls.md)", "what each gate sees of broken solvers")
 _REFERENCE = (f"[{REFERENCE}]({REFERENCE})", "exact motions in digits, to test other programs with")
 
 
 def front(verdicts: Sequence[Verdict], folder: Path) -> str:
     """The page for a report in ``folder``, which is asked only for what else there is to link to."""
     found = runs(verdicts)
-    contents = [*_CONTENTS, *([_REFERENCE] if (folder / REFERENCE).is_dir() else [])]
+    contents = [
+        *_CONTENTS,
+        *([_CONTROLS] if (folder / CONTROLS).is_file() else []),
+        *([_REFERENCE] if (folder / REFERENCE).is_dir() else []),
+    ]
     blocks = [
         f"{MADE_BY}\n# How accurate it is",
         _WHAT,

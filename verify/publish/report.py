@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from verify.judge.record import Record
 from verify.judge.verdict import Verdict
-from verify.publish import data, sheets, tables
+from verify.publish import controls, data, sheets, sights, tables
 from verify.publish.front import front
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import first_line, replace_files
@@ -38,8 +39,9 @@ def publish(folder: Path | str) -> list[Path]:
     """
     place = Path(folder)
     verdicts = load(place)
+    of_controls = _controls(place)
     texts = {
-        f"{TABLES}/README.md": tables.readme(verdicts),
+        f"{TABLES}/README.md": tables.readme(verdicts, controls=bool(of_controls)),
         f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
         f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
         f"{TABLES}/conserved.md": tables.conserved(verdicts),
@@ -47,9 +49,31 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/gates.md": tables.gates(verdicts),
         f"{TABLES}/gates.csv": sheets.gates(verdicts),
     }
+    texts |= of_controls
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, place)
     return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))
+
+
+def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
+    """Store the rows of a controls run in ``folder``/data and make ``folder``/tables/controls of them.
+
+    Raises OSError for a folder that cannot be written.
+    """
+    place = Path(folder)
+    stored = sights.write(place, document)
+    return [stored, *replace_files(place, _controls(place))]
+
+
+def _controls(place: Path) -> dict[str, str]:
+    """The table of what each gate sees, in Markdown and as a sheet; nothing without stored rows."""
+    found = sights.load(place)
+    if not found:
+        return {}
+    return {
+        f"{TABLES}/controls.md": controls.page(found),
+        f"{TABLES}/controls.csv": controls.sheet(found),
+    }
 
 
 def _is_ours_or_new(file: Path) -> bool:

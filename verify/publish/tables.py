@@ -46,6 +46,11 @@ _CONTENTS = (
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
     ("[Gates](gates.md)", "[csv](gates.csv)", "every verdict, its bound and why that bound"),
 )
+_CONTROLS = (
+    "[What each gate sees](controls.md)",
+    "[csv](controls.csv)",
+    "solvers that were broken on purpose, and the gates that notice",
+)
 _RUN = (Column("scene"), Column("rung"))
 
 
@@ -195,8 +200,9 @@ def _gate_row(verdict: Verdict) -> list[str]:
     ]
 
 
-def readme(verdicts: Sequence[Verdict]) -> str:
-    """What the files are and how a cell is read."""
+def readme(verdicts: Sequence[Verdict], *, controls: bool = False) -> str:
+    """What the files are and how a cell is read; ``controls`` tells whether that table is there."""
+    contents = [*_CONTENTS, *([_CONTROLS] if controls else [])]
     how = [
         "A number has three significant digits; the CSV has them all. A time has its own digits.",
         "Where there is no number stands a word: the verdict, or how a failed run ended. "
@@ -211,7 +217,7 @@ def readme(verdicts: Sequence[Verdict]) -> str:
     return page(
         "Tables",
         verdicts,
-        table([Column("table"), Column("every digit"), Column("what it has")], _CONTENTS),
+        table([Column("table"), Column("every digit"), Column("what it has")], contents),
         counts(verdicts),
         "## How to read a cell",
         bullets(how),

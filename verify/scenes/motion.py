@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -62,10 +62,16 @@ class Motion:
     ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
     ``radius`` (n,) bounds the error of every vector and matrix of a row in the Frobenius norm,
     relative to its norm (absolute where that is zero); zeros where the numbers are held exactly.
+    ``radii`` bounds the error of single quantities likewise, as far as it is known apart.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
     radius: np.ndarray[Any, Any]
+    radii: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self.quantities[quantity]
+
+    def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
+        """The radius of this quantity alone; that of the whole row where no other is known."""
+        return self.radii.get(quantity, self.radius)

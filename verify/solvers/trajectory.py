@@ -29,6 +29,10 @@ class Outcome(Enum):
     NOT_REPRESENTABLE = "not started: the rung cannot hold the scene"
     MISSHAPEN = "answered with an array of the wrong shape"
     RAISED = "ended with an error"
+    NOT_STARTED = "could not be started"
+    TIMED_OUT = "was stopped: the time limit was reached"
+    CRASHED = "ended by a signal or with an exit status other than 0"
+    MISANSWERED = "claimed success, but its answer is not what was asked for"
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,7 @@ class Course(ABC):
 
     poles: tuple[acb, ...]
     order: int = 1
+    _front: Front | None = None
     are_conjugate: bool = False
 
     def __init__(self, nutation: Nutation) -> None:
@@ -48,6 +49,8 @@ class Course(ABC):
         """(z, z') at the time u, by Weierstrass's formula (Whittaker and Watson 20.6)."""
         if u.is_zero():
             return self.z, self.speed
+        if self._front is not None:
+            return self._front.at(u)
         p, slope = (value.real for value in self.lattice.p(acb(u)))
         rise = p - self._half_b2
         below = 2 * rise * rise - self._half_b4_a0
@@ -74,6 +77,27 @@ class Course(ABC):
         """
 
 
+@final
+class Front:
+    """z where f is a square: z' = c (F^2 - z^2), so that F +- z are as p e^{c F u} and m e^{-c F u}.
+
+    Weierstrass's formula becomes 0/0 on the way to the pole, where z is all but F.
+    """
+
+    def __init__(self, nutation: Nutation) -> None:
+        root = ball(nutation.f[0]).sqrt()
+        self.c = root if nutation.speed > 0 else -root
+        self._F = ball(nutation.F2).sqrt()
+        self._up, self._down = self._F + ball(nutation.z), self._F - ball(nutation.z)
+
+    def at(self, u: arb) -> tuple[arb, arb]:
+        """(z, z') at the time u."""
+        growth = (self.c * self._F * u).exp()
+        up, down = self._up * growth, self._down / growth
+        both = up + down
+        return self._F * (up - down) / both, 4 * self.c * self._F * self._F * up * down / both**2
+
+
 def course(nutation: Nutation, heteroclinic: bool) -> Course:
     """The course of a motion whose x3 varies; ``heteroclinic`` if f is a square."""
     degree = len(nutation.f) - 1
@@ -97,6 +121,7 @@ class QuarticCourse(Course):
         self._is_growing = a0 > 0  # sqrt(a0) is real, and the residues of z are
         self._signs: tuple[int, ...] = (1, -1)
         if heteroclinic:
+            self._front = Front(nutation)
             self._signs = (-1,) if nutation.speed > 0 else (1,)
         upper = [self._pole(sign) for sign in self._signs]
         if a0 < 0:

@@ -25,7 +25,7 @@ from typing import Any, Final, final
 from flint import acb, arb
 
 from verify.exact.balls import Enclosed, Enclosure, ball, balls
-from verify.exact.kirchhoff.course import QuarticCourse, course
+from verify.exact.kirchhoff.course import Front, QuarticCourse, course
 from verify.exact.kirchhoff.lattice import Lattice
 from verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from verify.exact.kirchhoff.regime import regime
@@ -128,6 +128,7 @@ class Orbit:
         self._FG, self._screw = ball(nutation.FG), ball(body.q_prime - body.q)
         self._spin = ball(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
+        self._front = self._front_ratio() if heteroclinic else None
         self._find_factors(heteroclinic)
         self._find_rates()
         self._find_amplitudes(start)
@@ -148,7 +149,9 @@ class Orbit:
         below = _product([value for value, *_ in poles]) ** self._course.order
         turn = self._xi * (self._xi_rate * u).exp() / (below * screw)
         xi = turn * above[0].conjugate() * above[1]
-        if abs(xi).mid() < _NEAR_POLE * self._F.mid():
+        if self._front is not None:
+            eta = self._front * xi
+        elif abs(xi).mid() < _NEAR_POLE * self._F.mid():
             eta = self._eta_near_pole(u, z, xi, turn, above)
         else:
             eta = acb(self._FG - z * self._y3, speed / self._r) / xi.conjugate()
@@ -168,6 +171,13 @@ class Orbit:
         return found
 
     # What is found once.
+
+    def _front_ratio(self) -> acb:
+        """eta/xi where f is a square: G = y3 = 0 then, and eta = i (c/r) xi with z' = c (F^2 - z^2).
+
+        So y keeps its digits where both fall off as e^{-|c| F t}, and z' has none left.
+        """
+        return _I * Front(self._nutation).c / self._r
 
     def _find_factors(self, heteroclinic: bool) -> None:
         """alpha where (z, z') = (-F, s-), beta where it is (F, -s+), and the poles of z."""

@@ -1,0 +1,308 @@
+"""Conventions: each way of spoiling a sound file is found, named, and mended only when asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from trajectories import (
+    MATRIX,
+    QUATERNION,
+    VECTORS,
+    Columns,
+    columns_at,
+    exact_columns,
+    named,
+    quaternion,
+    rows_of,
+    write_csv,
+)
+
+import verify
+from verify.judge.answer import FileJudgement
+from verify.judge.conventions.readings import AXES, readings, rotations
+from verify.judge.conventions.search import EXPLAINS, conventions
+from verify.judge.verdict import Status
+from verify.scenes import tensors
+from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.precision import rung
+from verify.scenes.reader import load
+from verify.solvers.file import read
+
+Sound = Mapping[str, Sequence[float]]
+OMEGA = VECTORS["omega"]
+
+
+def judged(path: Path, scene: str, columns: Sound, accept: bool = False) -> FileJudgement:
+    file = write_csv(path / "mine.csv", columns)
+    found = verify.check(scene, file, accept_conventions=accept)
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def replaced(sound: Sound, names: Sequence[str], rows: object) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, **named(names, rows)}
+
+
+def statuses(found: FileJudgement) -> set[Status]:
+    return {verdict.verdict for verdict in found.verdicts}
+
+
+# The ways to spoil a file. Each takes sound columns and returns spoiled ones.
+
+
+def scalar_last(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, np.roll(rows_of(sound, QUATERNION), -1, axis=1))
+
+
+def conjugate(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, rows_of(sound, QUATERNION) * [1, -1, -1, -1])
+
+
+def scalar_last_and_conjugate(sound: Sound) -> Columns:
+    return scalar_last(conjugate(sound))
+
+
+def transposed(sound: Sound) -> Columns:
+    R = rows_of(sound, MATRIX).reshape(-1, 3, 3)
+    return replaced(sound, MATRIX, R.transpose(0, 2, 1).reshape(-1, 9))
+
+
+def in_degrees(sound: Sound) -> Columns:
+    return replaced(sound, OMEGA, np.degrees(rows_of(sound, OMEGA)))
+
+
+def in_space_axes(sound: Sound) -> Columns:
+    R = rotations(rows_of(sound, QUATERNION))
+    return replaced(sound, OMEGA, (R @ rows_of(sound, OMEGA)[:, :, None])[:, :, 0])
+
+
+def in_milliseconds(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [1000 * t for t in sound["t"]]}
+
+
+def late(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [t + 5e-4 for t in sound["t"]]}
+
+
+def of_another_epoch(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [t + 1024 for t in sound["t"]]}
+
+
+def permuted(sound: Sound) -> Columns:
+    return replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+
+
+def with_a_sign(sound: Sound) -> Columns:
+    return replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "subject", "words"),
+    [
+        (scalar_last, "quaternion", "the quaternion is scalar last"),
+        (conjugate, "quaternion", "are the conjugate"),
+        (scalar_last_and_conjugate, "quaternion", "scalar last; q0 q1 q2 q3 are the conjugate"),
+        (transposed, "attitude", "are transposed"),
+        (in_degrees, "omega", "in degrees"),
+        (in_space_axes, "omega", "in space axes"),
+        (in_milliseconds, "time", "thousandths"),
+        (late, "time", "late by 0.0005"),
+        (of_another_epoch, "time", "late by 1024"),
+        (permuted, "omega", "axis 1 is w3, axis 2 is w1, axis 3 is w2"),
+        (with_a_sign, "omega", "axis 2 is -w2"),
+    ],
+)
+def test_each_convention_is_found_and_mended_only_when_asked(
+    spoil: Callable[[Sound], Columns], subject: str, words: str, tmp_path: Path
+) -> None:
+    """A spoiled file fails with one finding that names the convention; accepted, it passes."""
+    scene = "euler/with-attitude"
+    spoiled = spoil(exact_columns(scene, matrix=spoil is transposed))
+    found = judged(tmp_path, scene, spoiled)
+    (finding,) = found.conventions
+    assert finding.subject == subject
+    assert words in finding.words
+    assert finding.is_certain
+    assert finding.after <= EXPLAINS * finding.before
+    assert Status.FAIL in statuses(found)
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_conventions_are_found_together(tmp_path: Path) -> None:
+    """A late file with degrees and a scalar at the end has three findings, and all are mended."""
+    scene = "euler/with-attitude"
+    spoiled = late(in_degrees(scalar_last(exact_columns(scene))))
+    found = judged(tmp_path, scene, spoiled)
+    assert [finding.subject for finding in found.conventions] == ["time", "omega", "quaternion"]
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_impulses_have_conventions_too(tmp_path: Path) -> None:
+    """The axes of x and y, and the unit of Omega, are found in a file of a solid in a fluid."""
+    scene = "kirchhoff/whole-motion"
+    sound = exact_columns(scene)
+    spoiled = in_degrees(sound)
+    for names in (VECTORS["linear_impulse"], VECTORS["angular_impulse"]):
+        spoiled = replaced(spoiled, names, rows_of(sound, names)[:, [2, 0, 1]])
+    found = judged(tmp_path, scene, spoiled)
+    subjects = {finding.subject for finding in found.conventions}
+    assert subjects == {"omega", "linear_impulse", "angular_impulse"}
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_products_of_inertia_with_the_other_sign_are_seen(tmp_path: Path) -> None:
+    """A body with +int xy dm for its products is named, and judged as that body when accepted."""
+    scene = load("euler/full-tensor")
+    assert isinstance(scene.body, RigidBody)
+    K = scene.body.inertia
+    turned = tuple(tuple(K[i][k] * (1 if i == k else -1) for k in range(3)) for i in range(3))
+    other = replace(scene, body=RigidBody(turned))
+    spoiled = columns_at(other, scene.clock.instants[::4])
+    (finding,) = judged(tmp_path, scene.name, spoiled).conventions
+    assert (finding.subject, finding.is_certain) == ("body", True)
+    assert "products of inertia" in finding.words
+    assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}
+
+
+@pytest.mark.slow
+def test_transposed_coupling_is_seen(tmp_path: Path) -> None:
+    """A coupling whose rows go with y is named."""
+    scene = load("kirchhoff/general-body")
+    assert isinstance(scene.body, ImmersedBody)
+    body = replace(scene.body, coupling=tensors.transpose(scene.body.coupling))
+    spoiled = columns_at(replace(scene, body=body), scene.clock.instants[:20])
+    del spoiled["w1"], spoiled["w2"], spoiled["w3"]
+    file = read(write_csv(tmp_path / "mine.csv", spoiled))
+    (finding,) = conventions(file, scene, rung("f64")).findings
+    assert finding.subject == "body"
+    assert "coupling B transposed" in finding.words
+
+
+@pytest.mark.parametrize("accept", [False, True])
+def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
+    accept: bool, tmp_path: Path
+) -> None:
+    """Two columns with one value were exchanged with a third: which is which nobody can say."""
+    scene = tmp_path / "equal.toml"
+    scene.write_text(
+        'title = "Two equal components"\nmodel = "euler"\n[body]\ninertia = [2, 2, 2]\n'
+        "[initial]\nomega = [0.5, 0.5, 0.25]\n[time]\nend = 10\nsamples = 11\n"
+    )
+    spoiled = {
+        "t": list(range(11)),
+        **{n: [v] * 11 for n, v in zip(OMEGA, (0.25, 0.5, 0.5), strict=True)},
+    }
+    found = judged(tmp_path, str(scene), spoiled, accept)
+    (finding,) = found.conventions
+    assert not finding.is_certain
+    assert "ambiguous" in finding.sentence
+    assert Status.FAIL in statuses(found)
+
+
+def test_sound_file_has_no_conventions(tmp_path: Path) -> None:
+    """Nothing is found in a file that is right, however symmetric its motion."""
+    for scene in ("euler/spherical", "euler/axisymmetric", "euler/with-attitude"):
+        assert judged(tmp_path, scene, exact_columns(scene)).conventions == ()
+
+
+def test_an_error_of_ones_own_is_no_convention(tmp_path: Path) -> None:
+    """A file that is wrong by a slow growth and a noise of 1e-6 is not explained away."""
+    scene = "euler/with-attitude"
+    sound = exact_columns(scene)
+    noise = 1 + 1e-6 * np.random.default_rng(7).standard_normal((len(sound["t"]), 3))
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * noise)
+    found = judged(tmp_path, scene, spoiled)
+    assert found.conventions == ()
+    assert Status.FAIL in statuses(found)
+
+
+def test_poor_answers_show_their_conventions(tmp_path: Path) -> None:
+    """Conventions are found in an answer that is good to three digits only."""
+    scene = "euler/with-attitude"
+    sound = exact_columns(scene)
+    poor = replaced(
+        sound, QUATERNION, rows_of(sound, QUATERNION) + 1e-3 * np.sin(sound["t"])[:, None]
+    )
+    (finding,) = judged(tmp_path, scene, scalar_last(poor)).conventions
+    assert "scalar last" in finding.words
+
+
+# Readings.
+
+
+def test_axes_are_the_48_signed_permutations() -> None:
+    """All are orthogonal and different; half of them are rotations."""
+    unit = np.eye(3)
+    matrices = [axes.vectors(unit).T for axes in AXES]
+    assert len({m.tobytes() for m in matrices}) == 48
+    for axes, P in zip(AXES, matrices, strict=True):
+        assert np.array_equal(P @ P.T, unit)
+        assert axes.is_proper == (np.linalg.det(P) > 0)
+
+
+def test_renaming_both_frames_is_a_conjugation() -> None:
+    """left and right by P together are P R P^T, as renaming all axes asks for."""
+    R = rotations(np.array([[0.3, -0.5, 0.7, 0.2]]))
+    for axes in AXES:
+        P = axes.vectors(np.eye(3)).T
+        assert np.allclose(axes.left(axes.right(R))[0], P @ R[0] @ P.T, atol=1e-15)
+
+
+@pytest.mark.parametrize("group", ["omega", "quaternion", "attitude", "centre", "linear_impulse"])
+def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
+    """What is tried in float64 is what is corrected in exact numbers."""
+    width = {"quaternion": 4, "attitude": 9}.get(group, 3)
+    rows = np.random.default_rng(1).standard_normal((2, width))
+    R = rotations(np.random.default_rng(2).standard_normal((2, 4)))
+    with mp.workdps(30):
+        held, frames = (np.vectorize(mpf, otypes=[object])(a) for a in (rows, R))
+        for reading in readings(group)[::7]:
+            exact = reading.read(held, frames).astype(float)
+            assert np.allclose(reading.read(rows, R), exact, rtol=1e-13, atol=1e-13)
+
+
+def test_first_reading_is_the_scenes_own() -> None:
+    """The one reading without cost leaves vectors as they are and normalises quaternions."""
+    for group in ("omega", "quaternion", "attitude", "centre", "angular_impulse"):
+        costs = [reading.cost for reading in readings(group)]
+        assert costs.count(0) == 1
+        assert costs[0] == 0
+    q = np.array([[2.0, 0.0, 0.0, 0.0]])
+    assert np.array_equal(readings("quaternion")[0].read(q, q)[0], np.eye(3))
+
+
+def test_quaternion_of_the_tests_is_the_one_of_its_matrix() -> None:
+    """R(q(R)) = R, so that the files of these tests say what they mean."""
+    q = np.array([[0.1, -0.8, 0.5, 0.3]])
+    R = rotations(q)
+    again = rotations(np.array([[float(v) for v in quaternion(R[0])]]))
+    assert np.allclose(R, again, atol=1e-15)
+
+
+def test_accepting_says_what_was_corrected(tmp_path: Path) -> None:
+    """The document lists what was found, with both errors, and whether it was corrected."""
+    scene = "euler/with-attitude"
+    spoiled = in_degrees(exact_columns(scene))
+    for accept in (False, True):
+        (entry,) = judged(tmp_path, scene, spoiled, accept).document()["conventions"]
+        assert entry["about"] == "omega"
+        assert entry["corrected"] is accept
+        assert entry["error_with"] < EXPLAINS * entry["error_without"]
+
+
+def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
+    """A shift of 1/8192 is found to the last digit, so that the corrected file passes."""
+    scene = load("euler/with-attitude")
+    instants = [t + Fraction(1, 8192) for t in scene.clock.instants[::4]]
+    sound = exact_columns(scene.name)
+    spoiled = {**sound, "t": [float(t) for t in instants]}
+    found = judged(tmp_path, scene.name, spoiled)
+    shifts = [v.time_shift for v in found.verdicts if v.time_shift is not None]
+    assert shifts == pytest.approx([1 / 8192] * 2, rel=1e-9)
+    assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}

@@ -1,0 +1,445 @@
+"""The pytest plugin: two lines in another project judge a simulator, and say what is wrong with it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+from verify.demand import Demand, demands, report
+from verify.judge.verdict import Status, Verdict
+from verify.run import run
+from verify.scenes.reader import read
+
+pytest_plugins = ["pytester"]
+
+HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}
+
+# A body of three equal moments keeps its omega: on euler/spherical `still` is exact, elsewhere wrong.
+SOLVERS = """
+import pytest
+
+def still(problem):
+    return [problem.given.initial.omega] * len(problem.times)
+
+def too_fast(problem):
+    return [[w * (1 + 2**-20) for w in row] for row in still(problem)]
+
+def nan(problem):
+    return [[float("nan")] * 3] * len(problem.times)
+
+def raising(problem):
+    depth = 0
+    return 1 / depth
+"""
+
+
+@pytest.fixture(autouse=True)
+def _as_in_another_project(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only this plugin, and from this checkout, whatever is installed beside it."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+
+
+def session(pytester: pytest.Pytester, tests: str, *options: str) -> pytest.RunResult:
+    pytester.makepyfile(SOLVERS + tests)
+    plugins = ("-p", "verify.pytest_plugin", "-p", "no:cacheprovider")
+    return pytester.runpytest_inprocess(*plugins, *options)
+
+
+# What passes and what fails.
+
+
+def test_two_lines_are_enough(pytester: pytest.Pytester) -> None:
+    """A test of two lines passes with a solver that is right, and hands back its judgement."""
+    tests = """
+def test_my_simulator(verify_solver):
+    verify_solver("euler/spherical", still)
+
+def test_its_judgement(verify_solver):
+    found = verify_solver("euler/spherical", still, rung="f32")
+    assert {v.quantity for v in found.verdicts} == {"omega", "T", "H2"}
+"""
+    session(pytester, tests).assert_outcomes(passed=2)
+
+
+def test_a_wrong_solver_fails_with_all_a_person_needs(pytester: pytest.Pytester) -> None:
+    """Which solver and scene, quantity, size, time, against what, bound, why; and the user's line."""
+    tests = """
+def test_my_simulator(verify_solver):
+    verify_solver("euler/generic", still)
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            '>       verify_solver("euler/generic", still)',
+            "E       Failed: still on euler/generic, f64: 1 of 3 judged quantities are no pass",
+            "E       omega: fail, the error reaches * x max|omega| at t = * (mean *, at the end *)",
+            "E           against  the exact motion of the same rounded data (route *)",
+            "E           bound    * x max|omega|; the error is * times what perfect rounding *",
+            "E           because  10 x attainable; attainable = u sqrt(N) x growth = *",
+            "E       T: pass, * <= * x scale of T",
+            "E       H2: pass, * <= * x scale of H2",
+            "E       T, H2 hold and the state does not: *",
+        ]
+    )
+    # Nothing of the plugin's own between the user's line and the message.
+    assert "pytest_plugin.py" not in result.stdout.str()
+
+
+def test_what_a_callable_raises_is_shown_where_it_rose(pytester: pytest.Pytester) -> None:
+    """The traceback leads into the user's own code, and the test fails."""
+    result = session(
+        pytester, 'def test_it(verify_solver):\n    verify_solver("euler/spherical", raising)\n'
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["*return 1 / depth", "*ZeroDivisionError*", "*ended with an error*"]
+    )
+
+
+def test_a_program_is_judged_by_its_name(pytester: pytest.Pytester) -> None:
+    """A solver may be a name, of a program too; one that crashes fails with its outcome."""
+    tests = """
+def test_taylor(verify_solver):
+    verify_solver("euler/spherical", "taylor")
+
+def test_program(verify_solver):
+    verify_solver("euler/spherical", "process:false")
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*omega: fail, ended by a signal or with an exit status*"])
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        'verify_solver("euler/sphericle", still)',
+        'verify_solver("euler/spherical", "tailor")',
+        'verify_solver("euler/spherical", 17)',
+        'verify_solver("euler/spherical", still, rung="f65")',
+        'verify_solver("euler/spherical", still, tolerance=0)',
+        'verify_solver("euler/spherical", still, tolerance=float("nan"))',
+        'verify_solver("euler/spherical", still, tolerance=True)',
+        'verify_solver("euler/spherical", still, tolerance={"attitude": 1})',
+        'verify_solver("euler/spherical", still, tolerance={})',
+        'verify_solver("euler/spherical", still, only=["T", "attitude"])',
+        'verify_solver("euler/spherical", still, only=[])',
+    ],
+)
+def test_a_wrong_call_fails(pytester: pytest.Pytester, call: str) -> None:
+    """A name, a tolerance or a quantity that is not there fails the test and says what is expected."""
+    result = session(pytester, f"def test_it(verify_solver):\n    {call}\n")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["E*Failed: expected *"])
+
+
+# Tolerances, and conserved quantities alone.
+
+
+def test_a_tolerance_takes_the_place_of_the_bound(pytester: pytest.Pytester) -> None:
+    """A coarse method passes within its own tolerance, for all quantities or for each its own."""
+    tests = """
+@pytest.mark.parametrize(
+    "tolerance",
+    [None, 1e-9, 1e-5, {"omega": 1e-5}, {"omega": 1e-5, "T": 1e-5, "H2": 1e-5}],
+)
+def test_it(verify_solver, tolerance):
+    verify_solver("euler/spherical", too_fast, tolerance=tolerance)
+"""
+    result = session(pytester, tests)
+    # Without one, below the error, and where T and H2 keep their bounds, it fails.
+    result.assert_outcomes(passed=2, failed=3)
+    result.stdout.fnmatch_lines(
+        [
+            "E       omega: fail, the error reaches 9.54e-07 x max|omega| *",
+            "E           bound    1e-09 x max|omega|",
+            "E           because  the tolerance of this test; perfect rounding would leave *",
+        ]
+    )
+
+
+def test_conserved_quantities_alone_are_said_to_be_alone(pytester: pytest.Pytester) -> None:
+    """They may be judged alone; pass or fail, the words say that they certify no state."""
+    tests = """
+def test_blind(verify_solver):
+    verify_solver("euler/generic", still, only="conserved")
+
+def test_one(verify_solver):
+    verify_solver("euler/generic", still, only="T")
+
+def test_seen(verify_solver):
+    verify_solver("euler/generic", too_fast, only=["T", "H2"])
+
+def test_state(verify_solver):
+    verify_solver("euler/spherical", still, only=["omega", "T"])
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=3, failed=1)
+    words = "conserved quantities alone were judged. That does not certify a state"
+    result.stdout.fnmatch_lines([f"E*{words}*", "*= taylor-verify =*"])
+    summary = result.stdout.str().partition("= taylor-verify =")[2].splitlines()
+    told = [line.partition(": ")[0].rpartition("::")[2] for line in summary if words in line]
+    assert told == ["test_blind", "test_one"]
+
+
+def test_the_note_of_a_worker_reaches_the_summary(pytester: pytest.Pytester) -> None:
+    """Under xdist, where tests run in other processes, the summary has the note all the same."""
+    pytester.makepyfile(
+        SOLVERS
+        + 'def test_blind(verify_solver):\n    verify_solver("euler/generic", still, only="T")\n'
+    )
+    plugins = ("-p", "verify.pytest_plugin", "-p", "xdist.plugin", "-n", "1")
+    result = pytester.runpytest_subprocess(*plugins)
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["*= taylor-verify =*", "*conserved quantities alone*"])
+
+
+def test_no_option_saves_a_run_without_numbers(pytester: pytest.Pytester) -> None:
+    """A NaN meets no tolerance, and a run that did not finish fails whatever is asked of it."""
+    tests = """
+def test_nan(verify_solver):
+    verify_solver("euler/spherical", nan, tolerance=1e300)
+
+def test_unfinished(verify_solver):
+    verify_solver("euler/spherical", raising, tolerance=1e300, only="conserved")
+"""
+    session(pytester, tests).assert_outcomes(failed=2)
+
+
+# Demands, one by one.
+
+
+def verdict(status: Status = Status.PASS, **numbers: Any) -> Verdict:
+    named = {"scene": "s", "solver": "t", "rung": "f64", "setting": "", "outcome": ""}
+    return Verdict(**{**named, "quantity": "omega", "verdict": status, **numbers})
+
+
+@pytest.mark.parametrize("status", list(Status))
+def test_only_a_pass_meets_a_demand(status: Status) -> None:
+    """Undecided, vacuous, refused and unavailable are not green."""
+    assert Demand(verdict(status)).is_met is (status is Status.PASS)
+
+
+@pytest.mark.parametrize(
+    ("error", "radius", "is_met"),
+    [
+        (1e-6, 0.0, True),
+        (1.001e-6, 0.0, False),
+        (0.0, 1e-6 / 16, True),
+        (0.0, 1e-7, False),
+        (0.0, float("nan"), False),
+        (float("nan"), 0.0, False),
+        (None, 0.0, False),
+    ],
+)
+def test_a_tolerance_asks_for_a_narrow_truth(
+    error: float | None, radius: float, is_met: bool
+) -> None:
+    """An error within the tolerance counts if the truth is known to a sixteenth of it."""
+    for status in Status:
+        assert Demand(verdict(status, max=error), radius, tolerance=1e-6).is_met is is_met
+
+
+def test_a_verdict_that_is_no_fail_says_what_to_do() -> None:
+    """A gate of which rounding alone reaches the size of the motion is vacuous, and says so."""
+    # A deviation grows by exp(t/sqrt 3): at t = 40 by 10^10, and one of f32 starts at 10^-8.
+    text = """
+title = "The steady spin about the middle axis, for too long"
+model = "euler"
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [0, 1, 0]
+[time]
+end = 40
+samples = 5
+"""
+    judgement = run(read(text, "too long"), "taylor", "f32")
+    found = {v.quantity: v.verdict for v in judgement.verdicts}
+    assert found["omega"] is Status.VACUOUS
+    told = report(judgement, demands(judgement))
+    assert "omega: vacuous" in told
+    assert "    mend     rounding alone reaches the size of the motion" in told
+    assert all(demand.is_met for demand in demands(judgement, only="conserved"))
+
+
+def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
+    """Where perfect rounding would leave more than is allowed, the message does not blame the step."""
+    judgement = run("euler/tennis-racket", "taylor", "f64")
+    told = report(judgement, demands(judgement, tolerance=1e-17))
+    assert "so that nothing on f64 can be held to it" in told
+
+
+@pytest.mark.parametrize(
+    ("shift", "words"),
+    [
+        ("constant", "a constant shift; the best constant one, 0.0005 late, leaves 2e-09 rad"),
+        ("none", "no shift of time explains the error"),
+    ],
+)
+def test_a_time_shift_is_told_beside_a_tolerance(shift: str, words: str) -> None:
+    """What the judge made of the error as a shift of time is passed on with the test's own bound."""
+    numbers = {"max": 1e-3, "at": 1.0, "mean": 1e-3, "final": 1e-3, "unit": "rad"}
+    late = verdict(Status.FAIL, **numbers, time_shift=5e-4, residual=2e-9, shift=shift)
+    told = report(run("euler/rest", "process:false"), [Demand(late, tolerance=1e-6)])
+    assert f"    time     {words}" in told.splitlines()
+
+
+# The marker.
+
+
+def test_a_marker_makes_a_test_of_every_scene_and_rung(pytester: pytest.Pytester) -> None:
+    """Names, patterns and rungs multiply, and each is a test with a name of its own."""
+    tests = """
+@pytest.mark.verify_scenes("euler/spherical", "euler/re*", rung=["f32", "f64"])
+def test_it(verify_scene):
+    assert verify_scene.rung in {"f32", "f64"}
+    verify_scene(still)
+
+@pytest.mark.verify_scenes("euler/spherical", tolerance=1e-5)
+@pytest.mark.verify_scenes("euler/generic", only="conserved")
+class TestOfAClass:
+    def test_it(self, verify_scene):
+        verify_scene(too_fast if verify_scene.scene == "euler/spherical" else still)
+"""
+    result = session(pytester, tests, "-v")
+    result.assert_outcomes(passed=6)
+    names = ["spherical-f32", "rest-f32", "spherical-f64", "rest-f64"]
+    result.stdout.fnmatch_lines([f"*::test_it?euler/{name}? PASSED*" for name in names])
+
+
+@pytest.mark.parametrize(
+    ("tests", "words"),
+    [
+        ("@pytest.mark.verify_scenes()\ndef test_it(verify_scene): pass", "expected scenes"),
+        (
+            '@pytest.mark.verify_scenes("euler/sphericle")\ndef test_it(verify_scene): pass',
+            "did you mean euler/spherical",
+        ),
+        (
+            '@pytest.mark.verify_scenes("nobody/*")\ndef test_it(verify_scene): pass',
+            "expected a pattern that some shipped scene fits, got 'nobody/*'",
+        ),
+        (
+            '@pytest.mark.verify_scenes("euler/rest", rung="f65")\ndef test_it(verify_scene): pass',
+            "expected a rung",
+        ),
+        (
+            '@pytest.mark.verify_scenes("euler/rest", rungs=1)\ndef test_it(verify_scene): pass',
+            "expected rung, tolerance or only, got rungs",
+        ),
+        ("def test_it(verify_scene): pass", "on a test that asks for verify_scene, got none"),
+        (
+            '@pytest.mark.verify_scenes("euler/rest")\ndef test_it(tmp_path): pass',
+            "nothing would be judged",
+        ),
+    ],
+)
+def test_a_marker_that_would_judge_nothing_is_an_error(
+    pytester: pytest.Pytester, tests: str, words: str
+) -> None:
+    """No scene, an unknown one, no fixture, no marker: the collection fails and says why."""
+    result = session(pytester, tests)
+    result.assert_outcomes(errors=1)
+    assert words in result.stdout.str()
+
+
+def test_a_fixture_of_the_same_name_is_left_alone(pytester: pytest.Pytester) -> None:
+    """A project whose own fixture is called verify_scene has that one."""
+    tests = """
+@pytest.fixture
+def verify_scene():
+    return 17
+
+def test_it(verify_scene):
+    assert verify_scene == 17
+"""
+    session(pytester, tests).assert_outcomes(passed=1)
+
+
+def test_the_marker_is_registered(pytester: pytest.Pytester) -> None:
+    """`pytest --markers` lists it, and --strict-markers accepts it."""
+    result = session(pytester, "", "--markers", "--strict-markers")
+    result.stdout.fnmatch_lines(["@pytest.mark.verify_scenes(*"])
+
+
+def test_a_test_that_judges_nothing_is_no_pass(pytester: pytest.Pytester) -> None:
+    """To ask for a fixture and not to call it fails; a test that was skipped or failed is left so."""
+    tests = """
+def test_idle(verify_solver):
+    pass
+
+@pytest.mark.verify_scenes("euler/rest")
+def test_idle_scene(verify_scene):
+    verify_scene.scene
+
+def test_skipped(verify_solver):
+    pytest.skip("no simulator here")
+
+def test_failed(verify_solver):
+    assert False, "before it came to it"
+
+@pytest.fixture
+def simulator(verify_solver):
+    return lambda scene: verify_solver(scene, still)
+
+def test_by_a_fixture_of_ones_own(simulator):
+    simulator("euler/spherical")
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=1, failed=3, skipped=1)
+    result.stdout.fnmatch_lines(["expected the test to judge a solver with each of its gates*"])
+
+
+# What it costs a project that does not use it.
+
+
+def test_the_plugin_alone_imports_nothing_heavy() -> None:
+    """Neither the plugin nor what it decides by loads an integrator, an array or a big number."""
+    script = (
+        "import sys, pytest\n"
+        "before = set(sys.modules)\n"
+        "import verify.pytest_plugin\n"
+        "print(*sorted(m for m in set(sys.modules) - before if m.partition('.')[0] != '__mp_main__'))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, stdout=subprocess.PIPE)
+    loaded = set(done.stdout.decode().split())
+    assert {"verify", "verify.pytest_plugin"} <= loaded
+    assert {name for name in loaded if name.startswith("verify.")} == {"verify.pytest_plugin"}
+    assert not HEAVY & {name.partition(".")[0] for name in loaded}
+
+
+def test_a_session_without_a_scene_loads_nothing_heavy(pytester: pytest.Pytester) -> None:
+    """A project that does not use the plugin has no more of it than one module."""
+    pytester.makepyfile(
+        f"""
+        import sys
+
+        def test_mine():
+            assert "verify.pytest_plugin" in sys.modules
+            assert {{n for n in sys.modules if n.startswith("verify.")}} == {{"verify.pytest_plugin"}}
+            assert not {HEAVY!r} & set(sys.modules)
+        """
+    )
+    result = pytester.runpytest_subprocess("-p", "verify.pytest_plugin")
+    result.assert_outcomes(passed=1)
+
+
+def test_scenes_are_collected_without_the_heavy_modules(pytester: pytest.Pytester) -> None:
+    """Patterns and rungs are resolved when tests are collected; numbers come when one is run."""
+    pytester.makepyfile(
+        f"""
+        import sys, pytest
+
+        @pytest.mark.verify_scenes("euler/*", rung="f32")
+        def test_mine(verify_scene):
+            assert not {HEAVY!r} & set(sys.modules)
+            verify_scene(lambda problem: [problem.given.initial.omega] * len(problem.times))
+        """
+    )
+    result = pytester.runpytest_subprocess("-p", "verify.pytest_plugin", "-k", "euler/spherical")
+    assert result.parseoutcomes()["passed"] == 1

@@ -1,0 +1,43 @@
+"""Where the processor time of a run goes, stage by stage."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from time import process_time
+
+SOLVING, TRUTH, CONDITION, ERRORS, CONSERVED = (
+    *("solving", "the exact motion", "the orbit's condition", "errors and shifts", "conserved quantities"),
+)
+
+
+class Costs:
+    """A clock for the stages of one run."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def of(self, stage: str) -> Iterator[None]:
+        """Count what happens inside to the stage, in seconds of this process on all its threads."""
+        began = process_time()
+        try:
+            yield
+        finally:
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + process_time() - began
+
+
+def total(costs: Iterable[Mapping[str, float]]) -> dict[str, float]:
+    """The sum of many runs, the dearest stage first."""
+    sums: dict[str, float] = {}
+    for one in costs:
+        for stage, seconds in one.items():
+            sums[stage] = sums.get(stage, 0.0) + seconds
+    return dict(sorted(sums.items(), key=lambda item: -item[1]))
+
+
+def sentence(sums: Mapping[str, float]) -> str:
+    """What dominates, in words: the whole, and the share of each stage."""
+    whole = sum(sums.values())
+    shares = ", ".join(f"{stage} {100 * s / whole:.0f} %" for stage, s in sums.items())
+    return f"processor time {whole:.1f} s: {shares}"
