@@ -292,3 +292,12 @@ def test_zero_quaternion_fails() -> None:
     found = {v.quantity: v.verdict for v in verdicts}
     assert found["attitude"] is Status.FAIL
     assert found["omega"] is Status.PASS
+
+
+def test_what_would_take_days_is_not_begun() -> None:
+    """1e60 turns are more than can be stepped through: the outcome is the bound on steps, at once."""
+    generic = load("euler/generic")
+    whirling = replace(generic, initial=Spin((Fraction(10**60), Fraction(10**59), Fraction(1))))
+    trajectory = Taylor().solve(pose(whirling, rung("f64")))
+    assert trajectory.outcome is Outcome.STEP_LIMIT
+    assert trajectory.steps == 0

@@ -38,7 +38,8 @@ _LONGEST_STEP = 0.5
 _SEGMENTS = 24
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more.
 _STEPS_PER_RADIAN = 64
-_COUNTABLE_STEPS = 2.0**62
+# What would take longer than days is not begun.
+_MOST_RADIANS = 1e10
 # Beyond this many states straight-line code compiles longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
 
@@ -103,11 +104,6 @@ def _integrator(form: Form, rung: Rung) -> Any:
     )
 
 
-def _most_steps(radians: float) -> int:
-    """What a sound run needs, a few times over; heyoka counts steps in 64 bits."""
-    return int(min(1000 + _STEPS_PER_RADIAN * radians, _COUNTABLE_STEPS))
-
-
 def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[Any]]:
     """Sample the problem's times; the outcome is FINISHED only if every row is there and finite."""
     numbers = arithmetic(problem.rung)
@@ -121,10 +117,13 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[An
         rate = max(rate, fastest_rate(problem, [float(value) for value in integrator.state]))
         if not isfinite(rate):
             return Outcome.NON_FINITE, total_steps, []
+        radians = rate * float(abs(grid[last] - grid[first]))
+        if not radians <= _MOST_RADIANS:
+            return Outcome.STEP_LIMIT, total_steps, []
         status, _, _, steps, _, reached = integrator.propagate_grid(
             numbers.array(grid[first : last + 1]),
             max_delta_t=numbers.number(problem.rung.round(Fraction(_LONGEST_STEP / rate))),
-            max_steps=_most_steps(rate * float(abs(grid[last] - grid[first]))),
+            max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
         )
         rows.extend(reached[1:])
         total_steps += int(steps)
