@@ -274,7 +274,7 @@ def baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     def judged(scenes: Any, *_: Any) -> list[Any]:
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None})]
+        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
 
     monkeypatch.setattr(verbs, "_judge", judged)
     return tmp_path / "data" / "verdicts.json"
@@ -330,7 +330,9 @@ def test_a_baseline_excuses_no_failure(
     """What failed before and fails again is no regression, and exit 1 all the same."""
     failed = row(60.0, verdict=Status.FAIL)
     monkeypatch.setattr(
-        verbs, "_judge", lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None})]
+        verbs,
+        "_judge",
+        lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}})],
     )
     baseline.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")
     assert main(["run", "euler/generic", "--baseline", str(baseline), "--json"]) == 1

@@ -252,7 +252,7 @@ def published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     def judged(scenes: Any, *_: Any) -> list[Any]:
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None})]
+        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
 
     monkeypatch.setattr(verbs, "_judge", judged)
     return tmp_path
