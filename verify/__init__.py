@@ -3,7 +3,7 @@
     load(scene)                  a scene file or shipped scene, in exact numbers
     exact(scene, times, digits)  the exact motion
     run(scene, solver, rung)     solve, compare with the exact motion, judge
-    check(scene, solve)          judge a solver of one's own
+    check(scene, solve_or_file)  judge a solver, or a trajectory, of one's own
 
 Every name is imported when it is first used, so that `import verify` costs nothing.
 """

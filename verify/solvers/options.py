@@ -1,0 +1,56 @@
+"""How a solver of a family is named: `FAMILY:METHOD?KEY=VALUE&KEY=VALUE`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from fractions import Fraction
+
+from verify.scenes.table import exact_number
+
+
+@dataclass(frozen=True)
+class Options:
+    """A method of a family and what was set for it; the place of a fault is its key."""
+
+    method: str
+    values: Mapping[str, str]
+
+    def positive(self, key: str, default: str) -> Fraction:
+        """The positive number of that key, exactly as written; an empty ``default`` is no number.
+
+        Raises ValueError for what is no number, is not positive, or is missing.
+        """
+        text = self.values.get(key, default)
+        if not text:
+            raise ValueError(f"expected ?{key}=NUMBER after {self.method}, got none")
+        try:
+            value = exact_number(text)
+        except ValueError as error:
+            raise ValueError(f"expected {error}, got {text!r} @ {key}") from None
+        if not value > 0:
+            raise ValueError(f"expected a positive number, got {text!r} @ {key}")
+        return value
+
+
+def options(name: str, methods: Iterable[str], keys: Iterable[str]) -> Options:
+    """Take a name apart. Raises ValueError for a method or a key that there is not, or twice."""
+    method, _, query = name.partition(":")[2].partition("?")
+    _known(method, methods, "a method")
+    values: dict[str, str] = {}
+    for part in query.split("&") if query else ():
+        key, _, value = part.partition("=")
+        _known(key, keys, "a setting")
+        if key in values:
+            raise ValueError(f"expected each setting once, got {key} twice")
+        values[key] = value
+    return Options(method, values)
+
+
+def _known(word: str, words: Iterable[str], what: str) -> None:
+    words = tuple(words)
+    if word not in words:
+        near = get_close_matches(word, words, n=1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise ValueError(f"expected {what} ({', '.join(words)}), got {word!r}{hint}")
