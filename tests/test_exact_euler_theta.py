@@ -17,7 +17,7 @@ from mpmath import mp, mpf
 
 from verify.exact import balls
 from verify.exact.balls import Enclosed, Enclosure, ball
-from verify.exact.euler import jacobi, phase
+from verify.exact.euler import jacobi, phase, theta
 from verify.exact.euler.moduli import Moduli
 from verify.exact.euler.orbit import Orbit
 from verify.exact.euler.principal import principal_balls
@@ -84,7 +84,7 @@ def near_separatrix(tiny: Fraction) -> FreeSpin:
 SPINS = {
     "max-axis": spinning(vector(1, 2, 3), vector("0.3", "0.2", 1)),
     "max-axis, backward": spinning(vector(3, 2, 1), vector("-1.3", "0.2", "-0.4")),
-    "max-axis, cn < 0 at the start": spinning(vector(2, 1, 3), vector("0.2", "-0.5", -1)),
+    "max-axis, w_c < 0 at the start": spinning(vector(2, 1, 3), vector("0.2", "-0.5", -1)),
     "max-axis, oblique": turned(OBLIQUE, spinning(vector(2, 3, 5), vector("0.2", "-0.3", "-0.9"))),
     "min-axis": spinning(vector(1, 3, 2), vector("0.9", "0.1", "-0.5")),
     "min-axis, backward": spinning(vector(3, 1, 2), vector("0.3", "-1", "0.4")),
@@ -421,6 +421,24 @@ def _turns_forgotten(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(phase.Periodic, "half_phase", wrong)
 
 
+def _backward_precession(patch: pytest.MonkeyPatch) -> None:
+    right = theta._Precession.__init__
+
+    def wrong(self: theta._Precession, spin: FreeSpin, start: Any) -> None:
+        right(self, spin, start)
+        self._rate = -self._rate
+
+    patch.setattr(theta._Precession, "__init__", wrong)
+
+
+def _one_branch_of_the_start(patch: pytest.MonkeyPatch) -> None:
+    def wrong(self: phase.Periodic) -> arb:
+        dn, sn, cn = self._moduli.functions
+        return sn * phase._carlson(cn * cn, dn * dn, arb(1))
+
+    patch.setattr(phase.Periodic, "_start", wrong)
+
+
 def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
     right = balls._width
     patch.setattr(balls, "_width", lambda row: right(row) / mp.sqrt(10))
@@ -462,6 +480,27 @@ def test_broken_twin_is_caught(
     twin(monkeypatch)
     with pytest.raises(AssertionError):
         CHECKS[check](SPINS[name])
+
+
+@pytest.mark.parametrize(
+    ("twin", "name"),
+    [
+        (_wrong_sign_of_the_phase, "separatrix"),
+        (_wrong_sign_of_the_phase, "separatrix, oblique"),
+        (_backward_precession, "axisymmetric, oblate"),
+        (_backward_precession, "axisymmetric, oblique"),
+        (_one_branch_of_the_start, "min-axis, oblique"),
+        (_one_branch_of_the_start, "max-axis, oblique"),
+    ],
+)
+def test_a_twin_of_one_regime_is_caught_there(
+    twin: Callable[[pytest.MonkeyPatch], None], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sign of a phase in the elementary regimes, and u_0 taken on the branch of cn > 0 alone."""
+    CHECKS[MPMATH](SPINS[name])
+    twin(monkeypatch)
+    with pytest.raises(AssertionError):
+        CHECKS[MPMATH](SPINS[name])
 
 
 # Zeros, moduli and frames

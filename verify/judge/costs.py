@@ -6,9 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from time import process_time
 
-SOLVING, TRUTH, CONDITION, ERRORS, CONSERVED = (
-    *("solving", "the exact motion", "the orbit's condition", "errors and shifts", "conserved quantities"),
-)
+SOLVING = "solving"
+TRUTH = "the exact motion"
+CONDITION = "the orbit's condition"
+ERRORS = "errors and shifts"
+CONSERVED = "conserved quantities"
 
 
 class Costs:
