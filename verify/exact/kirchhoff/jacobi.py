@@ -15,11 +15,10 @@ from verify.exact.kirchhoff.centre import SpaceAxes
 from verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from verify.exact.kirchhoff.orbit import Axial, Orbit, transverse
 from verify.exact.kirchhoff.quartic import Nutation
-from verify.exact.kirchhoff.regime import regime
+from verify.exact.kirchhoff.regime import nutation_of, regime
 from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import NoClosedForm, Quantities, Settled, Solution
+from verify.exact.solution import Quantities, Settled, Solution
 from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse
 from verify.scenes.precision import floor_log2
 from verify.scenes.scene import Scene
@@ -40,14 +39,7 @@ def closed_form(scene: Scene) -> Solution:
 
     Raises NoClosedForm, with the reason, for every other scene.
     """
-    body, start = scene.body, scene.initial
-    assert isinstance(body, ImmersedBody)
-    assert isinstance(start, Impulse)
-    if body.clebsch is None:
-        raise NoClosedForm("the energy is not of Clebsch's form about axis 3")
-    if not body.is_free:
-        raise NoClosedForm("a force or a couple acts on the body")
-    nutation = Nutation.of(body.clebsch, start)
+    nutation, start = nutation_of(scene)
     kind = regime(nutation)
     if kind in ("rest", "steady", "euler-top"):
         return Screw(kind, nutation, start, scene.track)

@@ -14,10 +14,30 @@ from verify.exact.kirchhoff.quartic import (
     repeated_root,
     value,
 )
-from verify.exact.solution import Unsettled
+from verify.exact.solution import NoClosedForm, Unsettled
+from verify.scenes.bodies import ImmersedBody
+from verify.scenes.motion import Impulse
 from verify.scenes.precision import floor_log2, power_of_two
+from verify.scenes.scene import Scene
 
 _NARROWINGS = 40
+
+
+def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
+    """The motion of a scene with Clebsch's energy and no loads, and its start.
+
+    Raises NoClosedForm, with the reason, for every other scene.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        raise TypeError(
+            f"expected a scene of the model kirchhoff, got {scene.model} @ {scene.name}"
+        )
+    if body.clebsch is None:
+        raise NoClosedForm("the energy is not of Clebsch's form about axis 3")
+    if not body.is_free:
+        raise NoClosedForm("a force or a couple acts on the body")
+    return Nutation.of(body.clebsch, start), start
 
 
 def regime(nutation: Nutation) -> str:

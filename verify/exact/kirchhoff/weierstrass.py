@@ -28,11 +28,9 @@ from verify.exact.balls import Enclosed, Enclosure, ball, balls
 from verify.exact.kirchhoff.course import Front, QuarticCourse, course
 from verify.exact.kirchhoff.lattice import Lattice
 from verify.exact.kirchhoff.quartic import Nutation, repeated_root
-from verify.exact.kirchhoff.regime import regime
+from verify.exact.kirchhoff.regime import nutation_of, regime
 from verify.exact.kirchhoff.turning import TurningBody
 from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import NoClosedForm
-from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse
 from verify.scenes.scene import Scene
 
@@ -46,16 +44,7 @@ def enclosed(scene: Scene) -> Enclosed:
 
     Raises NoClosedForm, with the reason, for every other scene.
     """
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        raise TypeError(
-            f"expected a scene of the model kirchhoff, got {scene.model} @ {scene.name}"
-        )
-    if body.clebsch is None:
-        raise NoClosedForm("the energy is not of Clebsch's form about axis 3")
-    if not body.is_free:
-        raise NoClosedForm("a force or a couple acts on the body")
-    nutation = Nutation.of(body.clebsch, start)
+    nutation, start = nutation_of(scene)
     kind = regime(nutation)
     if kind in ("rest", "steady", "euler-top"):
         return TurningBody(kind, nutation, start, scene.track)
