@@ -308,3 +308,13 @@ def test_what_no_impulse_can_lead_is_integrated_as_it_stands() -> None:
         given = kirchhoff(body, "attitude", "centre")
         posed = given if start is None else replace(given, initial=start)
         assert not TaylorSolution(posed)._is_guided
+
+
+def test_a_couple_that_vanishes_for_the_body_leaves_y_exactly() -> None:
+    """With p = p' and no coupling x x U = 0 whatever x is: y = 0 stays zero, and no rounding tells."""
+    ninth = Fraction(1, 9)
+    sphere = Clebsch(ninth, ninth, Fraction(0), Fraction(0), ninth, ninth).body()
+    still = Impulse(vector(0, "25/16", "-4/7"), vector(0, 0, 0), QUATERNION, vector(1, 2, 3))
+    moving = replace(kirchhoff(sphere, "attitude", "centre"), initial=still)
+    found = TaylorSolution(moving).motion([Fraction(14000, 1107)], 30)
+    assert not any(found["angular_impulse"].flat)

@@ -32,7 +32,7 @@ from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Motion, Spin, State
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector
+from verify.scenes.tensors import Matrix, Vector
 
 Triple = tuple[int, int, int]
 
@@ -142,23 +142,39 @@ def _euler(body: RigidBody, with_attitude: bool) -> Equations:
 
 def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Equations:
     """Hydromechanics 48 (3), (4), (5); R' = R [Omega]x row by row, centre' = R U."""
-    x: Triple = (0, 1, 2)
-    y: Triple = (3, 4, 5)
     size = 6 + 9 * with_attitude + 3 * with_centre
     velocity: Triple = (size, size + 1, size + 2)
     omega: Triple = (size + 3, size + 4, size + 5)
-    right = _impulse_rates(x, y, velocity, omega)
+    right = _impulse_rates(body)
     if with_attitude:
         right += [p for row in _rows_from(6) for p in _cross(row, omega)]
     if with_centre:
         right += [_dot(row, velocity) for row in _rows_from(6)]
-    return Equations(body.force + body.couple, body.energy_matrix, tuple(right))
+    # Only R and the centre ask for U and Omega themselves.
+    forms = body.energy_matrix if with_attitude else ()
+    return Equations(body.force + body.couple, forms, tuple(right))
 
 
-def _impulse_rates(x: Triple, y: Triple, velocity: Triple, omega: Triple) -> list[Polynomial]:
-    """x x Omega, and y x Omega + x x U."""
-    turned = zip(_cross(y, omega), _cross(x, velocity), strict=True)
-    return _cross(x, omega) + [_sum(p, q) for p, q in turned]
+def _impulse_rates(body: ImmersedBody) -> list[Polynomial]:
+    """x x Omega, and y x Omega + x x U, in products of x and y alone.
+
+    With U and Omega put in, what cancels in exact coefficients is gone: where x x U vanishes for a
+    whole body, y stays a zero that no rounding disturbs.
+    """
+    velocity, omega = body.energy_matrix[:3], body.energy_matrix[3:]
+    turned = zip(_cross_form(3, omega), _cross_form(0, velocity), strict=True)
+    return _cross_form(0, omega) + [_sum(p, q) for p, q in turned]
+
+
+def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
+    """The vector of the states ``first``, ... times a linear form of all six, given by its rows."""
+    forward = [
+        {(first + j, i): c for i, c in enumerate(rows[k])} for j, k in ((1, 2), (2, 0), (0, 1))
+    ]
+    backward = [
+        {(first + k, i): -c for i, c in enumerate(rows[j])} for j, k in ((1, 2), (2, 0), (0, 1))
+    ]
+    return [_sum(p, q) for p, q in zip(forward, backward, strict=True)]
 
 
 def _euler_units(body: RigidBody, start: Vector) -> Units:
@@ -244,7 +260,9 @@ def posed(scene: Scene) -> Problem:
     if isinstance(body, RigidBody):
         return problem(_euler(body, bool(scene.track)), _euler_units(body, start), start, moving=3)
     equations = _kirchhoff(body, bool(scene.track), "centre" in scene.track)
-    return problem(equations, _kirchhoff_units(body, start), start, moving=6)
+    units = _kirchhoff_units(body, start)
+    variables = units.variables[: len(start) + len(equations.forms)]
+    return problem(equations, Units(variables, units.time), start, moving=6)
 
 
 def _guided_problem(scene: Scene) -> Problem:
@@ -252,9 +270,9 @@ def _guided_problem(scene: Scene) -> Problem:
     start, body = scene.initial, scene.body
     assert isinstance(start, Impulse)
     assert isinstance(body, ImmersedBody)
-    x, y, row = (0, 1, 2), (3, 4, 5), (6, 7, 8)
+    x, row = (0, 1, 2), (6, 7, 8)
     velocity, omega = (10, 11, 12), (13, 14, 15)
-    right = _impulse_rates(x, y, velocity, omega) + _cross(row, omega) + [_dot(x, velocity)]
+    right = _impulse_rates(body) + _cross(row, omega) + [_dot(x, velocity)]
     equations = Equations(body.force + body.couple, body.energy_matrix, tuple(right))
     moving = start.linear + start.angular
     units = _kirchhoff_units(body, moving)
