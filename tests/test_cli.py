@@ -26,6 +26,7 @@ from verify.scenes import library, tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
 from verify.scenes.precision import LADDER
+from verify.solvers import registry
 
 ROOT = Path(verify.__file__).resolve().parents[1]
 GENERIC = library.cases_directory() / "euler" / "generic.toml"
@@ -71,7 +72,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     found = json.loads(capsys.readouterr().out)
     assert found == {
         "scenes": list(library.names()),
-        "solvers": ["taylor"],
+        "solvers": list(registry.NAMES),
         "rungs": list(LADDER),
     }
     assert main(["list"]) == 0

@@ -103,7 +103,7 @@ def test_a_method_is_of_its_order(name: str, scene: Scene) -> None:
 
 def test_the_midpoint_takes_a_moment() -> None:
     """With a constant moment the implicit midpoint rule is still of second order."""
-    scene = at("euler/constant-moment", *range(11), track="attitude")
+    scene = at("euler/constant-moment", 0, 2, 4, track="attitude")
     found = sweep(scene, solving(ImplicitMidpoint), STEPS, expected=2)
     assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
 
@@ -119,9 +119,9 @@ def test_a_motion_runs_backward() -> None:
 # Conservation, as the judge's own gates see it: drift against rounding.
 
 
-@pytest.mark.parametrize("scene", ["euler/with-attitude", FULL], ids=["principal", "full tensor"])
+@pytest.mark.parametrize("scene", [PRINCIPAL, FULL], ids=["principal", "full tensor"])
 @pytest.mark.parametrize("name", METHODS)
-def test_what_is_promised_is_conserved_at_any_step(name: str, scene: Scene | str) -> None:
+def test_what_is_promised_is_conserved_at_any_step(name: str, scene: Scene) -> None:
     """|H|^2 and the momentum in space stay within rounding at a coarse step, T where promised."""
     found = verdicts(scene, name, "0.2")
     kept = {quantity for quantity, verdict in found.items() if verdict.verdict is Status.PASS}

@@ -4,6 +4,7 @@
     exact(scene, times, digits)  the exact motion
     run(scene, solver, rung)     solve, compare with the exact motion, judge
     check(scene, solve_or_file)  judge a solver, or a trajectory, of one's own
+    recommend(scene, error)      the fastest setting that reaches an error, ready to run
 
 Every name is imported when it is first used, so that `import verify` costs nothing.
 """
@@ -16,12 +17,14 @@ from typing import Any
 # These modules are callable, because a room and the function it is for share a name.
 _CALLABLE = ("check", "exact", "run")
 
-__all__ = ["check", "exact", "load", "run"]
+__all__ = ["check", "exact", "load", "recommend", "run"]
 
 
 def __getattr__(name: str) -> Any:
     if name == "load":
         return import_module("verify.scenes.reader").load
+    if name == "recommend":
+        return import_module("verify.trade.recommend").recommend
     if name in _CALLABLE:
         return import_module(f"verify.{name}")
     raise AttributeError(f"module 'verify' has no attribute {name!r}")

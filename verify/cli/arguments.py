@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from verify.cli import ci, verbs
+from verify.cli import ci, tradeoff, verbs
 from verify.cli.answer import Answer
 
 _DEFAULT_DIGITS = 30
@@ -72,6 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_exact(found)
     _add_check(found)
     _add_explain(found)
+    _add_tradeoff(found)
     _add_publish(found)
     return parser
 
@@ -169,6 +170,28 @@ def _add_explain(found: Any) -> None:
     verb = _verb(found, "explain", what, "explain kirchhoff/screw --rung f80", verbs.explain)
     verb.add_argument("scene", metavar="SCENE")
     verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
+
+
+def _add_tradeoff(found: Any) -> None:
+    what = "measure the time and the error of every setting of every solver"
+    example = "tradeoff euler/generic --rung f64 --target 1e-9"
+    verb = _verb(found, "tradeoff", what, example, tradeoff.tradeoff)
+    verb.add_argument("scenes", nargs="*", metavar="SCENE")
+    verb.add_argument(
+        "--target",
+        metavar="E",
+        help="also find the fastest setting whose error stays below E on the scene and on starts "
+        "nearby; exit status 3 where there is none",
+    )
+    verb.add_argument(
+        "--rung", nargs="+", action="append", metavar="R", help="default: f32 f64 f80 f128"
+    )
+    verb.add_argument(
+        "--repeats", type=int, default=5, metavar="N", help="timed solves of a setting; default: 5"
+    )
+    verb.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="of the order and the starts; default: 1"
+    )
 
 
 def _add_publish(found: Any) -> None:

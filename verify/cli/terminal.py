@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -12,12 +10,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
+
 if TYPE_CHECKING:
     from verify.judge.answer import FileJudgement
     from verify.judge.verdict import Verdict
 
-# Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
-_PIPED_WIDTH = 140
 _ROOMY = 120
 _STATES = ("omega", "impulse", "attitude", "centre")
 # What a reason is made of.
@@ -36,14 +34,14 @@ _UNITS = {
 
 
 def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> str:
-    console = _console()
+    console = new_console()
     width = max(map(len, titles), default=0)
     for heading, entries in found.items():
-        _line(console, Text(heading, "bold"))
+        print_line(console, Text(heading, "bold"))
         for entry in entries:
             title = titles.get(entry, "")
-            _line(console, f"  {entry:{width}}  {title}".rstrip())
-    return _text(console)
+            print_line(console, f"  {entry:{width}}  {title}".rstrip())
+    return text_of(console)
 
 
 # run
@@ -54,25 +52,25 @@ def verdicts_text(verdicts: Sequence[Verdict]) -> str:
     from verify.judge.verdict import summary
 
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
-    console = _console(_PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
+    console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
     console.print(_table(verdicts, gap=2 if console.width >= _ROOMY else 1))
-    _line(console)
-    _line(
+    print_line(console)
+    print_line(
         console,
         "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits;",
     )
-    _line(
+    print_line(
         console, "/floor is the largest error over what perfect rounding would leave, of all gates."
     )
     others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
     if others:
-        _line(console)
+        print_line(console)
     for verdict in others:
         place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
-        _line(console, _status(verdict.verdict.value), f"  {place}: {_told(verdict)}")
+        print_line(console, _status(verdict.verdict.value), f"  {place}: {_told(verdict)}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
-    _line(console, f"\n{counts}")
-    return _text(console)
+    print_line(console, f"\n{counts}")
+    return text_of(console)
 
 
 def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
@@ -150,27 +148,29 @@ def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
     """What the file is, what its conventions are, a line for each quantity, and every reason."""
     from verify.judge.verdict import summary
 
-    console = _console()
-    _line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
-    _line(console, f"judged as an answer to {scene} in {rung} arithmetic")
+    console = new_console()
+    print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
+    print_line(console, f"judged as an answer to {scene} in {rung} arithmetic")
     _print_conventions(console, judged)
-    _line(console)
+    print_line(console)
     if any(verdict.at is not None for verdict in judged.verdicts):
         console.print(_quantities_table(judged.verdicts))
-        _line(console)
-        _line(console, "allowed: ten times what rounding the input and every step would leave;")
-        _line(console, "/floor: the largest error over what it would leave, of all rows.")
+        print_line(console)
+        print_line(
+            console, "allowed: ten times what rounding the input and every step would leave;"
+        )
+        print_line(console, "/floor: the largest error over what it would leave, of all rows.")
     for note in judged.notes:
-        _line(console, Text("note", "yellow"), f"  {note}")
+        print_line(console, Text("note", "yellow"), f"  {note}")
     others = [verdict for verdict in judged.verdicts if verdict.verdict.value != "pass"]
     if others:
-        _line(console)
+        print_line(console)
     for verdict in others:
-        _line(console, _status(verdict.verdict.value), f"  {verdict.quantity}")
+        print_line(console, _status(verdict.verdict.value), f"  {verdict.quantity}")
         _print_reason(console, verdict)
     counts = ", ".join(f"{n} {status}" for status, n in summary(judged.verdicts).items() if n)
-    _line(console, f"\n{counts}")
-    return _text(console)
+    print_line(console, f"\n{counts}")
+    return text_of(console)
 
 
 def _extent(judged: FileJudgement) -> str:
@@ -183,7 +183,7 @@ def _print_conventions(console: Console, judged: FileJudgement) -> None:
     found = judged.conventions
     if not found:
         return
-    _line(console)
+    print_line(console)
     certain = any(finding.is_certain for finding in found)
     if not certain:
         heading = (
@@ -193,26 +193,26 @@ def _print_conventions(console: Console, judged: FileJudgement) -> None:
         heading = "the file departs from the scene's conventions, and was corrected"
     else:
         heading = "the file departs from the scene's conventions, and was judged as it stands"
-    _line(console, Text(heading, "bold yellow"))
+    print_line(console, Text(heading, "bold yellow"))
     for finding in found:
-        _indented(console, "  ", finding.sentence)
+        print_indented(console, "  ", finding.sentence)
     if certain and not judged.accepted:
-        _line(console, "  (--accept-conventions corrects this and judges the rest)")
+        print_line(console, "  (--accept-conventions corrects this and judges the rest)")
 
 
 def _print_reason(console: Console, verdict: Verdict) -> None:
     """What is wrong, where, what a shift of time makes of it, and why so much is allowed."""
     if verdict.at is None:
-        _indented(console, "    ", verdict.because)
+        print_indented(console, "    ", verdict.because)
         return
     said, rule, why = verdict.because.rpartition(_RULE)
     bound, meaning, shift = (rule + why).partition(_AS_A_SHIFT)
     if said:
-        _indented(console, "    ", said.removesuffix("; "))
-    _indented(console, "    ", _error(verdict.row()))
+        print_indented(console, "    ", said.removesuffix("; "))
+    print_indented(console, "    ", _error(verdict.row()))
     if meaning:
-        _indented(console, "    ", f"{meaning.removeprefix('; ')}{shift}")
-    _indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {bound}")
+        print_indented(console, "    ", f"{meaning.removeprefix('; ')}{shift}")
+    print_indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {bound}")
 
 
 def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
@@ -236,14 +236,16 @@ def _figure(value: float | None) -> str:
 
 
 def exact_text(found: Mapping[str, Any]) -> str:
-    console = _console()
-    _line(console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})")
+    console = new_console()
+    print_line(
+        console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})"
+    )
     for row in found["rows"]:
-        _line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")
+        print_line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")
         for name, value in row.items():
             if name not in ("t", "radius"):
                 _print_quantity(console, name, value)
-    return _text(console)
+    return text_of(console)
 
 
 def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
@@ -253,47 +255,47 @@ def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
     width = max(len(text) for row in signed for text in row)
     for i, row in enumerate(signed):
         entries = " ".join(text.ljust(width) for text in row).rstrip()
-        _line(console, f"  {name if i == 0 else '':15} {entries}")
+        print_line(console, f"  {name if i == 0 else '':15} {entries}")
 
 
 # explain
 
 
 def explanation_text(found: Mapping[str, Any]) -> str:
-    console = _console()
-    _line(console, Text(found["scene"], "bold"), f": {found['title']}")
+    console = new_console()
+    print_line(console, Text(found["scene"], "bold"), f": {found['title']}")
     if found["source"]:
-        _line(console, f"source: {found['source']}")
+        print_line(console, f"source: {found['source']}")
     for warning in found["warnings"]:
-        _line(console, Text("warning", "yellow"), f": {warning}")
-    _line(console, f"tracked: {', '.join(found['track'])}")
+        print_line(console, Text("warning", "yellow"), f": {warning}")
+    print_line(console, f"tracked: {', '.join(found['track'])}")
     if found["equations"] is not None:
         _print_problem(console, found)
-    _line(console)
-    _line(console, Text(f"gates on {found['rung']}", "bold"), f", u = 2^-{found['bits']}")
+    print_line(console)
+    print_line(console, Text(f"gates on {found['rung']}", "bold"), f", u = 2^-{found['bits']}")
     for gate in found["gates"]:
         _print_gate(console, gate)
-    return _text(console)
+    return text_of(console)
 
 
 def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     cost, units = found["cost"], found["units"]
-    _line(console)
-    _line(console, Text("equations as built", "bold"))
+    print_line(console)
+    print_line(console, Text("equations as built", "bold"))
     for line in found["equations"]:
-        _line(console, f"  {line}")
+        print_line(console, f"  {line}")
     if found["parameters"]:
-        _line(console, "with, shown as doubles,")
+        print_line(console, "with, shown as doubles,")
         for name, value in found["parameters"].items():
-            _line(console, f"  {name:4} {float.fromhex(value)!r}")
-    _line(console, "in units (exact powers of two)")
-    _line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
-    _line(console)
+            print_line(console, f"  {name:4} {float.fromhex(value)!r}")
+    print_line(console, "in units (exact powers of two)")
+    print_line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
+    print_line(console)
     _print_orbit(console, found)
     truth = f"  route {found['route']}, {found['truth_digits']} digits"
-    _line(console, Text("truth", "bold"), truth)
+    print_line(console, Text("truth", "bold"), truth)
     order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
-    _line(
+    print_line(
         console,
         Text("cost", "bold"),
         f"   {cost['states']} states; an evaluation takes {cost['products']} products, "
@@ -305,12 +307,12 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
 
 def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
     """What the orbit is in words, its numbers, and how it carries an error on."""
-    _line(console, Text("orbit", "bold"), f"  {found['regime']}")
+    print_line(console, Text("orbit", "bold"), f"  {found['regime']}")
     for sentence in found["sentences"]:
-        _indented(console, "  ", sentence)
+        print_indented(console, "  ", sentence)
     numbers = found["elements"]
     if numbers:
-        _line(console, "numbers in the scene's own units")
+        print_line(console, "numbers in the scene's own units")
     values = [
         f"{number['value']} {_UNITS.get(number['unit'], number['unit'])}".rstrip()
         for number in numbers
@@ -319,44 +321,19 @@ def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
     value_width = max(map(len, values), default=0)
     for number, value in zip(numbers, values, strict=True):
         label = f"  {number['name']:{name_width}}  {value:{value_width}}  "
-        _indented(console, label, number["meaning"])
+        print_indented(console, label, number["meaning"])
     if found["condition"] is not None:
-        _line(console, Text("conditioning", "bold"))
+        print_line(console, Text("conditioning", "bold"))
         for sentence in found["condition"]["sentence"].split(". "):
-            _indented(console, "  ", sentence.removesuffix(".") + ".")
+            print_indented(console, "  ", sentence.removesuffix(".") + ".")
 
 
 def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
-    _line(console)
-    _line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
+    print_line(console)
+    print_line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
     if gate["at"] is not None:
         for part in _error(gate).split("; "):
-            _indented(console, "    ", part)
+            print_indented(console, "    ", part)
     because = [part.strip() for part in gate["because"].split(";")]
     for i, part in enumerate(because):
-        _indented(console, "    because " if i == 0 else "            ", part)
-
-
-def _line(console: Console, *parts: str | Text) -> None:
-    """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
-    console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
-
-
-def _indented(console: Console, label: str, text: str) -> None:
-    """A line behind its label; on a terminal what is too long goes on below itself."""
-    width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
-    for i, line in enumerate(textwrap.wrap(text, width)):
-        _line(console, (label if i == 0 else " " * len(label)) + line)
-
-
-def _console(piped_width: int = _PIPED_WIDTH) -> Console:
-    """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
-    console = Console(markup=False, emoji=False, highlight=False)
-    if not sys.stdout.isatty():
-        console.width = piped_width
-    console.begin_capture()
-    return console
-
-
-def _text(console: Console) -> str:
-    return console.end_capture().rstrip("\n")
+        print_indented(console, "    because " if i == 0 else "            ", part)

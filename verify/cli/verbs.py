@@ -44,10 +44,10 @@ def run(options: argparse.Namespace) -> Answer:
     from verify.scenes.library import names
     from verify.scenes.precision import LADDER
 
-    rungs = _known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
+    rungs = known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
     _known_solver(options.solver)
     scenes = list(dict.fromkeys(options.scenes)) or list(names())
-    _read(scenes)
+    read_scenes(scenes)
     folder = _writable(options.out) if options.out is not None else None
     published = _published(options, rungs) if options.against is not None else None
     asked = outputs(options)
@@ -136,8 +136,8 @@ def exact(options: argparse.Namespace) -> Answer:
 
     if not 1 <= options.digits <= _MOST_DIGITS:
         raise WrongCall(f"expected --digits from 1 to {_MOST_DIGITS}, got {options.digits}")
-    times = [(text.strip(), _time(text)) for text in options.at.split(",")]
-    (scene,) = _read([options.scene])
+    times = [(text.strip(), read_time(text)) for text in options.at.split(",")]
+    (scene,) = read_scenes([options.scene])
     from verify.exact.printed import document
     from verify.exact.route import solution
     from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
@@ -178,7 +178,7 @@ def check(options: argparse.Namespace) -> Answer:
     from verify.judge.verdict import exit_status
     from verify.scenes.precision import rung
 
-    (name,) = _known_rungs([options.rung])
+    (name,) = known_rungs([options.rung])
     scene, file = _scene_and_file(options.scene, options.file)
     asked = outputs(options)
     with working(f"check {options.file}"):
@@ -201,7 +201,7 @@ def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:
 
     faults: list[str] = []
     try:
-        scenes = _read([scene])
+        scenes = read_scenes([scene])
     except WrongCall as error:
         faults.append(str(error))
     try:
@@ -219,8 +219,8 @@ def explain(options: argparse.Namespace) -> Answer:
     from verify.cli.terminal import explanation_text
     from verify.explain import explanation
 
-    (rung,) = _known_rungs([options.rung])
-    (scene,) = _read([options.scene], warn=False)
+    (rung,) = known_rungs([options.rung])
+    (scene,) = read_scenes([options.scene], warn=False)
     with working(f"explain {options.scene}"):
         found = explanation(scene, rung)
     return Answer(PASS, found, partial(explanation_text, found))
@@ -298,7 +298,7 @@ def _no_text() -> str:
     return ""
 
 
-def _known_rungs(rungs: Iterable[str]) -> list[str]:
+def known_rungs(rungs: Iterable[str]) -> list[str]:
     from verify.scenes.precision import rung
 
     try:
@@ -316,7 +316,7 @@ def _known_solver(name: str) -> None:
         raise WrongCall(f"{error} @ --solver") from error
 
 
-def _read(names: Sequence[str], warn: bool = True) -> list[Scene]:
+def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
     """Every scene, read before any work begins; the faults of all of them are reported at once."""
     from verify.scenes.faults import Refused
     from verify.scenes.reader import load
@@ -336,7 +336,7 @@ def _read(names: Sequence[str], warn: bool = True) -> list[Scene]:
     return scenes
 
 
-def _time(text: str) -> Fraction:
+def read_time(text: str) -> Fraction:
     from verify.scenes.table import exact_number
 
     try:

@@ -23,14 +23,14 @@ def fastest_rate(problem: Problem, state: Sequence[float]) -> float:
     kept = [i for i, name in enumerate(problem.form.states) if not name.startswith("c")]
     point = np.array(state, dtype=float)
     parameters = [float(value) for value in problem.parameters]
-    columns = []
-    for i in kept:
-        step = np.zeros(len(point))
-        step[i] = 1.0
-        ahead = problem.form.rates(list(point + step), parameters)
-        behind = problem.form.rates(list(point - step), parameters)
-        columns.append([(float(ahead[j]) - float(behind[j])) / 2 for j in kept])
-    jacobian = np.array(columns)
+    steps = np.zeros((len(point), 2 * len(kept)))
+    for column, i in enumerate(kept):
+        steps[i, column], steps[i, column + len(kept)] = 1.0, -1.0
+    # All the neighbours at once: the equations work on rows as they do on numbers.
+    found = problem.form.rates(list(point[:, None] + steps), parameters)
+    rows = [np.broadcast_to(np.asarray(found[j], dtype=float), 2 * len(kept)) for j in kept]
+    ahead, behind = np.hsplit(np.array(rows), 2)
+    jacobian = (ahead - behind) / 2
     if not np.all(np.isfinite(jacobian)):
         return float("inf")
     return max(float(np.max(np.abs(np.linalg.eigvals(jacobian)))), _SLOWEST)

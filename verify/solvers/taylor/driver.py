@@ -25,6 +25,7 @@ from verify.models.form import Form
 from verify.models.problem import Problem
 from verify.models.rates import fastest_rate
 from verify.scenes.precision import Rung
+from verify.scenes.table import exact_number
 from verify.solvers.solver import Solver
 from verify.solvers.taylor.cache import use_own_cache
 from verify.solvers.taylor.numbers import arithmetic, unavailable
@@ -53,17 +54,21 @@ _OUTCOMES = {
 @final
 @dataclass(frozen=True)
 class Taylor(Solver):
-    """heyoka at the tolerance of the rung's own roundoff."""
+    """heyoka at a tolerance, which bounds the error of a step: the rung's machine epsilon if None.
+
+    heyoka takes the order from it.
+    """
 
     name: str = "taylor"
     setting: str = ""
+    tolerance: Fraction | None = None
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
-        integrator = _integrator(problem.form, problem.rung)
+        integrator = _integrator(problem.form, problem.rung, self.tolerance)
         compiled = perf_counter()
         outcome, steps, rows = _propagate(integrator, problem)
         seconds = perf_counter() - compiled
@@ -82,9 +87,17 @@ class Taylor(Solver):
         )
 
 
+def at_tolerance(text: str) -> Taylor:
+    """The driver at a tolerance that is a decimal or a/b; ValueError for one that is not positive."""
+    tolerance = exact_number(text)
+    if not tolerance > 0:
+        raise ValueError(f"expected a positive tolerance, got {text!r}")
+    return Taylor(setting=f"tol={text}", tolerance=tolerance)
+
+
 @lru_cache(maxsize=64)
-def _integrator(form: Form, rung: Rung) -> Any:
-    """One compiled integrator per form and rung; parameters and states are filled in per problem."""
+def _integrator(form: Form, rung: Rung, tolerance: Fraction | None) -> Any:
+    """One compiled integrator per form, rung and tolerance; the rest is filled in per problem."""
     use_own_cache()
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
@@ -101,6 +114,8 @@ def _integrator(form: Form, rung: Rung) -> Any:
         pars=np.array([zero] * len(form.parameters), dtype=numbers.fp_type),
         fp_type=numbers.fp_type,
         compact_mode=numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
+        # heyoka takes 0 for the machine epsilon of the type.
+        tol=zero if tolerance is None else numbers.number(rung.round(tolerance)),
     )
 
 

@@ -1,0 +1,37 @@
+"""A console for the texts that a person reads: in the width of stdout, and kept until it is asked for."""
+
+from __future__ import annotations
+
+import sys
+import textwrap
+
+from rich.console import Console
+from rich.text import Text
+
+# Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
+PIPED_WIDTH = 140
+
+
+def print_line(console: Console, *parts: str | Text) -> None:
+    """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
+    console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+
+
+def print_indented(console: Console, label: str, text: str) -> None:
+    """A line behind its label; on a terminal what is too long goes on below itself."""
+    width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
+    for i, line in enumerate(textwrap.wrap(text, width)):
+        print_line(console, (label if i == 0 else " " * len(label)) + line)
+
+
+def new_console(piped_width: int = PIPED_WIDTH) -> Console:
+    """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
+    console = Console(markup=False, emoji=False, highlight=False)
+    if not sys.stdout.isatty():
+        console.width = piped_width
+    console.begin_capture()
+    return console
+
+
+def text_of(console: Console) -> str:
+    return console.end_capture().rstrip("\n")

@@ -1,0 +1,134 @@
+"""The cheapest setting that reaches an error, with a margin, over an ensemble of starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, Final
+
+from verify.models.problem import NotRepresentable, pose
+from verify.scenes.precision import Rung
+from verify.scenes.reader import load
+from verify.scenes.scene import Scene
+from verify.solvers.solver import Solver
+from verify.trade.front import sound_points
+from verify.trade.point import Point
+from verify.trade.setting import Setting
+from verify.trade.starts import nearby
+from verify.trade.timing import SEED
+from verify.trade.trade_off import TradeOff, Truths, trade_off
+
+# A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
+MARGIN: Final = 2.0
+
+
+class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
+    """No setting reaches the target; the text says what comes nearest."""
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """A setting ready to run: ``solver.solve(pose(scene, rung))``, or ``verify.run`` with both.
+
+    ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
+    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled.
+    """
+
+    solver: Solver
+    rung: Rung
+    target: float
+    error: float
+    margin: float
+    starts: int
+    seed: int
+    seconds: float
+
+    def document(self) -> dict[str, Any]:
+        return {
+            "solver": self.solver.name,
+            "setting": self.solver.setting,
+            "rung": self.rung.name,
+            "target": self.target,
+            "error": self.error,
+            "margin": self.margin,
+            "starts": self.starts,
+            "seed": self.seed,
+            "seconds": self.seconds,
+            "sentence": self.sentence,
+        }
+
+    @property
+    def sentence(self) -> str:
+        words = (self.solver.name, self.solver.setting, self.rung.name)
+        label = " ".join(word for word in words if word)
+        return (
+            f"To stay below {self.target:.3g}: {label}, {self.seconds:.3g} s per solve. Its largest "
+            f"error over {self.starts} starts (seed {self.seed}) is {self.error:.2g}; a margin of "
+            f"{self.margin:g} is kept."
+        )
+
+
+def recommend(
+    scene: Scene | str,
+    error: float,
+    asked: Sequence[Setting] | None = None,
+    seed: int = SEED,
+) -> Recommendation:
+    """The fastest setting measured here whose error stays below ``error`` on the scene and nearby.
+
+    The error is the largest of all tracked quantities, in the judge's units. Raises OutOfReach where
+    nothing reaches it, ValueError for what is no positive number, and scenes.faults.Refused for a
+    scene that cannot be read.
+    """
+    check_target(error)
+    scene = load(scene) if isinstance(scene, str) else scene
+    return recommended(trade_off(scene, asked, seed=seed), error)
+
+
+def check_target(error: float) -> None:
+    """Raise ValueError for a target that is no positive number."""
+    if not (error > 0 and isfinite(error)):
+        raise ValueError(f"expected a positive error, got {error!r}")
+
+
+def recommended(trade: TradeOff, error: float) -> Recommendation:
+    """The same from a trade that is measured already. Raises OutOfReach."""
+    scenes = nearby(trade.scene, trade.seed)
+    truths = Truths()
+    hopeful = [p for p in sound_points(trade.points) if MARGIN * p.error <= error]
+    for p in sorted(hopeful, key=lambda p: p.seconds):
+        worst = _largest(p, scenes, truths, error)
+        if worst is not None:
+            setting = p.timed.setting
+            return Recommendation(
+                *(setting.solver, setting.rung, error, worst, MARGIN),
+                *(1 + len(scenes), trade.seed, p.seconds),
+            )
+    raise OutOfReach(_nearest(trade, error))
+
+
+def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -> float | None:
+    """The largest error over all starts; None where one of them misses the target, or has no truth."""
+    setting, worst = p.timed.setting, p.error
+    for scene in scenes:
+        try:
+            problem = pose(scene, setting.rung)
+        except NotRepresentable:
+            return None
+        found = truths.accuracy(problem, setting.solver.solve(problem))
+        if found is None or not MARGIN * found.worst <= target:
+            return None
+        worst = max(worst, found.worst)
+    return worst
+
+
+def _nearest(trade: TradeOff, error: float) -> str:
+    asked = f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {trade.scene.name}"
+    sound = sound_points(trade.points)
+    if not sound:
+        return f"{asked}; none gave a sound answer"
+    best = min(sound, key=lambda p: p.error)
+    return (
+        f"{asked}; the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
+    )

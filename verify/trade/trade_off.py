@@ -1,0 +1,108 @@
+"""The trade of one scene: every setting solved, timed, compared with the truth, and the front of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+from verify.exact.solution import Unsettled
+from verify.judge.provenance import provenance
+from verify.models.problem import NotRepresentable, Problem, pose
+from verify.scenes.precision import Rung
+from verify.scenes.scene import Scene
+from verify.solvers.trajectory import Outcome, Trajectory
+from verify.trade.accuracy import Accuracy, Truth
+from verify.trade.front import front, front_sentences, request_sentences
+from verify.trade.point import Point, point
+from verify.trade.setting import Setting, settings
+from verify.trade.timing import REPEATS, SEED, WHAT_IS_TIMED, Clock, Timed, timed
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """The points of one scene, all of one run, in the order of the settings."""
+
+    scene: Scene
+    points: tuple[Point, ...]
+    repeats: int
+    seed: int
+
+    @property
+    def front(self) -> list[Point]:
+        return front(self.points)
+
+    def document(self) -> dict[str, Any]:
+        return {
+            "scene": self.scene.name,
+            "track": sorted(self.scene.track),
+            "points": [p.row() for p in self.points],
+            "front": [p.label for p in self.front],
+            "sentences": front_sentences(self.points),
+            "requests": request_sentences(self.points),
+            "timing": {
+                "repeats": self.repeats,
+                "seed": self.seed,
+                "order": "each round shuffled anew",
+                "unit": "s",
+                "of": WHAT_IS_TIMED,
+            },
+            "provenance": provenance(self.scene.digest),
+        }
+
+
+def trade_off(
+    scene: Scene,
+    asked: Sequence[Setting] | None = None,
+    repeats: int = REPEATS,
+    seed: int = SEED,
+    clock: Clock = perf_counter,
+) -> TradeOff:
+    """Measure these settings on the scene, or all there are."""
+    asked = settings(scene) if asked is None else asked
+    posed, refused = _posed(scene, asked)
+    measured = {one.setting: one for one in timed(posed, repeats, seed, clock)}
+    measured |= {one.setting: one for one in refused}
+    truths = Truths()
+    found = [
+        point(measured[setting], truths.accuracy(posed.get(setting), measured[setting].trajectory))
+        for setting in asked
+    ]
+    return TradeOff(scene, tuple(found), repeats, seed)
+
+
+class Truths:
+    """The truth of each scene and rung, found once."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[Scene, Rung], Truth | None] = {}
+
+    def accuracy(self, problem: Problem | None, trajectory: Trajectory) -> Accuracy | None:
+        """None of a run that did not finish, and where the truth cannot be had."""
+        if problem is None or trajectory.outcome is not Outcome.FINISHED:
+            return None
+        key = problem.scene, problem.rung
+        if key not in self._found:
+            try:
+                self._found[key] = Truth(problem)
+            except Unsettled:
+                self._found[key] = None
+        truth = self._found[key]
+        return truth.accuracy(trajectory) if truth is not None else None
+
+
+def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Problem], list[Timed]]:
+    """The problem of every setting that can be begun, and the others with the reason."""
+    posed: dict[Setting, Problem] = {}
+    refused: list[Timed] = []
+    for setting in asked:
+        try:
+            reason = setting.solver.unavailable(setting.rung)
+            if not reason:
+                posed[setting] = pose(scene, setting.rung)
+                continue
+        except NotRepresentable as fault:
+            reason = str(fault)
+        refused.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=reason), 0.0))
+    return posed, refused
