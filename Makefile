@@ -5,14 +5,21 @@ PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3
 BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
+RUNGS = f32 f64 f80 f128 mp237
 
-.PHONY: help verify test test-all bench reports check-reports lint clean
+.PHONY: help verify verify-all test test-all bench reports tradeoff check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
-verify: $(INSTALLED)  ## Run the standard set of scenes and print its verdicts (writes to reports/local)
-	@$(BIN)/taylor-verify run --out reports/local
+# Both are run, whatever the first one finds.
+verify: $(INSTALLED)  ## Run the standard set on all rungs, the extremes on f64; print the verdicts (to reports/local)
+	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
+		$(BIN)/taylor-verify run extremes --out reports/local/extremes && exit $$status
+
+verify-all: $(INSTALLED)  ## The same with the extremes on all rungs
+	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
+		$(BIN)/taylor-verify run extremes --rung $(RUNGS) --out reports/local/extremes && exit $$status
 
 test: lint  ## Check style and types, then run all but the slow tests
 	@$(BIN)/python -m pytest -n 2 -m 'not slow'
@@ -23,10 +30,15 @@ test-all: lint  ## The same with the slow tests
 bench: $(INSTALLED)  ## Time the exact solutions, in ratios within one run
 	@$(BIN)/python tests/bench.py
 
-reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, and reports/reference
+reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish --controls > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish --reference > /dev/null
+	@$(BIN)/taylor-verify publish --claims > /dev/null
+
+# Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
+tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)
+	@$(BIN)/taylor-verify publish --tradeoff
 
 # The rungs of hardware: they differ most between processors, and the wider ones take longer.
 check-reports: $(INSTALLED)  ## Run part of what is published anew: has a number left its rounding class?

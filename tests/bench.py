@@ -1,4 +1,6 @@
-"""What the exact solutions cost, as times of one run and as ratios within it: `make bench`.
+"""What the exact solutions cost, and the suite around a propagation: `make bench`.
+
+Times are those of one run, and ratios are within it.
 
 No test asserts a time. What is compared is taken in turns within one process, several times over, with
 the garbage collector off; in processor time, so that a neighbour on the machine counts little.
@@ -16,12 +18,20 @@ from fractions import Fraction
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+from unittest.mock import patch
 
+from verify.exact.elements import elements
 from verify.exact.route import solution
 from verify.exact.sensitivity import sensitivity
 from verify.exact.solution import Solution
+from verify.models.problem import pose
+from verify.scenes.instants import EquallySpaced
+from verify.scenes.motion import Clock
+from verify.scenes.precision import rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
+from verify.solvers.taylor import driver
+from verify.solvers.taylor.driver import Taylor
 
 ROUNDS = 5
 FEW_TIMES, FEW_DIGITS = 40, 50
@@ -36,6 +46,11 @@ ELLIPTIC = (
     "kirchhoff/two-real-roots",
     "kirchhoff/cubic",
 )
+SAMPLES, RUNGS = 10_000, ("f64", "f80", "mp237")
+PROPAGATED = {
+    "euler/generic": frozenset[str](),
+    "kirchhoff/whole-motion": frozenset({"attitude", "centre"}),
+}
 WHOLE = ("euler/with-attitude", "kirchhoff/whole-motion")
 
 
@@ -146,6 +161,54 @@ def derivatives(name: str) -> None:
     print(line(name, f"{every.best:.2f}", f"{every.median:.2f}", f"{every.best / once.best:.1f}"))
 
 
+# The suite around the integrator.
+
+
+def lengthened(scene: Scene, periods: int | None) -> Scene:
+    """Ten thousand samples over the scene's own span, or over so many periods of its motion."""
+    start, end = scene.clock.start, scene.clock.instants[-1]
+    if periods is not None:
+        found = {number.name: number.value for number in elements(scene, 15).numbers}
+        end = start + periods * Fraction(str(found["period"])).limit_denominator(1000)
+    step = (end - start) / (SAMPLES - 1)
+    return replace(scene, clock=Clock(start, EquallySpaced(start, step, SAMPLES)))
+
+
+def around_the_integrator(name: str, track: frozenset[str], periods: int | None) -> None:
+    """Posing and solving, once compiled, over the time inside heyoka's propagate_grid: the excess.
+
+    No sample is made an exact number: that is the judge's wish, and is shown apart.
+    """
+    scene = lengthened(replace(load(name), track=track), periods)
+    for rung_name in RUNGS if periods is None else RUNGS[:2]:
+        onto, solver = rung(rung_name), Taylor()
+        solver.solve(pose(scene, onto))
+        excesses, insides, exact = [], [], []
+        for _ in range(3 if rung_name.startswith("mp") else 15):
+            gc.collect()
+            begin = time.process_time()
+            found = solver.solve(pose(scene, onto))
+            spent = time.process_time() - begin
+            inside = found.inner_seconds
+            assert inside is not None
+            insides.append(inside)
+            excesses.append((spent - inside) / inside)
+        if not rung_name.startswith("mp"):
+            begin = time.process_time()
+            list(found.quantities.values())
+            exact.append(time.process_time() - begin)
+        print(
+            line(
+                f"{name}, {'own span' if periods is None else f'{periods} periods'}, {rung_name}",
+                f"{1e3 * statistics.median(insides):.2f}",
+                f"{statistics.median(excesses):.1%}",
+                f"{min(excesses):.1%}",
+                f"{found.steps}",
+                *(f"{1e3 * seconds:.0f}" for seconds in exact),
+            )
+        )
+
+
 def line(name: str, *cells: str) -> str:
     return f"{name:38}" + "".join(f"{cell:>11}" for cell in cells)
 
@@ -176,6 +239,14 @@ def main() -> None:
     print(line("", "seconds", "median", "set-up, ms", "a time, ms"))
     for name in WHOLE:
         many_times(name)
+
+    print(f"\nWhat the suite adds to a propagation of {SAMPLES:,} samples, once compiled.")
+    print(line("", "inside, ms", "added", "best", "steps", "exact, ms"))
+    # What the driver times inside is processor time too, as all else here.
+    with patch.object(driver, "perf_counter", time.process_time):
+        for name, track in PROPAGATED.items():
+            for periods in (None, 1000):
+                around_the_integrator(name, track, periods)
 
     print(f"\nSeconds of all derivatives by start and body, {SENSITIVE_TIMES} times,", end=" ")
     print(f"{SENSITIVE_DIGITS} digits; as a multiple of one motion.")

@@ -72,6 +72,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     found = json.loads(capsys.readouterr().out)
     assert found == {
         "scenes": list(library.names()),
+        "extremes": list(library.names("extremes")),
         "solvers": list(registry.NAMES),
         "rungs": list(LADDER),
     }
@@ -182,7 +183,8 @@ def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
     """`run` alone asks for every shipped scene on f32 f64 f80 f128 mp237, a named one for f64."""
     asked: list[Any] = []
 
-    def judge(scenes: list[str], solver: str, rungs: list[str]) -> list[Any]:
+    def judge(scenes: list[str], solver: str, rungs: list[str], without: object) -> list[Any]:
+        assert not without
         asked.append((tuple(scenes), solver, tuple(rungs)))
         return []
 

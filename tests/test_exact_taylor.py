@@ -165,6 +165,17 @@ def test_arcs_are_motions_of_their_own() -> None:
                 assert largest(together[name][k] - alone[name][0]) <= mpf(10) ** -30
 
 
+@pytest.mark.parametrize("size", [Fraction(1, 2**40), Fraction(2**20)], ids=["small", "large"])
+def test_arcs_begin_at_any_size(size: Fraction) -> None:
+    """An arc has its digits also where its state is far smaller or larger than the scene's own."""
+    scene = euler(RigidBody(TENSOR))
+    start = Spin(vector(size, -size, size / 2))
+    (found,) = arcs(scene, [start], [1 / size], 30)["omega"]
+    (alone,) = TaylorSolution(replace(scene, initial=start)).motion([1 / size], 30)["omega"]
+    with mp.workdps(50):
+        assert largest(found - alone) <= mpf(10) ** -30 * largest(alone)
+
+
 def test_times_come_in_any_order() -> None:
     """Rows follow the times asked for: of both signs, unsorted, repeated, zero."""
     times = [Fraction(2), Fraction(-1), Fraction(0), Fraction(1, 3), Fraction(2)]

@@ -79,6 +79,8 @@ WALLS: Final = {
     "exact": {"models", "solvers", "judge", "publish", "controls"},
     "models": {"exact", "judge", "solvers"},
     "solvers": {"exact", "judge"},
+    # The ledger holds the texts to the truth, and to no form of their equations that a solver is given.
+    "claims": {"models", "solvers", "judge", "publish", "controls"},
 }
 
 

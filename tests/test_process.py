@@ -230,6 +230,14 @@ MISANSWERS = [
     ({"steps": -1}, "@ steps"),
     ({"steps": "many"}, "@ steps"),
     ({"evaluations": 1.5}, "@ evaluations"),
+    ({"seconds": -0.5}, "@ seconds"),
+    ({"seconds": "soon"}, "@ seconds"),
+    ({"seconds": True}, "@ seconds"),
+    ({"seconds": None}, "@ seconds"),
+    ({"seconds": math.nan}, "@ seconds"),
+    ({"seconds": 1e300}, "@ seconds"),
+    ({"seconds": 0, "compile_seconds": -1}, "@ compile_seconds"),
+    ({"compile_seconds": 1}, "expected seconds beside compile_seconds"),
 ]
 
 
@@ -299,6 +307,21 @@ def test_a_sound_program_is_heard(tmp_path: Path) -> None:
     ]
 
 
+def test_a_program_may_time_itself(tmp_path: Path) -> None:
+    """What a program states as seconds and compile_seconds is what its trajectory took."""
+    told = f"{SOUND}found.update(seconds=2e-3, compile_seconds=1e-3)\n{TELL}"
+    found = solve(tmp_path, f"import time; time.sleep(3e-3)\n{told}")
+    assert found.outcome is Outcome.FINISHED
+    assert (found.seconds, found.compile_seconds) == (2e-3, 1e-3)
+
+
+def test_a_program_that_does_not_time_itself_is_timed_as_a_whole(tmp_path: Path) -> None:
+    """Without seconds in the answer, they are those of the run, the start of the program included."""
+    found = solve(tmp_path, f"import time; time.sleep(0.2)\n{SOUND}{TELL}")
+    assert found.seconds >= 0.2
+    assert found.compile_seconds == 0
+
+
 FAULTS = [
     ("import sys; sys.exit('no licence')", Outcome.CRASHED, "exit status 1; stderr: no licence"),
     (f"{SOUND}{TELL}sys.stdout.flush(); os.abort()", Outcome.CRASHED, "signal SIGABRT"),
@@ -309,6 +332,11 @@ FAULTS = [
     (f"{SOUND}print('1e-3 done'); {TELL}", Outcome.MISANSWERED, "no JSON"),
     (f"{SOUND}found['w1'][1] = float('nan'); {TELL}", Outcome.NON_FINITE, "nan @ w1[1]"),
     (f"{SOUND}found['steps'] = 10**15; {TELL}", Outcome.MISANSWERED, "steps in"),
+    (f"{SOUND}found['seconds'] = 1000; {TELL}", Outcome.MISANSWERED, "got 1e+03 + 0 @ seconds"),
+    (
+        f"{SOUND}found.update(seconds=0, compile_seconds=1000); {TELL}",
+        *(Outcome.MISANSWERED, "got 0 + 1e+03 @ seconds"),
+    ),
     ("while True: print('x' * 65536)", Outcome.MISANSWERED, "bytes on standard output"),
     ("pass", Outcome.MISANSWERED, "got nothing"),
 ]

@@ -1,6 +1,7 @@
 """heyoka driven safely: exact numbers in and out, no silent wrong answer, no unfinished score."""
 
 import math
+import pickle
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -15,9 +16,11 @@ from mpmath import mp
 from verify.exact.route import solution
 from verify.judge.verdict import Status
 from verify.models.problem import Problem, pose
+from verify.models.times import rounded_times
 from verify.run import run
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
+from verify.scenes.instants import EquallySpaced
 from verify.scenes.motion import Clock, Spin
 from verify.scenes.precision import LADDER, power_of_two, rung
 from verify.scenes.reader import load
@@ -200,7 +203,7 @@ def test_unfinished_run_fails_without_a_number(
     """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
     from verify.solvers.taylor import driver
 
-    monkeypatch.setattr(driver, "_propagate", lambda integrator, problem: (outcome, 7, []))
+    monkeypatch.setattr(driver, "_propagate", lambda integrator, problem: (outcome, 7, [], 0.0))
     (verdict,) = run("euler/generic", "taylor", "f64").verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == outcome.value
@@ -301,3 +304,104 @@ def test_what_would_take_days_is_not_begun() -> None:
     trajectory = Taylor().solve(pose(whirling, rung("f64")))
     assert trajectory.outcome is Outcome.STEP_LIMIT
     assert trajectory.steps == 0
+
+
+# As much work as the scene asks for, and no more.
+
+
+def sampled(scene: Scene, count: int) -> Scene:
+    """The same span at so many equally spaced instants."""
+    clock = scene.clock
+    span = clock.instants[-1] - clock.start
+    return replace(
+        scene,
+        clock=Clock(clock.start, EquallySpaced(clock.start, span / (count - 1), count)),
+    )
+
+
+@pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
+def test_samples_cost_no_steps(name: str) -> None:
+    """Between the same 24 looks at the rate, 25 samples and 4801 take the same steps, to the bit.
+
+    Samples are read off the steps: if a step ended at each, there would be thousands.
+    """
+    few, many = (
+        Taylor().solve(pose(sampled(load(name), n), rung("f64"))) for n in (25, 24 * 200 + 1)
+    )
+    assert few.steps == many.steps
+    for quantity, rows in few.quantities.items():
+        assert np.array_equal(rows[-1], many.quantities[quantity][-1])
+
+
+def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
+    """Coefficients are parameters: another body, start and span compile nothing."""
+    from verify.solvers.taylor import driver
+
+    scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))
+    moments = tensors.diagonal((Fraction(1), Fraction(2), Fraction(17, 5)))
+    other = replace(scene, body=RigidBody(moments), initial=Spin((Fraction(2),) * 3))
+    problems = [pose(asked, rung("f64")) for asked in (scene, other)]
+    assert problems[0].form == problems[1].form
+    assert problems[0].parameters != problems[1].parameters
+    Taylor().solve(problems[0])
+    before = driver.compiled.cache_info()
+    Taylor().solve(problems[1])
+    after = driver.compiled.cache_info()
+    assert (after.misses, after.hits) == (before.misses, before.hits + 1)
+
+
+def test_exact_numbers_are_made_when_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solve makes no rational of its samples or of their times; who looks gets all of them."""
+    from verify.solvers import trajectory
+
+    calls = []
+    formed = trajectory.from_scaled
+    monkeypatch.setattr(
+        trajectory, "from_scaled", lambda *given: calls.append(given) or formed(*given)
+    )
+    problem = pose(sampled(load("euler/with-attitude"), 1000), rung("f64"))
+    found = Taylor().solve(problem)
+    assert (len(found.quantities), set(found.quantities)) == (2, {"omega", "quaternion"})
+    assert not calls
+    assert "numbers" not in vars(problem.times)
+    assert len(found.quantities["omega"]) == 1000
+    assert len(found.motion(80)["attitude"]) == 1000
+    assert len(calls) == 1
+
+
+@given(
+    first=st.fractions(-1000, 1000, max_denominator=10**6),
+    step=st.fractions("1/1000000", 1000, max_denominator=10**9),
+    sign=st.sampled_from([-1, 1]),
+    exponent=st.integers(-2000, 2000),
+    name=st.sampled_from(["f32", "f64", "f80", "f128", "mp237"]),
+)
+def test_equally_spaced_times_are_rounded_once_each(
+    first: Fraction, step: Fraction, sign: int, exponent: int, name: str
+) -> None:
+    """All at once or one by one, in any unit: the nearest number of the rung, or out of its range."""
+    clock = Clock(first, EquallySpaced(first, sign * step, 20))
+    unit, onto = power_of_two(exponent), rung(name)
+    try:
+        expected = tuple(onto.round(t / unit) for t in clock.elapsed)
+    except OverflowError:
+        with pytest.raises(OverflowError, match="outside the range"):
+            rounded_times(clock, unit, onto)
+        return
+    found = rounded_times(clock, unit, onto)
+    assert tuple(found) == expected
+    typed = arithmetic(onto)
+    assert [typed.exact(value) for value in typed.times(found)] == list(expected)
+
+
+def test_equally_spaced_instants_are_a_sequence_of_rationals() -> None:
+    """They compare, hash, slice, count from the end and travel like the tuple of the same numbers."""
+    spaced = EquallySpaced(Fraction(1, 3), Fraction(-2, 7), 5)
+    plain = tuple(Fraction(1, 3) - Fraction(2, 7) * k for k in range(5))
+    assert (spaced == plain, plain == spaced, hash(spaced) == hash(plain)) == (True,) * 3
+    assert spaced != plain[:4]
+    assert [spaced[k] for k in (-5, -1, 0, 4)] == [plain[k] for k in (-5, -1, 0, 4)]
+    assert spaced[1:4] == plain[1:4]
+    with pytest.raises(IndexError):
+        spaced[5]
+    assert pickle.loads(pickle.dumps(spaced)) == plain

@@ -57,7 +57,13 @@ class Scripted(Solver):
         if self.factor is not None:
             times = mp.mpf(self.factor.numerator)
             quantities = {name: values * times for name, values in quantities.items()}
-        return replace(made, quantities=quantities, seconds=self.seconds, compile_seconds=0.0)
+        return replace(
+            made,
+            quantities=quantities,
+            seconds=self.seconds,
+            compile_seconds=0.0,
+            inner_seconds=None,
+        )
 
 
 @dataclass(frozen=True)
@@ -443,3 +449,28 @@ def test_a_wrong_call_is_refused(
     """Exit status 2, and what was expected."""
     assert main(["tradeoff", *call]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_the_pictures_and_their_numbers_are_written_on_request(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """--out DIR holds the document that --json prints, and each picture for page and print."""
+    place = tmp_path / "out"
+    arguments = ["tradeoff", "euler/generic", "--solver", "geometric:splitting?step=0.1"]
+    assert main([*arguments, "--rung", "f64", "--repeats", "1", "--json", "--out", str(place)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert json.loads((place / "tradeoff.json").read_text()) == printed
+    names = {file.name for file in place.iterdir()}
+    expected = {
+        f"euler-generic-{what}.{end}" for what in ("time", "steps") for end in ("svg", "pdf")
+    }
+    assert expected < names
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_measuring(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Minutes of measuring do not end in a refusal to write."""
+    (tmp_path / "file").write_text("")
+    assert main(["tradeoff", "euler/generic", "--out", str(tmp_path / "file" / "out")]) == 2
+    assert "expected a folder that can be written" in capsys.readouterr().err

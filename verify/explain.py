@@ -11,6 +11,8 @@ from verify.exact.elements import Element, Elements, elements
 from verify.exact.solution import Unsettled
 from verify.judge.carrying import Carrying, carrying
 from verify.judge.verdict import Verdict
+from verify.models.form import Form
+from verify.models.general import in_general_form, whole_form
 from verify.models.problem import NotRepresentable, pose
 from verify.run import run
 from verify.scenes.precision import Rung
@@ -143,9 +145,41 @@ def _gate(verdict: Verdict) -> dict[str, Any]:
     return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
 
 
-def _cost(scene: Scene, rung: str) -> dict[str, int | None]:
+_COUNTED = ("states", "parameters", "sums", "products", "quotients")
+
+
+def _cost(scene: Scene, rung: str) -> dict[str, Any]:
+    """What an evaluation of the equations takes, why they are these, and what the others would take.
+
+    ``general`` counts the general equations of all that the model has, ``same`` those of the same
+    body for the same quantities, as far as their coefficients are not zero.
+    """
     try:
-        form = pose(scene, rung_named(rung)).form
+        problem = pose(scene, rung_named(rung))
     except NotRepresentable:
-        return dict.fromkeys(("states", "sums", "products", "quotients"))
-    return {"states": len(form.states), **form.operations()}
+        unknown = dict.fromkeys(_COUNTED)
+        return {**unknown, "general": unknown, "same": unknown, "because": []}
+    return {
+        **_counts(problem.form),
+        "general": _counts(whole_form(scene.model)),
+        "same": _counts(in_general_form(problem).form),
+        "because": [*problem.because, *_left_out(scene)],
+    }
+
+
+def _counts(form: Form) -> dict[str, Any]:
+    operations = form.operations()
+    return {
+        "states": len(form.states),
+        "parameters": len(form.entering()),
+        **{name: operations[name] for name in ("sums", "products", "quotients")},
+    }
+
+
+def _left_out(scene: Scene) -> list[str]:
+    """What the scene does not ask for."""
+    possible = ("attitude",) if scene.model == "euler" else ("attitude", "centre")
+    found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
+    if scene.body.is_free:
+        found.append("no moment" if scene.model == "euler" else "no force and no couple")
+    return found

@@ -35,6 +35,8 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
         problem = pose(scene, rung)
     except NotRepresentable as reason:
         return unjudged(scene, solver, rung, Status.REFUSED, str(reason))
+    if unsuited := solver.unsuited(problem):
+        return unjudged(scene, solver, rung, Status.UNAVAILABLE, unsuited)
     costs = Costs()
     with costs.of(SOLVING):
         trajectory = solver.solve(problem)

@@ -16,6 +16,6 @@ class Answer(NamedTuple):
     """``document`` as JSON or else ``text()`` is for stdout; ``messages`` follow on stderr."""
 
     status: int
-    document: dict[str, Any]
+    document: dict[str, Any] | list[dict[str, Any]]
     text: Callable[[], str]
     messages: Sequence[str] = ()

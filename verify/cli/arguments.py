@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from verify.cli import ci, tradeoff, verbs
+from verify.cli import ci, claims, tradeoff, verbs
 from verify.cli.answer import Answer
 
 _DEFAULT_DIGITS = 30
@@ -73,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_check(found)
     _add_explain(found)
     _add_tradeoff(found)
+    _add_claims(found)
     _add_publish(found)
     return parser
 
@@ -101,7 +102,12 @@ def _add_list(found: Any) -> None:
 def _add_run(found: Any) -> None:
     what = "solve scenes, compare with the exact motion, judge"
     verb = _verb(found, "run", what, "run euler/generic --rung f32 f64", verbs.run)
-    verb.add_argument("scenes", nargs="*", metavar="SCENE", help="default: the standard set")
+    verb.add_argument(
+        "scenes",
+        nargs="*",
+        metavar="SCENE",
+        help="a folder of shipped scenes (extremes) is all of them; default: the standard set",
+    )
     verb.add_argument("--solver", default="taylor", metavar="S", help="default: taylor")
     verb.add_argument(
         "--rung",
@@ -187,10 +193,45 @@ def _add_tradeoff(found: Any) -> None:
         "--rung", nargs="+", action="append", metavar="R", help="default: f32 f64 f80 f128"
     )
     verb.add_argument(
+        "--solver",
+        action="append",
+        metavar="S",
+        help="measure this setting of a solver and no others but taylor's, which are the yardstick; "
+        'may be repeated: --solver "process:./mine" --solver "geometric:splitting?step=0.01"',
+    )
+    verb.add_argument(
+        "--outside",
+        action="store_true",
+        help="measure the integrators of other libraries too, each in an environment of its own, "
+        "which is made the first time (a download)",
+    )
+    verb.add_argument(
+        "--cold",
+        action="store_true",
+        help="also start each setting in a new process with nothing compiled, and tell importing, "
+        "compiling and solving apart",
+    )
+    verb.add_argument(
         "--repeats", type=int, default=5, metavar="N", help="timed solves of a setting; default: 5"
     )
     verb.add_argument(
         "--seed", type=int, default=1, metavar="N", help="of the order and the starts; default: 1"
+    )
+    verb.add_argument(
+        "--out", metavar="DIR", help="write the numbers and the work-precision pictures there"
+    )
+
+
+def _add_claims(found: Any) -> None:
+    what = "check every numbered equation and every claim of the two source texts"
+    example = 'claims "hydromechanics 49 (17)"'
+    verb = _verb(found, "claims", what, example, claims.claims)
+    verb.add_argument(
+        "ids",
+        nargs="*",
+        metavar="ID",
+        help='"heinbockel (2.2.70)", its number "(2.2.70)", or a whole text: "hydromechanics 48"; '
+        "default: all",
     )
 
 
@@ -210,6 +251,44 @@ def _add_publish(found: Any) -> None:
     made.add_argument(
         "--controls",
         action="store_true",
-        help="instead run the solvers that are broken on purpose, and write what each gate sees of "
-        "them into DIR/data and DIR/tables",
+        help="instead run the solvers that are broken on purpose and the calls of heyoka that go "
+        "wrong, and write what each gate sees of them into DIR/data and DIR/tables",
+    )
+    made.add_argument(
+        "--claims",
+        action="store_true",
+        help="instead run the ledger of both source texts, and write DIR/claims.md, the errata in front",
+    )
+    made.add_argument(
+        "--prices",
+        action="store_true",
+        help="instead measure what each thing that a scene may ask for costs (minutes; a quiet "
+        "machine), and write DIR/data/prices.json and DIR/tables/prices.md",
+    )
+    made.add_argument(
+        "--tradeoff",
+        action="store_true",
+        help="instead measure speed against accuracy on four scenes, in fresh processes (minutes; a "
+        "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
+    )
+    made.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead follow ensembles of starts over decades of time (ten minutes, all cores), and "
+        "write how each error grows into DIR/data/growth.json and DIR/tables/growth.md; stopped, it "
+        "goes on from DIR/local/growth",
+    )
+    verb.add_argument(
+        "--periods", metavar="N", help="with --growth: follow none for more than N periods"
+    )
+    verb.add_argument(
+        "--long",
+        action="store_true",
+        help="with --growth: the one ensemble of 100 million periods instead (an hour or more)",
+    )
+    verb.add_argument(
+        "--outside",
+        action="store_true",
+        help="with --tradeoff: compiled integrators of other libraries too, each solve a program of "
+        "its own that compiles first (a quarter of an hour more)",
     )

@@ -13,7 +13,8 @@ from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, WrongCall
 from verify.cli.streams import tell_runner
 
 if TYPE_CHECKING:
-    from verify.judge.baseline import Held
+    from verify.expected import Held
+    from verify.judge import baseline
     from verify.judge.rounding_class import Departure
     from verify.judge.verdict import Status, Verdict
     from verify.publish.ci.case import Remark
@@ -69,16 +70,21 @@ def outputs(options: argparse.Namespace) -> Outputs:
 
 
 def tell(
-    asked: Outputs, verdicts: Sequence[Verdict], status: int, of: Iterable[Verdict] | None = None
+    asked: Outputs,
+    verdicts: Sequence[Verdict],
+    status: int,
+    of: Iterable[Verdict] | None = None,
+    expected: Held | None = None,
 ) -> Told:
     """Compare with the baseline and write what was asked for.
 
     ``status`` is that of the verdicts, ``of`` the rows of the baseline that were asked for again
-    (all, unless given).
+    (all, unless given). What is not a pass and came as ``expected`` is left out of what is written,
+    because a CI knows no such thing; what did not come as expected is remarked on.
     """
     document: dict[str, Any] = {}
     messages: list[str] = []
-    remarks: list[Remark] = []
+    remarks = _unexpected(expected, verdicts) if expected is not None else []
     if asked.baseline is not None:
         from verify.judge.baseline import hold
 
@@ -86,11 +92,12 @@ def tell(
         held = hold(before, verdicts)
         document["baseline"] = _document(asked.baseline_file, held)
         messages += _messages(asked.baseline_file, held)
-        remarks = _remarks(held, [*verdicts, *before])
+        remarks += _remarks(held, [*verdicts, *before])
         status = graver(status, held.status)
+    shown = [v for v in verdicts if expected is None or expected.met(v) is None]
     for write in (_write_junit, _write_github):
         try:
-            messages += write(asked, verdicts, remarks)
+            messages += write(asked, shown, remarks)
         except OSError as error:
             # A run that took hours is shown in any case.
             messages.append(f"expected to write, got {error.strerror} @ {error.filename}")
@@ -130,6 +137,19 @@ def _write_github(asked: Outputs, verdicts: Sequence[Verdict], remarks: list[Rem
     return []
 
 
+def _unexpected(expected: Held, verdicts: Iterable[Verdict]) -> list[Remark]:
+    """A failure for each row that is not as expected, its solver's name taken from its run."""
+    from verify.judge.verdict import Status
+    from verify.publish.ci.case import Remark
+
+    solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in verdicts}
+    return [
+        Remark(scene, *solvers[scene, rung], rung, quantity, Status.FAIL, str(mismatch))
+        for mismatch in expected.mismatches
+        for scene, rung, quantity in (mismatch.row,)
+    ]
+
+
 # The baseline.
 
 
@@ -151,7 +171,7 @@ def _baseline(file: str) -> tuple[Verdict, ...]:
         raise WrongCall(f"{error} (--baseline)") from error
 
 
-def _document(file: str, held: Held) -> dict[str, Any]:
+def _document(file: str, held: baseline.Held) -> dict[str, Any]:
     return {
         "file": file,
         "compared": held.compared,
@@ -161,7 +181,7 @@ def _document(file: str, held: Held) -> dict[str, Any]:
     }
 
 
-def _messages(file: str, held: Held) -> list[str]:
+def _messages(file: str, held: baseline.Held) -> list[str]:
     told = [f"regression: {departure}" for departure in held.regressions]
     told += [f"not comparable: {departure}" for departure in held.undecided]
     told += [f"changed, no regression: {departure}" for departure in held.changes[:_MOST_CHANGES]]
@@ -174,7 +194,7 @@ def _messages(file: str, held: Held) -> list[str]:
     return [*told, rows]
 
 
-def _remarks(held: Held, rows: Iterable[Verdict]) -> list[Remark]:
+def _remarks(held: baseline.Held, rows: Iterable[Verdict]) -> list[Remark]:
     from verify.judge.verdict import Status
 
     # A departure names its row by scene, rung and quantity: a command has one solver.

@@ -13,6 +13,7 @@ from rich.text import Text
 from verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
 
 if TYPE_CHECKING:
+    from verify.expected import Held
     from verify.judge.answer import FileJudgement
     from verify.judge.verdict import Verdict
 
@@ -47,7 +48,7 @@ def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) ->
 # run
 
 
-def verdicts_text(verdicts: Sequence[Verdict]) -> str:
+def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
     """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
     from verify.judge.verdict import summary
 
@@ -67,10 +68,23 @@ def verdicts_text(verdicts: Sequence[Verdict]) -> str:
         print_line(console)
     for verdict in others:
         place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
-        print_line(console, _status(verdict.verdict.value), f"  {place}: {_told(verdict)}")
+        expected = held.met(verdict)
+        told = _told(verdict) if expected is None else f"as expected: {expected.why}"
+        print_line(console, _status(verdict.verdict.value), f"  {place}: {told}")
+    for mismatch in held.mismatches:
+        print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
-    print_line(console, f"\n{counts}")
+    print_line(console, f"\n{counts}{_as_expected(verdicts, held)}")
     return text_of(console)
+
+
+def _as_expected(verdicts: Sequence[Verdict], held: Held) -> str:
+    """How many of the rows that are no pass are what the extremes are expected to answer."""
+    met = sum(held.met(verdict) is not None for verdict in verdicts)
+    wrong = len(held.mismatches)
+    return (f"; {met} of them as expected" if met else "") + (
+        f"; {wrong} not as expected" if wrong else ""
+    )
 
 
 def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
@@ -295,13 +309,24 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     truth = f"  route {found['route']}, {found['truth_digits']} digits"
     print_line(console, Text("truth", "bold"), truth)
     order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
+    for i, sentence in enumerate(cost["because"]):
+        print_indented(console, "chosen   " if i == 0 else "         ", sentence)
     print_line(
         console,
         Text("cost", "bold"),
-        f"   {cost['states']} states; an evaluation takes {cost['products']} products, "
-        f"{cost['sums']} sums and {cost['quotients']} quotients\n"
+        f"   {_counted(cost)}\n"
+        f"       general equations of this body: {_counted(cost['same'])}\n"
+        f"       with all that the model has: {_counted(cost['general'])}\n"
         f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
         f"{cost['seconds']:.3g} s",
+    )
+
+
+def _counted(cost: Mapping[str, Any]) -> str:
+    """What one evaluation of the equations takes."""
+    return (
+        f"{cost['states']} states; an evaluation takes {cost['products']} products, "
+        f"{cost['sums']} sums and {cost['quotients']} quotients"
     )
 
 

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
-from verify.cli.verbs import known_rungs, read_scenes, read_time
+from verify.cli.verbs import known_rungs, read_scenes, read_time, writable
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from verify.scenes.scene import Scene
+    from verify.trade.setting import Setting
     from verify.trade.trade_off import TradeOff
 
 
@@ -17,7 +22,7 @@ def tradeoff(options: argparse.Namespace) -> Answer:
     """Speed against accuracy, and with a target the cheapest setting that reaches it."""
     from verify.cli.progress import working
     from verify.cli.tradeoff_text import tradeoff_text
-    from verify.trade.setting import RUNGS, settings
+    from verify.trade.setting import RUNGS
     from verify.trade.timing import cold_caches
     from verify.trade.trade_off import trade_off
 
@@ -26,20 +31,94 @@ def tradeoff(options: argparse.Namespace) -> Answer:
     if not options.repeats >= 1:
         raise WrongCall(f"expected --repeats of at least 1, got {options.repeats}")
     target = _target(options.target)
+    place = _drawable(options.out) if options.out is not None else None
     rungs = known_rungs(options.rung or RUNGS)
+    asked = _asked(options, rungs)
+    if options.outside:
+        _make_environments()
     found: list[dict[str, Any]] = []
     missed: list[str] = []
     with cold_caches():
         for scene in read_scenes(list(dict.fromkeys(options.scenes))):
             with working(f"tradeoff {scene.name}"):
-                trade = trade_off(scene, settings(scene, rungs), options.repeats, options.seed)
+                trade = trade_off(scene, asked(scene), options.repeats, options.seed)
                 document = trade.document()
+                if options.cold:
+                    _add_cold(document, trade)
                 if target is not None:
                     document["recommendation"], because = _recommended(trade, target)
                     missed += because
                 found.append(document)
+    messages = list(missed)
+    if place is not None:
+        messages += [f"wrote {path}" for path in _draw(found, place)]
     status = UNDECIDED if missed else PASS
-    return Answer(status, {"scenes": found}, partial(tradeoff_text, found), missed)
+    return Answer(status, {"scenes": found}, partial(tradeoff_text, found), messages)
+
+
+def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
+    """The pictures of each scene and the document itself, whole or not at all."""
+    import json
+
+    from verify.publish.pictures import trade
+    from verify.publish.replacement import replace_files
+
+    sound = [one for one in found if any(row["standing"] == "sound" for row in one["points"])]
+    drawn = [path for one in sound for path in trade.draw(one, place)]
+    text = json.dumps({"scenes": found}, indent=1, allow_nan=False) + "\n"
+    return [*replace_files(place, {"tradeoff.json": text}), *drawn]
+
+
+def _drawable(folder: str) -> Path:
+    """The folder, known to be writable and matplotlib to be there before anything is measured."""
+    from importlib.util import find_spec
+
+    if find_spec("matplotlib") is None:
+        raise WrongCall(
+            "expected matplotlib (pip install 'taylor-verify[plots]'), got none @ --out"
+        )
+    return writable(folder)
+
+
+def _asked(
+    options: argparse.Namespace, rungs: Sequence[str]
+) -> Callable[[Scene], Sequence[Setting]]:
+    """Of a scene the settings to be measured: all there are, or those of --solver and --outside."""
+    from verify.trade.setting import chosen, outside, settings
+
+    try:
+        named = chosen(options.solver, rungs) if options.solver else ()
+        others = outside(rungs) if options.outside else ()
+    except ValueError as error:
+        raise WrongCall(f"{error} @ --solver") from error
+    if named:
+        return lambda scene: (*named, *others)
+    return lambda scene: (*settings(scene, rungs), *others)
+
+
+def _make_environments() -> None:
+    """Before anything is timed: a download is no part of a solve. What cannot be made says so later."""
+    from contextlib import suppress
+
+    from verify.cli.streams import say
+    from verify.solvers.entrant import entrants, prepare
+    from verify.solvers.environment import NotMade
+
+    for one in entrants():
+        if not one.unavailable:
+            with suppress(NotMade):
+                prepare(one.name, say)
+
+
+def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
+    """Put into each point that is sound what its first solve takes in a process of its own."""
+    from verify.trade.cold import cold
+    from verify.trade.front import sound_points
+
+    asked = [p.timed.setting for p in sound_points(trade.points)]
+    taken = {setting.label: one.row() for setting, one in cold(trade.scene, asked).items()}
+    for row, p in zip(document["points"], trade.points, strict=True):
+        row["cold"] = taken.get(p.label)
 
 
 def _target(text: str | None) -> float | None:

@@ -12,6 +12,11 @@ from rich.text import Text
 from verify.cli.console import new_console, print_indented, print_line, text_of
 
 _NOT_RUN = "not run"
+_HEADINGS = {
+    "The front": "sentences",
+    "The front of integrators": "integrators",
+    "Asked for and achieved": "requests",
+}
 
 
 def tradeoff_text(found: Sequence[Mapping[str, Any]]) -> str:
@@ -38,8 +43,13 @@ def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
         "* is on the front. first: the whole first solve, with compiling and start-up.",
     )
     print_line(console, f"seconds: {timing['of']}.")
-    heads = ("The front", "Asked for and achieved")
-    for heading, key in zip(heads, ("sentences", "requests"), strict=True):
+    if any("cold" in row for row in trade["points"]):
+        print_line(console)
+        print_line(console, Text("In a process of its own, nothing compiled", "bold"))
+        console.print(_cold_table(trade["points"]))
+    for heading, key in _HEADINGS.items():
+        if not trade.get(key):
+            continue
         print_line(console)
         print_line(console, Text(heading, "bold"))
         for sentence in trade[key]:
@@ -47,6 +57,7 @@ def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
     if trade.get("recommendation"):
         print_line(console)
         print_line(console, Text(trade["recommendation"]["sentence"], "green"))
+        print_line(console, f"  {trade['recommendation']['command']}")
     print_line(console)
 
 
@@ -71,6 +82,21 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
             *(_short(row[key]) for key in ("seconds", "spread", "first_seconds")),
             _short(row["compile_seconds"]),
         )
+    return table
+
+
+def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
+    """Seconds of the first solve of all, part by part, and the solve that needs no more of that."""
+    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
+    table.add_column("setting", no_wrap=True)
+    parts = ("process", "importing", "compiling", "solving", "rest", "whole")
+    for heading in (*parts, "later solves"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in points:
+        if row.get("cold"):
+            label = " ".join(w for w in (row["solver"], row["setting"], row["rung"]) if w)
+            cells = [*(row["cold"][part] for part in parts), row["seconds"]]
+            table.add_row(Text(label), *(_short(value) for value in cells))
     return table
 
 

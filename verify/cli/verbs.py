@@ -25,14 +25,15 @@ _MOST_DIGITS = 10_000
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
     from verify.cli.terminal import names_text
-    from verify.scenes.library import names
+    from verify.scenes.library import EXTREMES, names
     from verify.scenes.precision import LADDER
     from verify.scenes.reader import load
     from verify.solvers.registry import NAMES
 
     del options
-    titles = {name: load(name).title for name in names()}
-    found = {"scenes": list(titles), "solvers": list(NAMES), "rungs": list(LADDER)}
+    scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
+    titles = {name: load(name).title for group in scenes.values() for name in group}
+    found = {**scenes, "solvers": list(NAMES), "rungs": list(LADDER)}
     return Answer(PASS, found, partial(names_text, found, titles))
 
 
@@ -40,20 +41,25 @@ def run(options: argparse.Namespace) -> Answer:
     """The whole chain for some scenes, or for the standard set."""
     from verify.cli.ci import outputs, tell
     from verify.cli.terminal import verdicts_text
-    from verify.judge.verdict import exit_status, summary
-    from verify.scenes.library import names
+    from verify.expected import hold
+    from verify.judge.verdict import summary
+    from verify.scenes.expected import left_out
+    from verify.scenes.library import named, names
     from verify.scenes.precision import LADDER
 
     rungs = known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
     _known_solver(options.solver)
+    without = left_out(options.scenes, rungs)
+    options.scenes = [name for word in options.scenes for name in named(word)]
     scenes = list(dict.fromkeys(options.scenes)) or list(names())
     read_scenes(scenes)
-    folder = _writable(options.out) if options.out is not None else None
+    folder = writable(options.out) if options.out is not None else None
     published = _published(options, rungs) if options.against is not None else None
     asked = outputs(options)
-    results = _judge(scenes, options.solver, rungs)
+    results = _judge(scenes, options.solver, rungs, without)
     verdicts = [verdict for result in results for verdict in result.verdicts]
-    status, messages = exit_status(verdicts), []
+    held = hold(verdicts)
+    status, messages = held.exit_status(verdicts), []
     if folder is not None:
         try:
             messages = [_write_reports(folder, results)]
@@ -62,17 +68,22 @@ def run(options: argparse.Namespace) -> Answer:
             messages = [f"expected to write the reports, got {error} @ --out {folder}"]
             status = WRONG_CALL
     found: dict[str, Any] = {
-        "verdicts": [v.row() for v in verdicts],
+        "verdicts": [held.row(v) for v in verdicts],
         "summary": summary(verdicts),
     }
+    if held.expected:
+        found["expected"] = held.document(verdicts)
+    if without:
+        found["left_out"] = [{"scene": s, "rung": r, "why": w} for (s, r), w in without.items()]
     if published is not None:
         found["against"], told = _held_against(options.against, published, verdicts)
         messages += told
         status = _status_against(found["against"], status)
     again = _asked_again(asked.baseline or (), options, rungs)
-    to_ci = tell(asked, verdicts, status, again)
-    text = partial(verdicts_text, verdicts)
-    messages += [*to_ci.messages, *_dearest(scenes, results)]
+    to_ci = tell(asked, verdicts, status, again, held)
+    text = partial(verdicts_text, verdicts, held)
+    not_run = [f"not run: {scene} on {rung}: {why}" for (scene, rung), why in without.items()]
+    messages += [*to_ci.messages, *not_run, *_dearest(scenes, results)]
     return Answer(to_ci.status, {**found, **to_ci.document}, text, messages)
 
 
@@ -228,12 +239,32 @@ def explain(options: argparse.Namespace) -> Answer:
 
 def publish(options: argparse.Namespace) -> Answer:
     """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
+    from verify.cli import publishing
     from verify.publish import report
 
     if options.reference:
-        return _publish_reference(options.folder)
+        return publishing.references(writable(options.folder, "--from"))
     if options.controls:
-        return _publish_controls(options.folder)
+        return publishing.controls(writable(options.folder, "--from"))
+    if options.claims:
+        from verify.cli.claims import publish_claims
+
+        return publish_claims(writable(options.folder, "--from"))
+    if options.prices:
+        return publishing.prices(writable(options.folder, "--from"))
+    if options.tradeoff:
+        from verify.cli.tradeoff_publish import publish_tradeoff
+
+        return publish_tradeoff(writable(options.folder, "--from"), options.outside)
+    if options.growth:
+        from verify.cli.growth_publish import publish_growth
+
+        folder = writable(options.folder, "--from")
+        return publish_growth(folder, options.periods, options.long)
+    if options.periods is not None or options.long:
+        raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
+    if options.outside:
+        raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
     try:
         written = [str(path) for path in report.publish(options.folder)]
     except FileNotFoundError as error:
@@ -246,49 +277,25 @@ def publish(options: argparse.Namespace) -> Answer:
     return Answer(PASS, {"written": written}, lambda: "\n".join(written))
 
 
-def _publish_reference(name: str) -> Answer:
-    from verify.publish import reference_files
-    from verify.reference import references
-    from verify.scenes.library import names
-
-    folder = _writable(name, "--from")
-    scenes = names()
-    ended: list[str] = []
-
-    def finished(scene: str) -> None:
-        ended.append(scene)
-        say(f"{len(ended)}/{len(scenes)} {scene}")
-
-    documents = references(scenes, finished)
-    written = [str(path) for path in reference_files.write(folder, documents)]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
-
-
-def _publish_controls(name: str) -> Answer:
-    from verify.controls.defects import DEFECTS
-    from verify.controls.sight import document, sights
-    from verify.publish import report
-
-    folder = _writable(name, "--from")
-    ended: list[str] = []
-
-    def finished(defect: str) -> None:
-        ended.append(defect)
-        say(f"{len(ended)}/{len(DEFECTS)} {defect}")
-
-    found = document(sights(DEFECTS, finished))
-    written = [str(path) for path in report.publish_controls(folder, found)]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
-
-
 # What the verbs share.
 
 
-def _judge(scenes: Sequence[str], solver: str, rungs: Sequence[str]) -> list[Judgement]:
+def _judge(
+    scenes: Sequence[str],
+    solver: str,
+    rungs: Sequence[str],
+    left_out: Iterable[tuple[str, str]] = (),
+) -> list[Judgement]:
     from verify.cli.progress import advancing
     from verify.standard import jobs, run_all
 
-    asked = jobs(scenes, solver, rungs)
+    without = set(left_out)
+    asked = [
+        job
+        for scene in scenes
+        for job in jobs([scene], solver, [r for r in rungs if (scene, r) not in without])
+        if job.rungs
+    ]
     with advancing(len(asked)) as finished:
         return run_all(asked, finished)
 
@@ -345,7 +352,7 @@ def read_time(text: str) -> Fraction:
         raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
 
 
-def _writable(folder: str, option: str = "--out") -> Path:
+def writable(folder: str, option: str = "--out") -> Path:
     """The folder, tried out before hours of work end in a refusal to write, and not yet made."""
     import tempfile
     from pathlib import Path

@@ -22,7 +22,6 @@ from verify.models.euler import angular_velocity
 from verify.models.form import (
     Form,
     Named,
-    clebsch_equations,
     euler_equations,
     kirchhoff_equations,
 )
@@ -83,8 +82,8 @@ def _damped(problem: Problem) -> Problem:
 
 
 def in_21_coefficients(problem: Problem) -> Problem:
-    """The same body by the general equations, with y3 a state: Clebsch's have it for a constant."""
-    if problem.form.equations is not clebsch_equations:
+    """The same body by the general equations, with all of y: Clebsch's have one of it for a constant."""
+    if problem.form.equations is kirchhoff_equations:
         return problem
     six = problem.given.body
     units = problem.units
@@ -95,7 +94,7 @@ def in_21_coefficients(problem: Problem) -> Problem:
         "C": (six.angular, units.inverse_inertia),
     }
     known = {**problem.parameter, **problem.state}
-    known.setdefault("y3", Fraction(0))
+    known |= {name: known.get(name, Fraction(0)) for name in ("y1", "y2", "y3")}
     for letter, (matrix, unit) in matrices.items():
         known |= {f"{letter}{i + 1}{i + 1}": matrix[i][i] / unit for i in range(3)}
     frame = tuple(name for name in problem.form.states if name[0] in "ec")

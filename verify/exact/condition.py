@@ -13,6 +13,7 @@ from math import inf
 from typing import Any, Final
 
 import numpy as np
+from flint import fmpz_mat
 from mpmath import libmp, mp, mpf
 
 from verify.exact.inputs import momentum
@@ -88,37 +89,55 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
         table = transition_table(scene, exact, _units(scene), elapsed)
         if table is not None:
             return Transition(tuple(elapsed), table)
-    ladder = _TAYLOR_DIGITS if exact.route == "taylor" else _CLOSED_FORM_DIGITS
+    return Transition(tuple(elapsed), dict(_norms(next(settled(scene, elapsed)))))
+
+
+def settled(scene: Scene, elapsed: Sequence[Fraction]) -> Iterator[Derivatives]:
+    """Differences that conserve volume, at one precision after the other.
+
+    Raises Unsettled if there is none.
+    """
+    ladder = _TAYLOR_DIGITS if solution(scene).route == "taylor" else _CLOSED_FORM_DIGITS
+    is_settled = False
     for exponent, digits in ladder:
         found = derivatives(scene, elapsed, exponent, digits)
         if found.volume_error() <= _VOLUME_ERROR:
-            return Transition(tuple(elapsed), dict(_norms(found)))
-    raise Unsettled(
-        f"differences of the exact solution at {digits} digits do not conserve volume along the "
-        f"orbit of {scene.name}: its transition matrix is not known"
-    )
+            is_settled = True
+            yield found
+    if not is_settled:
+        raise Unsettled(
+            f"differences of the exact solution at {digits} digits do not conserve volume along the "
+            f"orbit of {scene.name}: its transition matrix is not known"
+        )
 
 
 @dataclass(frozen=True)
 class Derivatives:
     """The orbit's derivatives by its initial momentum, as object arrays of mpf.
 
+    They are differences of 10^-``exponent`` units, formed with ``digits`` digits.
     ``momentum`` (n, d, d), d = 3 or 6, ``others`` (n, 3, d) by name (omega, attitude, centre as
-    tracked) and the ``centre`` itself (n, 3), empty where untracked. Momenta are measured in
-    ``units``, one power of two near the size of each component's block, in ``momentum``; everything
-    else is in the scene's units. The centre counts from its place at the start.
+    tracked), the momenta themselves in ``state`` (n, d) and the ``centre`` (n, 3), empty where
+    untracked. Momenta are measured in ``units``, one power of two near the size of each component's
+    block, in ``momentum`` and ``state``; everything else is in the scene's units. The centre counts
+    from its place at the start.
     """
 
+    exponent: int
     digits: int
     units: Vector
     momentum: Array
     others: Mapping[str, Array]
+    state: Array
     centre: Array
 
     def volume_error(self) -> mpf:
-        """The largest |det D - 1|."""
+        """The largest |det D - 1|: exact for D as counted in last bits."""
+        d = self.momentum.shape[1]
         with mp.workdps(self.digits):
-            return max(abs(mp.det(mp.matrix(d.tolist())) - 1) for d in self.momentum)
+            bits = mp.prec
+            volumes = [_volume(counts) for counts in as_integers(self.momentum, bits)]
+            return max(abs(mp.ldexp(mp.mpf(v), -d * bits) - 1) for v in volumes)
 
 
 def derivatives(
@@ -137,10 +156,12 @@ def derivatives(
             name: np.stack([column[name] for column in columns], axis=2) for name in columns[0]
         }
         return Derivatives(
+            exponent=exponent,
             digits=digits,
             units=start.units,
             momentum=stacked.pop("momentum") / real((start.units,)).T,
             others=stacked,
+            state=_momenta(scene, here) / real((start.units,)),
             centre=_path(scene, here),
         )
 
@@ -151,6 +172,14 @@ def _momentum_first(scene: Scene, change: dict[str, Array]) -> dict[str, Array]:
         return {"momentum": change["omega"] @ real(scene.body.inertia).T, **change}
     both = [change.pop("linear_impulse"), change.pop("angular_impulse")]
     return {"momentum": np.concatenate(both, axis=1), **change}
+
+
+def _momenta(scene: Scene, here: Quantities) -> Array:
+    """H, or x and y as one vector, at every time."""
+    if isinstance(scene.body, RigidBody):
+        momenta: Array = here["omega"] @ real(scene.body.inertia).T
+        return momenta
+    return np.concatenate([here["linear_impulse"], here["angular_impulse"]], axis=1)
 
 
 def _path(scene: Scene, here: Quantities) -> Array:
@@ -173,11 +202,11 @@ def _norms(found: Derivatives) -> Iterator[tuple[tuple[str, str], FloatArray]]:
     """Every entry of the table."""
     blocks = ("momentum",) if len(found.units) == 3 else ("linear_impulse", "angular_impulse")
     sizes = {block: floor_log2(found.units[3 * j]) for j, block in enumerate(blocks)}
-    sizes.update({name: _log2_size(rows) for name, rows in found.others.items()})
+    sizes.update({name: log2_size(rows) for name, rows in found.others.items()})
     if "attitude" in found.others:
         sizes["attitude"] = 0
     if "centre" in found.others:
-        sizes["centre"] = _log2_size(found.others["centre"], found.centre)
+        sizes["centre"] = log2_size(found.others["centre"], found.centre)
     if "attitude" in found.others:
         yield from _from_place(found, blocks, sizes)
     table = _from_momentum(found, sizes)
@@ -193,9 +222,9 @@ def _from_momentum(found: Derivatives, sizes: Mapping[str, int]) -> FloatArray:
     with mp.workdps(found.digits):
         bits = mp.prec
         others = [rows * mp.ldexp(1, -sizes[name]) for name, rows in found.others.items()]
-        rows = _integers(np.concatenate([found.momentum, *others], axis=1), bits)
-        inverses = _integers(np.array([_inverse(m) for m in found.momentum]), bits)
-        arms = _integers(found.centre * mp.ldexp(1, -sizes.get("centre", 0)), bits)
+        rows = as_integers(np.concatenate([found.momentum, *others], axis=1), bits)
+        inverses = [inverse(counts, bits) for counts in rows[:, :d]]
+        arms = as_integers(found.centre * mp.ldexp(1, -sizes.get("centre", 0)), bits)
     # omega depends on the momentum of the moment; attitude and centre add up from the start.
     place = d + 3 * ("omega" in found.others)
     table = np.zeros((count, count, rows.shape[1], d))
@@ -222,15 +251,23 @@ def _from_place(
     if "centre" in places:
         with mp.workdps(found.digits):
             bits = mp.prec
-            path = _integers(found.centre * mp.ldexp(1, -sizes["centre"]), bits)
+            path = as_integers(found.centre * mp.ldexp(1, -sizes["centre"]), bits)
         arms = _floats(path[:, None] - path[None, :], bits)
         lengths = np.tril(np.linalg.norm(arms, axis=2))
         yield ("centre", "attitude"), _ldexp(lengths, sizes["centre"])
 
 
-def _inverse(matrix: Array) -> list[list[mpf]]:
-    inverted: list[list[mpf]] = mp.inverse(mp.matrix(matrix.tolist())).tolist()
-    return inverted
+def _volume(counts: Array) -> int:
+    """The determinant of a matrix of integers."""
+    return int(fmpz_mat(counts.tolist()).det())
+
+
+def inverse(counts: Array, bits: int) -> Array:
+    """The inverse, in integers that count 2^-bits as those of the matrix do; each rounded once."""
+    found = fmpz_mat(counts.tolist()).inv()
+    scale = 1 << 2 * bits + 1
+    halves = [int(scale * entry.p // entry.q) for entry in found.entries()]
+    return np.array([half + 1 >> 1 for half in halves], dtype=object).reshape(counts.shape)
 
 
 def _cross(arms: Array, turn: Array) -> Array:
@@ -240,13 +277,13 @@ def _cross(arms: Array, turn: Array) -> Array:
     return across
 
 
-def _log2_size(*arrays: Array) -> int:
+def log2_size(*arrays: Array) -> int:
     """The binary exponent of the largest entry, 0 if all are zero."""
-    largest = max(abs(value) for array in arrays for value in array.flat)
+    largest = max((abs(value) for array in arrays for value in array.flat), default=0)
     return int(mp.mag(largest)) if largest else 0
 
 
-def _integers(values: Array, bits: int) -> Array:
+def as_integers(values: Array, bits: int) -> Array:
     """Python integers that count 2^-bits."""
     fixed = [int(libmp.to_fixed(value._mpf_, bits)) for value in values.flat]
     return np.array(fixed, dtype=object).reshape(values.shape)
@@ -254,10 +291,10 @@ def _integers(values: Array, bits: int) -> Array:
 
 def _floats(counts: Array, bits: int) -> FloatArray:
     unit = 1 << bits
-    return np.array([_quotient(count, unit) for count in counts.flat]).reshape(counts.shape)
+    return np.array([quotient(count, unit) for count in counts.flat]).reshape(counts.shape)
 
 
-def _quotient(count: int, unit: int) -> float:
+def quotient(count: int, unit: int) -> float:
     """count / unit rounded once; inf, of either sign, beyond float64."""
     try:
         return count / unit

@@ -1,7 +1,8 @@
 """What a free motion conserves: each quantity with its value, its scale and its sensitivity.
 
 Written from the texts' definitions and independent of the equations of motion. Everything works at
-the ambient mpmath precision, on the truth and on a solver's motion alike.
+the ambient precision, on the truth and on a solver's motion alike, whether their numbers are mpmath's
+or MPFR's (exact.mpfr), and answers in the same.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
+from verify.exact.mpfr import real, sqrt
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Motion
 from verify.scenes.scene import Scene
@@ -35,7 +36,7 @@ class Invariant:
 
     name: str
     value: Callable[[Motion], Array]
-    scale: Callable[[Motion], mpf]
+    scale: Callable[[Motion], Any]
     sensitivity: Callable[[Motion], Mapping[str, Array]]
 
 
@@ -103,7 +104,7 @@ def _euler_space_momentum(body: RigidBody) -> Invariant:
         lambda motion: _turned(motion["attitude"], momentum(motion)),
         lambda motion: _largest(_norms(momentum(motion))),
         lambda motion: {
-            "momentum": _ones(len(motion["omega"])),
+            "momentum": _ones(motion["omega"]),
             "attitude": _norms(momentum(motion)),
         },
     )
@@ -150,7 +151,7 @@ _y3 = Invariant(
     "y3",
     lambda motion: motion["angular_impulse"][:, 2],
     lambda motion: _nonzero(_size(motion["angular_impulse"])),
-    lambda motion: {"angular_impulse": _ones(len(motion["angular_impulse"]))},
+    lambda motion: {"angular_impulse": _ones(motion["angular_impulse"])},
 )
 
 _x_space = Invariant(
@@ -158,7 +159,7 @@ _x_space = Invariant(
     lambda motion: _turned(motion["attitude"], motion["linear_impulse"]),
     lambda motion: _nonzero(_size(motion["linear_impulse"])),
     lambda motion: {
-        "linear_impulse": _ones(len(motion["linear_impulse"])),
+        "linear_impulse": _ones(motion["linear_impulse"]),
         "attitude": _norms(motion["linear_impulse"]),
     },
 )
@@ -171,7 +172,7 @@ def _y_space_value(motion: Motion) -> Array:
     return y + _cross(motion["centre"], x)
 
 
-def _y_space_scale(motion: Motion) -> mpf:
+def _y_space_scale(motion: Motion) -> Any:
     arm = _norms(motion["centre"]) * _norms(motion["linear_impulse"])
     return _largest(_norms(motion["angular_impulse"]) + arm)
 
@@ -188,7 +189,7 @@ def _y_space_sensitivity(motion: Motion) -> Mapping[str, Array]:
     by_rotation = _cross_matrices(-y) - _cross_matrices(c) @ _cross_matrices(x)
     return {
         "linear_impulse": _norms(c),
-        "angular_impulse": _ones(len(c)),
+        "angular_impulse": _ones(c),
         "attitude": _spectral_norms(by_rotation),
         "centre": _norms(x),
     }
@@ -206,8 +207,7 @@ def _impulses(motion: Motion) -> Array:
 
 def _applied(matrix: Matrix, rows: Array) -> Array:
     """The matrix times every row, its exact entries taken at the ambient precision."""
-    entries = np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
-    image: Array = rows @ entries.T
+    image: Array = rows @ real(matrix, rows).T
     return image
 
 
@@ -234,36 +234,39 @@ def _cross(a: Array, b: Array) -> Array:
 
 def _cross_matrices(rows: Array) -> Array:
     """[v]x for every row v, (n, 3, 3): [v]x d = v x d."""
-    unit = np.array([[[mpf(i == j) for i in range(3)] for j in range(3)]], dtype=object)
-    return np.stack([_cross(rows, unit[:, j].repeat(len(rows), axis=0)) for j in range(3)], axis=2)
+    found = np.full((len(rows), 3, 3), real([0], rows)[0])
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[:, i, j], found[:, j, i] = -rows[:, k], rows[:, k]
+    return found
 
 
 def _norms(rows: Array) -> Array:
-    return np.array([mp.sqrt(square) for square in _squares(rows)], dtype=object)
+    return sqrt(_squares(rows))
 
 
 def _spectral_norms(matrices: Array) -> Array:
-    """The largest singular value of every matrix, to float64 accuracy but in mpmath's range."""
+    """The largest singular value of every matrix, to float64 accuracy but in the numbers' own range."""
     largest = [max(abs(entry) for entry in matrix.flat) for matrix in matrices]
-    sizes = np.array([size if size != 0 else mpf(1) for size in largest], dtype=object)
+    sizes = np.array([_nonzero(size) for size in largest], dtype=object)
     moderate = (matrices / sizes[:, None, None]).astype(np.float64)
     singular = np.linalg.norm(moderate, 2, axis=(1, 2))
-    norms: Array = np.array([mpf(float(s)) for s in singular], dtype=object) * sizes
+    norms: Array = np.array(singular.tolist(), dtype=object) * sizes
     return norms
 
 
-def _ones(count: int) -> Array:
-    return np.array([mpf(1)] * count, dtype=object)
+def _ones(rows: Array) -> Array:
+    """One 1 for every row, in the rows' own numbers."""
+    return real([1] * len(rows), rows)
 
 
-def _size(rows: Array) -> mpf:
+def _size(rows: Array) -> Any:
     return max(_norms(rows))
 
 
-def _largest(values: Array) -> mpf:
+def _largest(values: Array) -> Any:
     return _nonzero(max(abs(value) for value in values))
 
 
-def _nonzero(scale: mpf) -> mpf:
+def _nonzero(scale: Any) -> Any:
     """The scale, or 1 where it vanishes: what is measured is then absolute."""
-    return scale if scale != 0 else mpf(1)
+    return scale if scale != 0 else 0 * scale + 1

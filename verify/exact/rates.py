@@ -113,7 +113,8 @@ def _flow(scene: Scene) -> _Flow:
 
 
 def _coefficients(combination: Combination) -> list[float]:
-    return [numerator / combination.denominator for numerator in combination.numerators]
+    # The numerators may be gmpy2's, whose quotients are no floats.
+    return [int(numerator) / combination.denominator for numerator in combination.numerators]
 
 
 def _floats(states: np.ndarray[Any, Any], exponents: tuple[int, ...]) -> Floats:

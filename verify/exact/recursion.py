@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, lcm
 from operator import mul
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from mpmath import libmp, mp
 
@@ -111,6 +111,11 @@ class Problem:
     products: tuple[tuple[int, int], ...]
     rates: tuple[tuple[tuple[int, ...], Combination], ...]
 
+    def begun(self, start: Vector) -> Problem:
+        """The same equations and units from another state, given in the scene's own units."""
+        units = self.units.variables[: len(start)]
+        return replace(self, start=_scaled(start, [power_of_two(e) for e in units]))
+
     def grid(self, digits: int) -> Grid:
         """Bits for these digits of the smallest block, and for what coefficients make of a bit."""
         blocks = [exponent(self.start[i : i + 3]) for i in range(0, self.moving, 3)]
@@ -140,7 +145,7 @@ def problem(equations: Equations, units: Units, start: Vector, moving: int) -> P
     places = {pair: place for place, pair in enumerate(products)}
     return Problem(
         units=units,
-        start=tuple(z / one for z, one in zip(start, unit[:size], strict=True)),
+        start=_scaled(start, unit[:size]),
         moving=moving,
         constant=tuple(c * one for c, one in zip(equations.constant, per_time, strict=False)),
         forms=tuple(
@@ -158,9 +163,14 @@ def problem(equations: Equations, units: Units, start: Vector, moving: int) -> P
     )
 
 
+def _scaled(vector: Vector, units: Sequence[Fraction]) -> Vector:
+    return tuple(z / one for z, one in zip(vector, units, strict=True))
+
+
 def _combination(coefficients: Sequence[Fraction]) -> Combination:
     denominator = lcm(*(c.denominator for c in coefficients))
-    return Combination(tuple(int(c * denominator) for c in coefficients), denominator)
+    numerators = (c.numerator * (denominator // c.denominator) for c in coefficients)
+    return Combination(tuple(map(_Integer, numerators)), denominator)
 
 
 # The recursion.
@@ -206,27 +216,26 @@ def leap(problem: Problem, span: Fraction, grid: Grid) -> tuple[list[int], int]:
         whole = replace(grid, cut=None)
         return march(problem, [span], whole, first_width(problem, span, whole))[span], whole.order
     enough = 1 << grid.slack
-    last = max(
-        k for k in range(grid.order + 1) if k == 0 or any(abs(z[k]) > enough for z in series)
-    )
+    last = grid.order
+    while last and all(abs(z[last]) <= enough for z in series):
+        last -= 1
     return _value(series, Fraction(1), grid), last
 
 
 def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
     """Taylor coefficients of every state, those of order k held multiplied by width^k."""
-    bits, forms, products = grid.bits, problem.forms, problem.products
+    forms, products = problem.forms, problem.products
+    rates = [_Rate.of(places, rate, width, grid.bits) for places, rate in problem.rates]
     forward = [[z] for z in state]
     forward += [[_combined(form, state)] for form in forms]
     # The second factor of a convolution is kept in reverse, so that the two lists just pair up.
     backward = {b: forward[b][:] for _, b in products}
+    pairs = [(a == b, forward[a], backward[b]) for a, b in products]
     for k in range(grid.order):
-        sums = [sum(map(mul, forward[a], backward[b])) for a, b in products]
-        scale = (width.denominator * (k + 1)) << bits
+        sums = [_square(p, q) if same else sum(map(mul, p, q)) for same, p, q in pairs]
         fresh = [
-            sum(map(mul, rate.numerators, [sums[place] for place in places]))
-            * width.numerator
-            // (scale * rate.denominator)
-            for places, rate in problem.rates
+            (sum(map(mul, factors, map(sums.__getitem__, places))) >> shift) // (odd * (k + 1))
+            for places, factors, shift, odd in rates
         ]
         if k == 0:
             for i, drift in enumerate(grid.integers(width * c for c in problem.constant)):
@@ -237,6 +246,32 @@ def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> 
         for b, coefficients in backward.items():
             coefficients.insert(0, fresh[b])
     return forward[: len(state)]
+
+
+def _square(forward: list[int], backward: list[int]) -> int:
+    """The last coefficient of a series' square: its terms are equal by twos but for a middle one."""
+    half, odd = divmod(len(forward), 2)
+    twice: int = 2 * sum(map(mul, forward[:half], backward))
+    return twice + forward[half] ** 2 if odd else twice
+
+
+class _Rate(NamedTuple):
+    """What one state's rate makes of the products, for one width: sum of factors[i] products[i].
+
+    To be divided by 2^shift and, at order k, by odd (k + 1): two roundings downwards are like one.
+    """
+
+    places: tuple[int, ...]
+    factors: tuple[int, ...]
+    shift: int
+    odd: int
+
+    @classmethod
+    def of(cls, places: tuple[int, ...], rate: Combination, width: Fraction, bits: int) -> _Rate:
+        whole = rate.denominator * width.denominator
+        shift = (whole & -whole).bit_length() - 1
+        factors = tuple(n * width.numerator for n in rate.numerators)
+        return cls(places, factors, shift + bits, whole >> shift)
 
 
 def _combined(form: Combination, state: list[int]) -> int:

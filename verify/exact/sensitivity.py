@@ -24,6 +24,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from verify.exact.inputs import Input, body_input, start_inputs
+from verify.exact.mpfr import precision, to_mpf, to_mpfr
 from verify.exact.route import solution
 from verify.exact.solution import Quantities, Unsettled
 from verify.scenes.bodies import RigidBody
@@ -123,9 +124,9 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
     """(after - before)/step of every quantity, shape (n, 3); of attitudes the small turn between them."""
     change = {name: after[name] - before[name] for name in before if name != "attitude"}
     if "attitude" in before:
-        change["attitude"] = _rotation_vectors(
-            after["attitude"] @ before["attitude"].transpose(0, 2, 1)
-        )
+        here, there = to_mpfr(before["attitude"]), to_mpfr(after["attitude"])
+        with precision():
+            change["attitude"] = to_mpf(_rotation_vectors(there @ here.transpose(0, 2, 1)))
     return {name: change[name] / step for name in before}
 
 

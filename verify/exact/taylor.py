@@ -60,9 +60,9 @@ class TaylorSolution(Settled):
         """
         problem = self._problem
         grid = problem.grid(digits)
-        later = sorted({t for t in elapsed if t >= 0})
+        later = sorted({t for t in elapsed if t > 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
-        states: dict[Fraction, list[int]] = {}
+        states = {Fraction(0): grid.integers(problem.start)}
         for times in filter(None, (later, earlier)):
             width = first_width(problem, times[-1], grid)
             states.update(march(problem, times, grid, width))
@@ -112,14 +112,19 @@ class _Arcs(Settled):
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         ends: list[list[Any]] = []
         cut: int | None = None
-        for start, span in zip(self.starts, elapsed, strict=True):
-            arc = posed(replace(self.scene, initial=start))
+        for arc, span in zip(self._problems, elapsed, strict=True):
             grid = replace(arc.grid(digits), cut=cut)
             end, order = leap(arc, span, grid)
             # The arcs follow each other, so that the next one needs about as many orders.
             cut = order + order // 8 + _MORE_ORDERS
             ends.append(arc.reals(end, grid))
         return _quantities(self.scene, ends)
+
+    @cached_property
+    def _problems(self) -> list[Problem]:
+        """One for every start, all in the units of the scene's own."""
+        whole = posed(self.scene)
+        return [whole.begun(_start(replace(self.scene, initial=start))) for start in self.starts]
 
 
 # The equations.
@@ -168,12 +173,9 @@ def _impulse_rates(body: ImmersedBody) -> list[Polynomial]:
 
 def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
     """The vector of the states ``first``, ... times a linear form of all six, given by its rows."""
-    forward = [
-        {(first + j, i): c for i, c in enumerate(rows[k])} for j, k in ((1, 2), (2, 0), (0, 1))
-    ]
-    backward = [
-        {(first + k, i): -c for i, c in enumerate(rows[j])} for j, k in ((1, 2), (2, 0), (0, 1))
-    ]
+    entries = [[(i, c) for i, c in enumerate(row) if c] for row in rows]
+    forward = [{(first + j, i): c for i, c in entries[k]} for j, k in ((1, 2), (2, 0), (0, 1))]
+    backward = [{(first + k, i): -c for i, c in entries[j]} for j, k in ((1, 2), (2, 0), (0, 1))]
     return [_sum(p, q) for p, q in zip(forward, backward, strict=True)]
 
 
@@ -250,7 +252,7 @@ def _sum(*polynomials: Polynomial) -> Polynomial:
     for polynomial in polynomials:
         for (a, b), coefficient in polynomial.items():
             pair = (min(a, b), max(a, b))
-            total[pair] = total.get(pair, Fraction(0)) + coefficient
+            total[pair] = total[pair] + coefficient if pair in total else coefficient
     return {pair: coefficient for pair, coefficient in total.items() if coefficient}
 
 

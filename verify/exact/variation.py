@@ -17,7 +17,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
@@ -40,7 +40,10 @@ _STEP: Final = 0.3
 # Between two nodes the motion is set back to the truth this often.
 _PARTS: Final = 4
 _MOST_STEPS: Final = 100_000
-_TRUTH_DIGITS: Final = 18
+# A ten-thousandth of the tolerance. The better of the two evaluations that agree to these digits has
+# a dozen more, if the orbit leaves them, and so starts the motion with what float64 holds.
+_TRUTH_DIGITS: Final = 8
+_FLOAT_DIGITS: Final = 20
 
 
 def transition_table(
@@ -50,13 +53,48 @@ def transition_table(
 
     ``units`` are powers of two near the size of each component of the momentum.
     """
-    points = list(_refined(elapsed))
-    truth = exact.motion(points, _TRUTH_DIGITS)
     flow = _Flow.of(scene, units)
-    with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-        samples = _samples(scene, truth, units, flow.length)
-        steps = _steps(flow, samples, [float(t / flow.time) for t in points])
-        return None if steps is None else _table(scene, flow, units, steps, samples)
+    found = _integrated(scene, exact, flow, units, elapsed)
+    if found is None:
+        return None
+    with np.errstate(all="ignore"):
+        return _table(scene, flow, units, _wholes(flow, *found))
+
+
+class Stepped(NamedTuple):
+    """The steps from each time to the next, and the motion at the times, in units.
+
+    ``steps`` act on (z, theta, c); ``momentum`` (n, d) is z, ``centre`` (n, 3) counts from its start
+    and has no rows if it is not tracked; ``omega`` (3, d) makes Omega of z. ``time`` and ``length`` are
+    the units that are not given.
+    """
+
+    steps: tuple[Floats, ...]
+    momentum: Floats
+    centre: Floats
+    omega: Floats
+    time: Fraction
+    length: Fraction
+
+
+def stepped(
+    scene: Scene, exact: Solution, units: Vector, elapsed: Sequence[Fraction]
+) -> Stepped | None:
+    """The steps between these times, or None where float64 does not follow the orbit."""
+    flow = _Flow.of(scene, units)
+    found = _integrated(scene, exact, flow, units, elapsed)
+    if found is None:
+        return None
+    wholes, samples = _wholes(flow, *found), found[1]
+    momentum, centre = samples.momentum[::_PARTS], samples.centre[::_PARTS]
+    return Stepped(tuple(wholes), momentum, centre, flow.omega, flow.time, flow.length)
+
+
+def fastest(scene: Scene, units: Vector, momenta: Floats) -> float:
+    """The largest norm of J along a motion (n, d; in units), per unit of the scene's time."""
+    flow = _Flow.of(scene, units)
+    norms = [np.linalg.norm(flow.jacobian(z), 2) for z in momenta]
+    return float(max(norms)) / float(flow.time)
 
 
 @dataclass(frozen=True)
@@ -119,7 +157,7 @@ class _Samples:
 
 
 def _samples(scene: Scene, truth: Motion, units: Vector, length: Fraction) -> _Samples:
-    with mp.workdps(_TRUTH_DIGITS + 10):
+    with mp.workdps(_FLOAT_DIGITS):
         if isinstance(scene.body, RigidBody):
             inertia = np.array([[mp.convert(c) for c in row] for row in scene.body.inertia])
             z = truth["omega"] @ inertia.T
@@ -167,6 +205,29 @@ def _rates(flow: _Flow, at: _Errors) -> tuple[Floats, ...]:
     return flow.constant + jacobian @ at.momentum / 2, turning, change, turn, shift
 
 
+def _integrated(
+    scene: Scene, exact: Solution, flow: _Flow, units: Vector, elapsed: Sequence[Fraction]
+) -> tuple[list[Floats], _Samples] | None:
+    """The steps between the points of ``_refined``, and the truth there."""
+    points = list(_refined(elapsed))
+    truth = exact.motion(points, _TRUTH_DIGITS)
+    with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
+        samples = _samples(scene, truth, units, flow.length)
+        steps = _steps(flow, samples, [float(t / flow.time) for t in points])
+    return None if steps is None else (steps, samples)
+
+
+def _wholes(flow: _Flow, steps: Sequence[Floats], samples: _Samples) -> list[Floats]:
+    """The steps on (z, theta, c) from one of the times asked for to the next."""
+    d, found = len(flow.constant), []
+    for first in range(0, len(steps), _PARTS):
+        step = np.eye(d + 6)
+        for part in range(first, first + _PARTS):
+            step = _whole(steps[part], samples.centre[part : part + 2], d) @ step
+        found.append(step)
+    return found
+
+
 def _steps(flow: _Flow, samples: _Samples, times: Sequence[float]) -> list[Floats] | None:
     """For each pair of neighbouring points, the derivatives of (z, theta, c) there by z here."""
     found: list[Floats] = []
@@ -212,19 +273,12 @@ def _arrives(reached: _Errors, truth: Floats) -> bool:
     return bool(missed <= _TOLERANCE * np.linalg.norm(truth) and abs(volume - 1) <= _TOLERANCE * 10)
 
 
-def _table(
-    scene: Scene, flow: _Flow, units: Vector, steps: Sequence[Floats], samples: _Samples
-) -> Table:
+def _table(scene: Scene, flow: _Flow, units: Vector, wholes: Sequence[Floats]) -> Table:
     """Products of the steps, and the norms of their blocks in the scene's units."""
-    d = len(flow.constant)
-    nodes = len(steps) // _PARTS + 1
-    size = d + 6
+    nodes, size = len(wholes) + 1, len(flow.constant) + 6
     carried = np.zeros((nodes, nodes, size, size))
     carried[0, 0] = np.eye(size)
-    for i in range(1, nodes):
-        step = np.eye(size)
-        for part in range((i - 1) * _PARTS, i * _PARTS):
-            step = _whole(steps[part], samples.centre[part : part + 2], d) @ step
+    for i, step in enumerate(wholes, start=1):
         carried[i, :i] = step @ carried[i - 1, :i]
         carried[i, i] = np.eye(size)
     return dict(_norms(scene, flow, units, carried))

@@ -20,8 +20,9 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact.invariants import Invariant, invariants
+from verify.exact.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from verify.exact.taylor import arcs
-from verify.judge.errors import Errors, norms
+from verify.judge.errors import Errors
 from verify.scenes.motion import Motion, State
 from verify.scenes.precision import exact_value
 from verify.scenes.scene import Scene
@@ -40,27 +41,35 @@ _STATE_FIELDS = {
 def drifts(
     scene: Scene, start: Motion, answer: Motion, held: Mapping[str, Column], digits: int
 ) -> list[tuple[Invariant, Errors]]:
-    """The drift of every conserved quantity, at the ambient precision of mpmath.
+    """The drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
 
     ``start`` is the exact initial state as a Motion of one row; ``held`` are the answer's own exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
-    found = invariants(scene)
+    found, quick = invariants(scene), in_mpfr(answer)
     if scene.body.is_free:
-        return [(i, _errors(i, answer, _conserved(i, start, answer))) for i in found]
+        begin = in_mpfr(start)
+        with precision():
+            return [(i, _errors(i, quick, _conserved(i, begin, quick))) for i in found]
     if not _is_finite(answer):
-        lost = np.array([mp.nan] * len(answer.radius), dtype=object)
-        return [(i, _errors(i, answer, lost)) for i in found]
-    ends = _arc_ends(scene, held, digits)
-    return [(i, _errors(i, answer, _balance(i, answer, ends))) for i in found]
+        lost = to_mpfr(np.array([mp.nan] * len(answer.radius), dtype=object))
+        with precision():
+            return [(i, _errors(i, quick, lost)) for i in found]
+    ends = in_mpfr(_arc_ends(scene, held, digits))
+    with precision():
+        return [(i, _errors(i, quick, _balance(i, quick, ends))) for i in found]
+
+
+# What follows is in MPFR's numbers.
 
 
 def _errors(invariant: Invariant, answer: Motion, drift: Column) -> Errors:
     scale = invariant.scale(answer)
+    values, scales = to_mpf(drift / scale), to_mpf(np.array([scale], dtype=object))
     radius = np.array([mp.zero] * len(drift), dtype=object)
     unit = f"scale of {invariant.name}"
-    return Errors(invariant.name, unit, drift / scale, radius, {invariant.name: scale})
+    return Errors(invariant.name, unit, values, radius, {invariant.name: scales[0]})
 
 
 def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
@@ -74,8 +83,12 @@ def _balance(invariant: Invariant, answer: Motion, ends: Motion) -> Column:
 
 def _sizes(values: Column) -> Column:
     if values.ndim > 1:
-        return norms(values)
-    return np.array([abs(value) for value in values], dtype=object)
+        return sqrt(np.sum(values * values, axis=1))
+    sizes: Column = abs(values)
+    return sizes
+
+
+# The arcs.
 
 
 def _arc_ends(scene: Scene, held: Mapping[str, Column], digits: int) -> Motion:

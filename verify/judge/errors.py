@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
+from verify.exact.mpfr import precision, sqrt, to_mpf, to_mpfr
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Motion
 from verify.scenes.scene import Scene
@@ -110,15 +111,16 @@ def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Column:
 
 
 def norms(rows: Column) -> Column:
-    """The Frobenius norm of every row (vectors or matrices)."""
-    flat = rows.reshape(len(rows), -1)
-    return np.array([mp.sqrt(sum(v * v for v in row)) for row in flat], dtype=object)
+    """The Frobenius norm of every row (vectors or matrices) of numbers of mpmath."""
+    flat = to_mpfr(rows.reshape(len(rows), -1))
+    with precision():
+        return to_mpf(sqrt(np.sum(flat * flat, axis=1)))
 
 
 def largest(values: Any) -> Any:
     """The largest value, or NaN if any is NaN (Python's max would lose it)."""
     values = list(values)
-    nan = next((value for value in values if mp.isnan(value)), None)
+    nan = next((value for value in values if value != value), None)
     return max(values) if nan is None else nan
 
 

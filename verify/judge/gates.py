@@ -41,7 +41,7 @@ def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
     """
     bounds = FACTOR * attainable
     worst = index_of_largest(errors.values)
-    ratios = [_ratio(e, a) for e, a in zip(errors.values, attainable, strict=True)]
+    ratios = [_ratio(e, a) for e, a in zip(errors.values, attainable.tolist(), strict=True)]
     ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
     status = _status(errors, bounds)
     because = f"{FACTOR} x attainable; {reason}"
@@ -53,15 +53,17 @@ def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:
-    if any(mp.isnan(value) for value in errors.values):
+    if mp.isnan(largest(errors.values)):
         return Status.FAIL
-    within = [bool(error <= bound) for error, bound in zip(errors.values, bounds, strict=True)]
+    # Python's floats: mpmath asks NumPy's many questions before it compares with one.
+    limits = bounds.tolist()
+    within = [bool(error <= limit) for error, limit in zip(errors.values, limits, strict=True)]
     asked = _asked(bounds)
     if asked < len(bounds):
         # What the floor does not excuse still fails: the samples before it reached the motion.
         return Status.VACUOUS if all(within[:asked]) else Status.FAIL
-    narrow = zip(errors.truth_radius, bounds, strict=True)
-    if not all(bool(radius * _TRUTH_SHARE <= bound) for radius, bound in narrow):
+    narrow = zip(errors.truth_radius, limits, strict=True)
+    if not all(bool(radius * _TRUTH_SHARE <= limit) for radius, limit in narrow):
         return Status.UNDECIDED
     return Status.PASS if all(within) else Status.FAIL
 

@@ -2,6 +2,7 @@
 
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 M  moment, body axes                  I  inertia tensor, H = I omega
+D  differences of K's diagonal, D1 = K33 - K22, D2 = K11 - K33, D3 = K22 - K11; their sum is 0
 
 The integrated form is H' = H x K H + M. Whatever symmetric K is stored, it is a rigid body:
 |H|^2 is constant identically, which no pair of separately rounded I and I^-1 gives.
@@ -27,18 +28,32 @@ def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
     small and, the rounding of a difference of neighbours being exact, known to full precision; written
     with K itself the rate would be a difference of large numbers.
     """
-    free = _principal_rate(H, K) if _is_diagonal(K) else cross(H, apply(_deviation(K), H))
+    free = principal_rate(H, differences(K)) if _is_diagonal(K) else turning(H, _deviation(K))
     return add(free, M)
 
 
-def _principal_rate(H: Terms, K: Sequence[Terms]) -> list[Any]:
-    """H x K H in principal axes, where three products of the state serve for six."""
+def differences(K: Sequence[Terms]) -> list[Any]:
+    """D, in the arithmetic of K."""
     k1, k2, k3 = (K[i][i] for i in range(3))
-    return [
-        times(minus(k3, k2), H[1] * H[2]),
-        times(minus(k1, k3), H[2] * H[0]),
-        times(minus(k2, k1), H[0] * H[1]),
-    ]
+    return [minus(k3, k2), minus(k1, k3), minus(k2, k1)]
+
+
+def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
+    """H x K H in principal axes, where three products of the state serve for six.
+
+    The difference at the place ``summed``, if there is one, is minus the sum of the two others.
+    """
+    products = [H[1] * H[2], H[2] * H[0], H[0] * H[1]]
+    rates = [times(d, product) for d, product in zip(D, products, strict=True)]
+    if summed is not None:
+        one, other = (times(d, products[summed]) for i, d in enumerate(D) if i != summed)
+        rates[summed] = minus(-one, other)
+    return rates
+
+
+def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
+    """H x K H for K = deviation + any sphere."""
+    return cross(H, apply(deviation, H))
 
 
 def _deviation(K: Sequence[Terms]) -> list[list[Any]]:

@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-from verify.models.algebra import ABSENT
+from verify.models.algebra import ABSENT, is_absent
 from verify.models.euler import angular_velocity, momentum_rate
 from verify.models.frame import attitude_rate, centre_rate
 from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
@@ -74,17 +75,31 @@ class Form:
         states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
         return self.rates(list(states), list(parameters))
 
+    def constants(self) -> tuple[str, ...]:
+        """The impulses that no term changes: x1 to y3, as far as their rates are absent.
+
+        The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
+        """
+        rates = zip(self.states, self._symbolic(), strict=True)
+        return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
+
     def entering(self) -> tuple[str, ...]:
         """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""
-        written = set(re.findall(r"[A-Za-z]\d*'?", " ".join(self.text())))
-        return tuple(name for name in self.parameters if name in written)
+        return _entering(self)
+
+
+# Forms are few and scenes are many: a family of bodies asks for one and the same.
+@lru_cache(maxsize=256)
+def _entering(form: Form) -> tuple[str, ...]:
+    written = set(re.findall(r"[A-Za-z]\d*'?", " ".join(form.text())))
+    return tuple(name for name in form.parameters if name in written)
 
 
 def euler_equations(n: Named) -> dict[str, Any]:
     """H' = H x K H + M, and the attitude where it is tracked."""
     H, K = n.vector("H"), n.symmetric("K")
-    rates = _named("H", momentum_rate(H, K, n.vector("M")))
-    return rates | _frame_rates(n, angular_velocity(H, K), U=None)
+    rates = labelled("H", momentum_rate(H, K, n.vector("M")))
+    return rates | frame_rates(n, angular_velocity(H, K), U=None)
 
 
 def kirchhoff_equations(n: Named) -> dict[str, Any]:
@@ -92,7 +107,7 @@ def kirchhoff_equations(n: Named) -> dict[str, Any]:
     x, y = n.vector("x"), n.vector("y")
     U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
     x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
-    return _named("x", x_rate) | _named("y", y_rate) | _frame_rates(n, Omega, U)
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
 
 
 def clebsch_equations(n: Named) -> dict[str, Any]:
@@ -102,20 +117,20 @@ def clebsch_equations(n: Named) -> dict[str, Any]:
     x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
     p, p_prime, q, q_prime, r, r_prime = six
     U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
-    return _named("x", x_rate) | _named("y", y_rate) | _frame_rates(n, Omega, U)
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
 
 
-def _frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
+def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
     rates: dict[str, Any] = {}
     if "e0" in n:
         attitude = attitude_rate(n.quaternion(), omega)
         rates |= {f"e{i}": rate for i, rate in enumerate(attitude)}
     if "c1" in n and U is not None:
-        rates |= _named("c", centre_rate(n.quaternion(), U))
+        rates |= labelled("c", centre_rate(n.quaternion(), U))
     return rates
 
 
-def _named(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
+def labelled(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
     return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
 
 

@@ -40,7 +40,9 @@ def clebsch_rates(
 
     x3' is 49 (3). y3' is the couple's third component alone, by 49 (2), whatever the force: without
     it y3 is a constant and the caller passes a parameter. Coefficients stand by themselves, never as
-    differences such as q' - q, which the arithmetic of a rung would have to round.
+    differences such as q' - q, which the arithmetic of a rung would have to round. Where q' is the
+    very object that q is, the body is the same in all directions as far as q goes, and the terms of
+    that difference are left out; likewise p' and p, r' and r.
     """
     p, p_prime, q, q_prime, r, r_prime = coefficients
     x1, x2, x3 = x
@@ -49,10 +51,11 @@ def clebsch_rates(
     x1y3, x2y3, y1y3, y2y3 = times(x1, y3), times(x2, y3), times(y1, y3), times(y2, y3)
 
     def sum_of(positive: Sequence[Terms], negative: Sequence[Terms]) -> Any:
+        plus_terms, minus_terms = _uncancelled(positive, negative)
         total: Any = 0
-        for coefficient, term in positive:
+        for coefficient, term in plus_terms:
             total = plus(total, times(coefficient, term))
-        for coefficient, term in negative:
+        for coefficient, term in minus_terms:
             total = minus(total, times(coefficient, term))
         return total
 
@@ -73,3 +76,22 @@ def clebsch_rates(
         0,
     ]
     return add(x_rate, X), add(y_rate, L)
+
+
+def _uncancelled(
+    positive: Sequence[Terms], negative: Sequence[Terms]
+) -> tuple[list[Terms], list[Terms]]:
+    """The products without those that occur with both signs: the same coefficient, the same term."""
+    left, kept = list(negative), []
+    for one in positive:
+        twin = next((i for i, other in enumerate(left) if _are_one(one, other)), None)
+        if twin is None:
+            kept.append(one)
+        else:
+            del left[twin]
+    return kept, left
+
+
+def _are_one(one: Terms, other: Terms) -> bool:
+    """Identity, not equality: two numbers may be equal by chance, and in one body only."""
+    return one[0] is other[0] and one[1] is other[1]

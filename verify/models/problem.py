@@ -13,21 +13,19 @@ from fractions import Fraction
 
 from mpmath import mp
 
-from verify.models.form import (
-    CLEBSCH_NAMES,
-    Equations,
-    Form,
-    clebsch_equations,
-    euler_equations,
-    kirchhoff_equations,
-)
+from verify.models.choice import Choice, constants_told, for_immersed_body, for_rigid_body
+from verify.models.form import Equations, Form
+from verify.models.times import are_distinct, rounded_times
 from verify.models.units import Units, natural_units
 from verify.scenes import tensors
 from verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from verify.scenes.instants import Instants
 from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
+
+_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
 
 class NotRepresentable(Exception):
@@ -40,7 +38,8 @@ class Problem:
 
     ``parameters``, ``initial`` and ``times`` (elapsed since the initial state) are numbers of the
     rung, held exactly, in ``units``; they stand in the order of ``form``. ``given`` is the same body,
-    start and instants in the scene's own units.
+    start and instants in the scene's own units. ``replaced`` are coefficients of the body in whose
+    place others stand in the equations, and ``because`` says which equations were chosen, and why.
     """
 
     scene: Scene
@@ -49,12 +48,18 @@ class Problem:
     units: Units
     parameters: tuple[Fraction, ...]
     initial: tuple[Fraction, ...]
-    times: tuple[Fraction, ...]
+    times: Sequence[Fraction]
     given: Scene
+    replaced: tuple[tuple[str, Fraction], ...] = ()
+    because: tuple[str, ...] = ()
 
     @property
     def parameter(self) -> Mapping[str, Fraction]:
-        return dict(zip(self.form.parameters, self.parameters, strict=True))
+        """Every coefficient and load by name, those that the equations do without included."""
+        return {
+            **dict(self.replaced),
+            **dict(zip(self.form.parameters, self.parameters, strict=True)),
+        }
 
     @property
     def state(self) -> Mapping[str, Fraction]:
@@ -62,7 +67,7 @@ class Problem:
 
     def with_equations(self, equations: Equations) -> Problem:
         """The same data under other equations in the same states, as the negative controls need."""
-        form = replace(self.form, equations=equations)
+        form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
         kept = form.entering()
         values = tuple(self.parameter[name] for name in kept)
         return replace(self, form=replace(form, parameters=kept), parameters=values)
@@ -75,28 +80,38 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     """
     units = natural_units(scene)
     rounding = _Rounding(rung)
-    times = tuple(rounding(t / units.time) for t in scene.clock.elapsed)
-    if len(set(times)) < len(times):
-        raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
-    start = scene.clock.start
-    clock = Clock(start, tuple(start + t * units.time for t in times))
+    times = _rounded_times(scene.clock, units, rung)
+    start, unit = scene.clock.start, units.time
+    clock = Clock(start, Instants(len(times), lambda: (start + t * unit for t in times)))
     data = _rounded_data(scene, units, rounding)
     data = _with_frame(data, scene, rung)
-    form = Form(data.equations, data.states, data.present())
-    form = replace(form, parameters=form.entering())
+    form = data.choice.form(data.states)
+    numbers = data.numbers
     return Problem(
         scene=scene,
         rung=rung,
         form=form,
         units=units,
-        parameters=tuple(data.numbers[name] for name in form.parameters),
-        initial=tuple(data.numbers[name] for name in form.states),
+        parameters=tuple(numbers[name] for name in form.parameters),
+        initial=tuple(numbers[name] for name in form.states),
         times=times,
         given=replace(scene, body=data.body, initial=data.initial, clock=clock),
+        replaced=_not_entering(data.choice.replaced, form),
+        because=data.choice.because + constants_told(data.states, form),
     )
 
 
-def adopt(scene: Scene, rung: Rung, instants: tuple[Fraction, ...]) -> Problem:
+def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
+    try:
+        times = rounded_times(clock, units.time, rung)
+    except OverflowError as error:
+        raise NotRepresentable(str(error)) from error
+    if not are_distinct(times):
+        raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
+    return times
+
+
+def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     """The problem that somebody else's answer solves, at the times it has rows for.
 
     Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
@@ -142,17 +157,20 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
 
 @dataclass(frozen=True)
 class _Data:
-    """Rounded numbers by name, which of them are states, and the exact body and start they define."""
+    """Equations with rounded numbers, which of these are states, and the exact body and start."""
 
-    equations: Equations
+    choice: Choice
     states: tuple[str, ...]
-    numbers: Mapping[str, Fraction]
     body: Body
     initial: State
 
-    def present(self) -> tuple[str, ...]:
-        """The parameters that are not zero."""
-        return tuple(n for n, value in self.numbers.items() if n not in self.states and value)
+    @property
+    def numbers(self) -> Mapping[str, Fraction]:
+        return self.choice.numbers
+
+
+def _not_entering(numbers: Mapping[str, Fraction], form: Form) -> tuple[tuple[str, Fraction], ...]:
+    return tuple((name, value) for name, value in numbers.items() if name not in form.parameters)
 
 
 def _rounded_data(scene: Scene, units: Units, rounding: _Rounding) -> _Data:
@@ -173,7 +191,7 @@ def _with_frame(data: _Data, scene: Scene, rung: Rung) -> _Data:
         # The centre is integrated from the origin and its start added exactly afterwards.
         numbers |= _indexed("c", (Fraction(0),) * 3)
         states += ("c1", "c2", "c3")
-    return replace(data, states=states, numbers=numbers)
+    return replace(data, states=states, choice=replace(data.choice, numbers=numbers))
 
 
 @dataclass(frozen=True)
@@ -209,7 +227,8 @@ def _round_euler(body: RigidBody, initial: Spin, units: Units, rounded: _Roundin
     given = RigidBody(tensors.inverse(physical_K), tensors.scaled(units.momentum / units.time, M))
     numbers = _indexed("H", H) | _upper_triangle("K", K) | _indexed("M", M)
     start = Spin(omega, _rounded_quaternion(initial.attitude, rounded))
-    return _Data(euler_equations, ("H1", "H2", "H3"), numbers, given, start)
+    choice = for_rigid_body(numbers, rounded.rung)
+    return _Data(choice, ("H1", "H2", "H3"), given, start)
 
 
 def _round_kirchhoff(
@@ -239,15 +258,8 @@ def _round_kirchhoff(
         tensors.scaled(units.length, rounded.vector(initial.centre, units.length)),
     )
     numbers = _indexed("x", x) | _indexed("y", y) | _indexed("X", X) | _indexed("L", L)
-    states: tuple[str, ...] = ("x1", "x2", "x3", "y1", "y2")
-    if given.clebsch is None:
-        numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
-        return _Data(kirchhoff_equations, (*states, "y3"), numbers, given, start)
-    six = (A[0][0], A[2][2], B[0][0], B[2][2], C[0][0], C[2][2])
-    numbers |= dict(zip(CLEBSCH_NAMES, six, strict=True))
-    if L[2]:
-        states += ("y3",)
-    return _Data(clebsch_equations, states, numbers, given, start)
+    numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
+    return _Data(for_immersed_body(numbers), _IMPULSES, given, start)
 
 
 def _rounded_quaternion(quaternion: Quaternion, rounded: _Rounding) -> Quaternion:

@@ -83,7 +83,9 @@ def _kirchhoff_units(body: ImmersedBody, initial: Impulse, span: Fraction) -> Un
 
 
 def _span(scene: Scene) -> Fraction:
-    return max(abs(t) for t in scene.clock.elapsed)
+    # The instants are monotonic: one of the two ends is farthest from the start.
+    clock = scene.clock
+    return max(abs(clock.instants[end] - clock.start) for end in (0, -1))
 
 
 def _largest(matrix: Iterable[Vector]) -> Fraction:

@@ -14,6 +14,7 @@ from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY, counts
 from verify.publish.runs import STATE_QUANTITIES, Run, gravest, is_scored, place_of_rung, runs
 from verify.publish.sights import CONTROLS
+from verify.publish.trades import NUMBERS as TRADEOFF
 
 REFERENCE: Final = "reference"
 
@@ -45,6 +46,7 @@ _CONTENTS = (
     ("[data/records](data/records)", "of each run the equations and every sample's error"),
 )
 _CONTROLS = ("[tables/controls.md](tables/controls.md)", "what each gate sees of broken solvers")
+_TRADEOFF = ("[tables/tradeoff.md](tables/tradeoff.md)", "speed against accuracy, measured once")
 _REFERENCE = (f"[{REFERENCE}]({REFERENCE})", "exact motions in digits, to test other programs with")
 
 
@@ -54,6 +56,7 @@ def front(verdicts: Sequence[Verdict], folder: Path) -> str:
     contents = [
         *_CONTENTS,
         *([_CONTROLS] if (folder / CONTROLS).is_file() else []),
+        *([_TRADEOFF] if (folder / TRADEOFF).is_file() else []),
         *([_REFERENCE] if (folder / REFERENCE).is_dir() else []),
     ]
     blocks = [

@@ -9,19 +9,19 @@ from tempfile import TemporaryDirectory
 
 
 def replace_files(
-    folder: Path, texts: Mapping[str, str], stale: Iterable[Path] = ()
+    folder: Path, contents: Mapping[str, str | bytes], stale: Iterable[Path] = ()
 ) -> tuple[Path, ...]:
-    """Put the texts, by their paths below ``folder``, in place of what is there; remove ``stale``.
+    """Put the contents, by their paths below ``folder``, in place of what is there; remove ``stale``.
 
     All are first written apart, so that what fails in writing leaves the old files as they were,
     and none is ever half written. Raises OSError; returns the paths in the order given.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    places = {name: folder / name for name in texts}
+    places = {name: folder / name for name in contents}
     # Inside the folder it is sure to be the same file system, where a move is one step.
     with TemporaryDirectory(dir=folder, prefix=".unfinished-") as staging:
-        for name, text in texts.items():
-            _write(Path(staging, name), text)
+        for name, content in contents.items():
+            _write(Path(staging, name), content)
         for name, place in places.items():
             place.parent.mkdir(parents=True, exist_ok=True)
             os.replace(Path(staging, name), place)
@@ -36,6 +36,9 @@ def first_line(file: Path) -> str:
         return lines.readline().rstrip("\n")
 
 
-def _write(file: Path, text: str) -> None:
+def _write(file: Path, content: str | bytes) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(text, encoding="utf-8", newline="\n")
+    if isinstance(content, bytes):
+        file.write_bytes(content)
+    else:
+        file.write_text(content, encoding="utf-8", newline="\n")

@@ -8,7 +8,17 @@ from typing import Any
 
 from verify.judge.record import Record
 from verify.judge.verdict import Verdict
-from verify.publish import controls, data, sheets, sights, tables
+from verify.publish import (
+    controls,
+    data,
+    figures,
+    prices,
+    sheets,
+    sights,
+    tables,
+    tradeoff,
+    trades,
+)
 from verify.publish.front import front
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import first_line, replace_files
@@ -50,6 +60,8 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/gates.csv": sheets.gates(verdicts),
     }
     texts |= of_controls
+    texts |= tradeoff.pages(place)
+    texts |= prices.pages(place)
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, place)
     return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))
@@ -63,6 +75,22 @@ def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Pa
     place = Path(folder)
     stored = sights.write(place, document)
     return [stored, *replace_files(place, _controls(place))]
+
+
+def publish_tradeoff(
+    folder: Path | str, numbers: Mapping[str, Any], times: Mapping[str, Any]
+) -> list[Path]:
+    """Store a measurement of speed and accuracy in ``folder``/data, draw it and make its page.
+
+    Raises OSError for a folder that cannot be written, ImportError without matplotlib.
+    """
+    place = Path(folder)
+    stored = list(trades.write(place, numbers, times))
+    found = trades.load(place)
+    if found is not None:
+        pictures = [one for trade in found.trades for one in figures.of_trade(trade)]
+        stored += figures.draw(place, [*pictures, *figures.of_rungs(found.trades)])
+    return [*stored, *replace_files(place, tradeoff.pages(place))]
 
 
 def _controls(place: Path) -> dict[str, str]:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Final
 
 from verify.scenes.faults import shown
+from verify.scenes.instants import EquallySpaced
 from verify.scenes.motion import Clock
 from verify.scenes.table import Table
 from verify.scenes.tensors import Vector
@@ -60,8 +61,7 @@ def _equally_spaced(table: Table, start: Fraction | None) -> Clock | None:
     if end == start:
         table.fault("an end other than the start", shown(end), "end", "the time span is empty")
         return None
-    step = (end - start) / (samples - 1)
-    return Clock(start, tuple(start + k * step for k in range(samples)))
+    return Clock(start, EquallySpaced(start, (end - start) / (samples - 1), samples))
 
 
 def _samples(table: Table) -> int | None:

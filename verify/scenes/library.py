@@ -9,6 +9,7 @@ from typing import Final
 from verify.scenes.faults import Refused
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
+EXTREMES: Final = "extremes"
 
 _MOST_SUGGESTED = 3
 
@@ -27,10 +28,20 @@ def cases_directory() -> Path:
     )
 
 
-def names() -> tuple[str, ...]:
-    """The standard set by name (``euler/generic``), in alphabetical order."""
+def names(*folders: str) -> tuple[str, ...]:
+    """The scenes of these folders by name (``euler/generic``), in alphabetical order.
+
+    Those of the standard set unless a folder is given.
+    """
     cases = cases_directory()
-    return tuple(_name(file) for folder in STANDARD_SET for file in _scenes(cases / folder))
+    found = (cases / folder for folder in folders or STANDARD_SET)
+    return tuple(_name(file) for folder in found for file in _scenes(folder))
+
+
+def named(scene: str) -> tuple[str, ...]:
+    """What a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
+    is_folder = scene in (*STANDARD_SET, EXTREMES)
+    return (names(scene) if is_folder else ()) or (scene,)
 
 
 def find(scene: str) -> Path:
@@ -48,7 +59,8 @@ def find(scene: str) -> Path:
 
 
 def _scenes(folder: Path) -> list[Path]:
-    return sorted(folder.glob("*.toml")) if folder.is_dir() else []
+    """In alphabetical order; a file in capitals is about the scenes and no scene itself."""
+    return sorted(file for file in folder.glob("*.toml") if not file.stem.isupper())
 
 
 def _name(file: Path) -> str:
@@ -56,7 +68,7 @@ def _name(file: Path) -> str:
 
 
 def _near(scene: str) -> str:
-    known = names()
+    known = names(*STANDARD_SET, EXTREMES)
     close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
     # The part after the slash is often all that somebody remembers.
     close += [name for name in known if scene and scene in name and name not in close]

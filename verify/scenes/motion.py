@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from verify.scenes.tensors import ZERO_VECTOR, Vector
@@ -43,12 +44,15 @@ State = Spin | Impulse
 
 @dataclass(frozen=True)
 class Clock:
-    """The time of the initial state and the instants asked for, strictly monotonic."""
+    """The time of the initial state and the instants asked for, strictly monotonic.
+
+    The instants do not change; a tuple, or one of scenes.instants.
+    """
 
     start: Fraction
-    instants: tuple[Fraction, ...]
+    instants: Sequence[Fraction]
 
-    @property
+    @cached_property
     def elapsed(self) -> tuple[Fraction, ...]:
         """Time since the initial state. The equations are autonomous: this alone enters them."""
         return tuple(instant - self.start for instant in self.instants)

@@ -39,14 +39,14 @@ class Rung:
         """
         if value == 0:
             return value
-        exponent = floor_log2(value)
-        if self.emin is not None:
-            exponent = max(exponent, self.emin)
-        quantum = power_of_two(exponent - self.bits + 1)
-        nearest = round(value / quantum) * quantum
-        if self.emax is not None and abs(nearest) >= power_of_two(self.emax + 1):
+        significand, exponent = nearest(value.numerator, value.denominator, self.bits)
+        if self.emin is not None and exponent + self.bits <= self.emin + 1:
+            # Perhaps below the normal numbers, whose last place is then that of the smallest one.
+            quantum = power_of_two(max(floor_log2(value), self.emin) - self.bits + 1)
+            return round(value / quantum) * quantum
+        if self.emax is not None and exponent + significand.bit_length() > self.emax + 1:
             raise OverflowError(f"{float_text(value)} is outside the range of {self.name}")
-        return nearest
+        return significand * power_of_two(exponent)
 
     def holds(self, value: Fraction) -> bool:
         """Whether the value is a number of this format."""
@@ -72,6 +72,28 @@ def rung(name: str) -> Rung:
             f"bits, got {name!r}"
         )
     return Rung(name, int(match[1]))
+
+
+def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:
+    """Significand and exponent of the number of so many bits nearest to a quotient, ties to even.
+
+    The denominator is positive, the exponent as small as it can be: the significand has all its bits,
+    or is the power of two above them that a carry leads to.
+    """
+    if numerator == 0:
+        return 0, 0
+    size = abs(numerator)
+    # One bit more than is kept, or two: with what is left over they tell the side of a tie.
+    exponent = size.bit_length() - denominator.bit_length() - bits - 1
+    if exponent > 0:
+        whole, rest = divmod(size, denominator << exponent)
+    else:
+        whole, rest = divmod(size << -exponent, denominator)
+    surplus = whole.bit_length() - bits
+    kept, low, half = whole >> surplus, whole & ((1 << surplus) - 1), 1 << (surplus - 1)
+    if low > half or (low == half and (rest or kept & 1)):
+        kept += 1
+    return (kept if numerator > 0 else -kept), exponent + surplus
 
 
 def power_of_two(exponent: int) -> Fraction:

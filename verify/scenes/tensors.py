@@ -10,14 +10,15 @@ from fractions import Fraction
 Vector = tuple[Fraction, ...]
 Matrix = tuple[Vector, ...]
 
-ZERO_VECTOR: Vector = (Fraction(0),) * 3
+_ZERO = Fraction(0)
+ZERO_VECTOR: Vector = (_ZERO,) * 3
 ZERO_MATRIX: Matrix = (ZERO_VECTOR,) * 3
 
 
 def diagonal(entries: Vector) -> Matrix:
     """The square matrix with these diagonal entries."""
     return tuple(
-        tuple(entry if i == j else Fraction(0) for j in range(len(entries)))
+        tuple(entry if i == j else _ZERO for j in range(len(entries)))
         for i, entry in enumerate(entries)
     )
 
@@ -27,7 +28,8 @@ def transpose(matrix: Matrix) -> Matrix:
 
 
 def dot(a: Vector, b: Vector) -> Fraction:
-    return sum((p * q for p, q in zip(a, b, strict=True)), Fraction(0))
+    # Most tensors are sparse, and a product of rationals is dear.
+    return sum((p * q for p, q in zip(a, b, strict=True) if p and q), _ZERO)
 
 
 def cross(a: Vector, b: Vector) -> Vector:
@@ -74,14 +76,17 @@ def is_positive_definite(matrix: Matrix) -> bool:
         if pivot_row[k] <= 0:
             return False
         for row in rows[k + 1 :]:
-            factor = row[k] / pivot_row[k]
-            row[k:] = [p - factor * q for p, q in zip(row[k:], pivot_row[k:], strict=True)]
+            if row[k]:
+                factor = row[k] / pivot_row[k]
+                row[k:] = [p - factor * q for p, q in zip(row[k:], pivot_row[k:], strict=True)]
     return True
 
 
 def inverse(matrix: Matrix) -> Matrix:
     """The inverse by elimination with row exchanges; ZeroDivisionError if the matrix is singular."""
     size = len(matrix)
+    if is_diagonal(matrix):
+        return diagonal(tuple(1 / matrix[i][i] for i in range(size)))
     rows = [
         list(row) + [Fraction(int(i == j)) for j in range(size)] for i, row in enumerate(matrix)
     ]

@@ -1,4 +1,4 @@
-"""How a solver of a family is named: `FAMILY:METHOD?KEY=VALUE&KEY=VALUE`."""
+"""How a solver is named: `FAMILY:METHOD?KEY=VALUE&KEY=VALUE`, or `METHOD?KEY=VALUE` without a family."""
 
 from __future__ import annotations
 
@@ -16,6 +16,9 @@ class Options:
 
     method: str
     values: Mapping[str, str]
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.values
 
     def positive(self, key: str, default: str) -> Fraction:
         """The positive number of that key, exactly as written; an empty ``default`` is no number.
@@ -36,7 +39,8 @@ class Options:
 
 def options(name: str, methods: Iterable[str], keys: Iterable[str]) -> Options:
     """Take a name apart. Raises ValueError for a method or a key that there is not, or twice."""
-    method, _, query = name.partition(":")[2].partition("?")
+    word, _, query = name.partition("?")
+    method = word.partition(":")[2] if ":" in word else word
     _known(method, methods, "a method")
     values: dict[str, str] = {}
     for part in query.split("&") if query else ():

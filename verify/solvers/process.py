@@ -65,7 +65,7 @@ class Process(Solver):
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
-            return replace(_trajectory(ended.answer, problem, seconds), seconds=seconds)
+            return _trajectory(ended.answer, problem, seconds)
         except protocol.Misanswer as fault:
             outcome, what = Outcome.MISANSWERED, str(fault)
         except protocol.NotFinite as fault:
@@ -87,10 +87,12 @@ def named(name: str) -> Process:
         ) from None
     if not command:
         raise ValueError(f"expected a command after {PREFIX}, got none")
-    return Process(name, _time_limit(os.environ.get(LIMIT_VARIABLE)))
+    return Process(name, time_limit())
 
 
-def _time_limit(text: str | None) -> float:
+def time_limit() -> float:
+    """Seconds for a problem, as the environment variable says; ValueError where it is no number."""
+    text = os.environ.get(LIMIT_VARIABLE)
     if text is None or not text.strip():
         return DEFAULT_LIMIT
     with suppress(ValueError):
@@ -99,13 +101,27 @@ def _time_limit(text: str | None) -> float:
     raise ValueError(f"expected a positive number of seconds, got {text!r} @ {LIMIT_VARIABLE}")
 
 
-def _trajectory(answer: bytes, problem: Problem, seconds: float) -> Trajectory:
+def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
+    """``waited``: the seconds of the whole run, start of the program and both pipes included."""
     found = protocol.read(answer, problem)
-    if not found.steps <= _STEPS_PER_SECOND * seconds:
-        raise protocol.Misanswer(f"{found.steps} steps in {seconds:.3g} seconds @ steps")
+    if not found.steps <= _STEPS_PER_SECOND * waited:
+        raise protocol.Misanswer(f"{found.steps} steps in {waited:.3g} seconds @ steps")
+    seconds = waited if found.seconds is None else found.seconds
+    if not seconds + found.compile_seconds <= waited:
+        claimed = f"{seconds:.3g} + {found.compile_seconds:.3g}"
+        raise protocol.Misanswer(
+            f"expected seconds + compile_seconds within the {waited:.3g} that the whole run took, "
+            f"got {claimed} @ seconds"
+        )
     # The rows are from here on those of any solver of one's own.
     trajectory = Callback(lambda _: found.states).solve(problem)
-    return replace(trajectory, steps=found.steps, evaluations=found.evaluations)
+    return replace(
+        trajectory,
+        steps=found.steps,
+        evaluations=found.evaluations,
+        seconds=seconds,
+        compile_seconds=found.compile_seconds,
+    )
 
 
 # Running a program that may do anything.

@@ -44,6 +44,9 @@ The answer is one JSON object on standard output, and the exit status 0: a list 
     c1 c2 c3             centre, space axes                      (where tracked)
     steps                optional: the steps taken. The judge allows rounding its square root
     evaluations          optional: the evaluations of the derivative
+    seconds              optional: the propagation alone, by the program's own clock. Believed only if
+                         the whole run, as it is measured from outside, took no less
+    compile_seconds      optional, beside seconds: what went before the propagation
 
 An entry in quotes, "0x1.8p-3", "0.1" or "1/3", is taken exactly. A bare JSON number is on f32 and
 f64 the double nearest to it, because that is what the program held and printed, and on wider rungs
@@ -75,6 +78,8 @@ VERSION = 1
 _TIME_ROUNDINGS = 4
 _DOUBLE_BITS = 53
 _PLACES = 30
+# Seconds, of the order of a century: a double holds it, and no program was waited for so long.
+_LONGEST = 10**10
 _LARGEST_BINARY_EXPONENT = 20_000
 _HEXADECIMAL = re.compile(
     r"([+-]?)0x([0-9a-f]{0,1000})\.?([0-9a-f]{0,1000})(?:p([+-]?[0-9]{1,5}))?", re.IGNORECASE
@@ -100,11 +105,16 @@ class NotFinite(Exception):
 
 @dataclass(frozen=True)
 class Answer:
-    """States in the order of ``columns``, held exactly, and the work that the program claims."""
+    """States in the order of ``columns``, held exactly, and the work that the program claims.
+
+    ``seconds`` is None where the program did not time itself.
+    """
 
     states: list[list[Fraction | float]]
     steps: int
     evaluations: int
+    seconds: float | None = None
+    compile_seconds: float = 0.0
 
 
 # The question.
@@ -240,7 +250,8 @@ def read(text: bytes, problem: Problem) -> Answer:
     }
     _check_times(found["t"], problem)
     states = [list(row) for row in zip(*(found[name] for name in names[1:]), strict=True)]
-    return Answer(states, _count(document, "steps"), _count(document, "evaluations"))
+    work = _count(document, "steps"), _count(document, "evaluations")
+    return Answer(states, *work, *_durations(document))
 
 
 def _parsed(text: bytes) -> Mapping[str, Any]:
@@ -296,6 +307,26 @@ def _count(document: Mapping[str, Any], name: str) -> int:
     if not isinstance(count, int) or isinstance(count, bool) or count < 0:
         raise Misanswer(f"expected a whole number, got {count!s:.40} @ {name}")
     return count
+
+
+def _durations(document: Mapping[str, Any]) -> tuple[float | None, float]:
+    """The program's own seconds, None where it states none, and those of compiling."""
+    seconds = _duration(document, "seconds")
+    compile_seconds = _duration(document, "compile_seconds")
+    if seconds is None and compile_seconds is not None:
+        raise Misanswer("expected seconds beside compile_seconds, got none @ seconds")
+    return seconds, compile_seconds or 0.0
+
+
+def _duration(document: Mapping[str, Any], name: str) -> float | None:
+    if name not in document:
+        return None
+    value = document[name]
+    is_number = isinstance(value, int | Decimal) and not isinstance(value, bool)
+    if not (is_number and 0 <= value <= _LONGEST):
+        got = json.dumps(value, default=str)
+        raise Misanswer(f"expected a number of seconds, not negative, got {got:.40} @ {name}")
+    return float(value)
 
 
 def _number(value: Any, as_double: bool, place: str) -> Fraction | float:

@@ -9,13 +9,19 @@ if TYPE_CHECKING:
     from verify.solvers.solver import Solver
 
 TAYLOR = "taylor"
+TAYLOR_AT = f"{TAYLOR}?"
 # A solver of one's own: what follows is the command that starts it.
 PROCESS = "process:"
 GEOMETRIC = "geometric:"
 SCIPY = "scipy:"
+MPMATH = "mpmath:"
+CLOSED_FORM = "closed-form:"
+# Of other libraries, each in an environment of its own.
+OUTSIDE = "outside:"
 # The names there are, NUMBER standing for what is to be chosen.
 NAMES = (
     TAYLOR,
+    "taylor?tol=NUMBER",
     "geometric:implicit-midpoint?step=NUMBER",
     "geometric:splitting?step=NUMBER",
     "geometric:moser-veselov?step=NUMBER",
@@ -26,16 +32,34 @@ NAMES = (
     "scipy:Radau?rtol=NUMBER&atol=NUMBER",
     "scipy:BDF?rtol=NUMBER&atol=NUMBER",
     "scipy:LSODA?rtol=NUMBER&atol=NUMBER",
+    "mpmath:odefun?tol=NUMBER&degree=NUMBER",
+    "closed-form:ellipj",
+    "outside:cvode-adams?rtol=NUMBER&atol=NUMBER",
+    "outside:cvode-bdf?rtol=NUMBER&atol=NUMBER",
+    "outside:cyrk-dop853?rtol=NUMBER&atol=NUMBER",
+    "outside:cyrk-tsit5?rtol=NUMBER&atol=NUMBER",
+    "outside:cyrk-vern7?rtol=NUMBER&atol=NUMBER",
+    "outside:cyrk-vern8?rtol=NUMBER&atol=NUMBER",
+    "outside:cyrk-lsoda?rtol=NUMBER&atol=NUMBER",
+    "outside:diffrax-tsit5?rtol=NUMBER&atol=NUMBER",
+    "outside:diffrax-dopri8?rtol=NUMBER&atol=NUMBER",
+    "outside:extensisq-pr7?rtol=NUMBER&atol=NUMBER",
+    "outside:extensisq-pr8?rtol=NUMBER&atol=NUMBER",
+    "outside:extensisq-pr9?rtol=NUMBER&atol=NUMBER",
+    "outside:extensisq-swag?rtol=NUMBER&atol=NUMBER",
+    "outside:rebound-bs?rtol=NUMBER&atol=NUMBER",
+    "outside:numbalsoda-dop853?rtol=NUMBER&atol=NUMBER",
+    "outside:numbalsoda-lsoda?rtol=NUMBER&atol=NUMBER",
 )
 
 
 def solver_named(name: str) -> Solver:
     """The solver of that name; ValueError lists the names there are."""
     # Each is imported for itself: heyoka alone takes a fifth of a second, and only a run needs it.
-    if name == TAYLOR:
-        from verify.solvers.taylor.driver import Taylor
+    if name == TAYLOR or name.startswith(TAYLOR_AT):
+        from verify.solvers.taylor import driver
 
-        return Taylor()
+        return driver.named(name)
     if name.startswith(PROCESS):
         from verify.solvers import process
 
@@ -48,18 +72,37 @@ def solver_named(name: str) -> Solver:
         from verify.solvers import scipy
 
         return scipy.named(name)
+    if name.startswith(MPMATH):
+        from verify.solvers import odefun
+
+        return odefun.named(name)
+    if name.startswith(CLOSED_FORM):
+        from verify.solvers import closed_form
+
+        return closed_form.named(name)
+    if name.startswith(OUTSIDE):
+        from verify.solvers import entrant
+
+        return entrant.named(name)
     raise ValueError(unknown_solver(name))
 
 
 def check_name(name: str) -> None:
     """Raise the ValueError of `solver_named`; nothing heavy is imported for it."""
-    if name != TAYLOR:
+    if name.startswith(TAYLOR_AT):
+        from verify.solvers.taylor.name import tolerance
+
+        tolerance(name)
+    elif name != TAYLOR:
         solver_named(name)
 
 
 def unknown_solver(name: str) -> str:
     """What to say about a name that is no solver."""
-    families = [TAYLOR, f"{GEOMETRIC}METHOD?step=NUMBER", f"{SCIPY}METHOD", f"{PROCESS}COMMAND"]
+    families = [
+        *(TAYLOR, f"{GEOMETRIC}METHOD?step=NUMBER", f"{SCIPY}METHOD", f"{MPMATH}odefun"),
+        *(f"{CLOSED_FORM}ellipj", f"{OUTSIDE}LIBRARY-METHOD", f"{PROCESS}COMMAND"),
+    ]
     near = get_close_matches(name, NAMES, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     return f"expected a solver ({', '.join(families)}), got {name!r}{hint}"

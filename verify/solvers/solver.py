@@ -39,6 +39,11 @@ class Solver(ABC):
         del rung
         return ""
 
+    def unsuited(self, problem: Problem) -> str:
+        """Why the solver is not made for such a problem, known before it runs; empty where it is."""
+        del problem
+        return ""
+
 
 @final
 @dataclass(frozen=True)

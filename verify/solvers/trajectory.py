@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Impulse, Motion
 from verify.scenes.precision import held_exactly
+
+_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
 
 class Outcome(Enum):
@@ -35,6 +38,30 @@ class Outcome(Enum):
     MISANSWERED = "claimed success, but its answer is not what was asked for"
 
 
+class Postponed(Mapping[str, np.ndarray[Any, Any]]):
+    """The quantities of a trajectory, made of a solver's rows when the first of them is looked at."""
+
+    def __init__(self, problem: Problem, rows: Callable[[], Sequence[Sequence[Fraction]]]) -> None:
+        self._problem, self._rows = problem, rows
+
+    @cached_property
+    def _formed(self) -> dict[str, Any]:
+        return from_scaled(self._problem, self._rows())
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        found: np.ndarray[Any, Any] = self._formed[quantity]
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names(self._problem))
+
+    def __len__(self) -> int:
+        return len(_names(self._problem))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (self._formed,)
+
+
 @dataclass(frozen=True)
 class Trajectory:
     """The answer of one solver to one problem.
@@ -43,7 +70,8 @@ class Trajectory:
     ``quaternion`` (n, 4; body to space, any sign, nearly unit) to object arrays of mpf that hold the
     solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED.
     ``evaluations`` counts derivatives of the whole state, ``seconds`` the propagation alone and
-    ``compile_seconds`` what came before it.
+    ``compile_seconds`` what came before it. ``inner_seconds`` is the part of ``seconds`` that was
+    spent in somebody else's compiled integrator, where that is told apart.
     """
 
     outcome: Outcome
@@ -53,6 +81,7 @@ class Trajectory:
     evaluations: int = 0
     seconds: float = 0.0
     compile_seconds: float = 0.0
+    inner_seconds: float | None = None
 
     def motion(self, bits: int) -> Motion:
         """The same as a Motion: attitude matrices are formed with ``bits`` of precision."""
@@ -74,6 +103,14 @@ def _rotation_matrix(q: np.ndarray[Any, Any]) -> list[list[Any]]:
     return [[entry / squared_norm for entry in row] for row in rotation(list(q))]
 
 
+def _names(problem: Problem) -> tuple[str, ...]:
+    """The quantities that the states of a problem hold."""
+    is_rigid = isinstance(problem.given.body, RigidBody)
+    names = ("omega",) if is_rigid else ("linear_impulse", "angular_impulse")
+    frame = (("e0", "quaternion"), ("c1", "centre"))
+    return (*names, *(name for state, name in frame if state in problem.form.states))
+
+
 def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
     """The quantities of states in the problem's own form and units, formed exactly.
 
@@ -87,9 +124,9 @@ def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[st
         momenta = _vectors(columns, "H", units.momentum)
         quantities["omega"] = [tensors.apply(K, H) for H in momenta]
     else:
-        if "y3" not in columns:
-            constant = problem.parameter.get("y3", Fraction(0))
-            columns["y3"] = (constant,) * len(rows)
+        for name in _IMPULSES:
+            if name not in columns:
+                columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
         quantities["linear_impulse"] = _vectors(columns, "x", units.impulse)
         quantities["angular_impulse"] = _vectors(columns, "y", units.momentum)
     if "e0" in columns:

@@ -58,7 +58,7 @@ def request_sentences(points: Iterable[Point]) -> list[str]:
     for p in sound_points(points):
         setting = p.timed.setting
         asked, got = p.asked_digits, digits(p.error)
-        if asked is None or got is None:
+        if asked is None or got is None or setting.requested is None:
             continue
         ratio = p.error / setting.requested
         compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"

@@ -39,7 +39,8 @@ class Point:
     def asked_digits(self) -> float | None:
         """Those of the tolerance; a step asks for none."""
         setting = self.timed.setting
-        return digits(setting.requested) if setting.asked == "tolerance" else None
+        asks = setting.asked == "tolerance" and setting.requested is not None
+        return digits(setting.requested or 0.0) if asks else None
 
     @property
     def error(self) -> float:
@@ -72,6 +73,7 @@ class Point:
             "steps": trajectory.steps,
             "evaluations": trajectory.evaluations,
             "seconds": self.timed.best,
+            "inner_seconds": self.timed.inner,
             "spread": self.timed.spread,
             "repeats": len(self.timed.seconds),
             "first_seconds": self.timed.first,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -29,12 +30,13 @@ class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
 
 @dataclass(frozen=True)
 class Recommendation:
-    """A setting ready to run: ``solver.solve(pose(scene, rung))``, or ``verify.run`` with both.
+    """A setting ready to run: ``solver.solve(pose(scene, rung))``, ``verify.run``, or ``command``.
 
     ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
     it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled.
     """
 
+    scene: str
     solver: Solver
     rung: Rung
     target: float
@@ -55,8 +57,15 @@ class Recommendation:
             "starts": self.starts,
             "seed": self.seed,
             "seconds": self.seconds,
+            "command": self.command,
             "sentence": self.sentence,
         }
+
+    @property
+    def command(self) -> str:
+        """What runs and judges it, as it is typed into a shell."""
+        words = ["taylor-verify", "run", self.scene, "--solver", self.solver.name]
+        return shlex.join([*words, "--rung", self.rung.name])
 
     @property
     def sentence(self) -> str:
@@ -102,7 +111,7 @@ def recommended(trade: TradeOff, error: float) -> Recommendation:
         if worst is not None:
             setting = p.timed.setting
             return Recommendation(
-                *(setting.solver, setting.rung, error, worst, MARGIN),
+                *(trade.scene.name, setting.solver, setting.rung, error, worst, MARGIN),
                 *(1 + len(scenes), trade.seed, p.seconds),
             )
     raise OutOfReach(_nearest(trade, error))

@@ -10,9 +10,9 @@ from __future__ import annotations
 import os
 import random
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Final
 
@@ -23,13 +23,15 @@ from verify.trade.setting import Setting
 REPEATS: Final = 5
 SEED: Final = 1
 # A setting that took longer is not set finer, and one that has is not repeated more than once.
-_PATIENCE: Final = 2.0
+PATIENCE: Final = 2.0
 _HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
 # What the times compare, said wherever they are shown.
 WHAT_IS_TIMED: Final = (
     "the solver's own propagation; taylor runs compiled equations and looks for its longest step in "
-    "Python, scipy calls the equations in Python, geometric is Python throughout"
+    "Python, scipy calls straight-line equations in Python, geometric and odefun are Python "
+    "throughout, a program of one's own is timed as it states itself, and those of other libraries "
+    "state their second propagation"
 )
 
 Clock = Callable[[], float]
@@ -41,12 +43,14 @@ class Timed:
 
     ``first`` is the whole of the first solve as the caller waits for it, ``compiling`` the part of
     it that the solver says went before the propagation. ``seconds`` is empty for a run that failed.
+    ``inner`` is what the best of them spent in somebody else's compiled integrator, where known.
     """
 
     setting: Setting
     trajectory: Trajectory
     first: float
     seconds: tuple[float, ...] = ()
+    inner: float | None = None
 
     @property
     def compiling(self) -> float:
@@ -64,43 +68,57 @@ class Timed:
 
 
 def timed(
-    problems: Mapping[Setting, Problem], repeats: int, seed: int, clock: Clock = perf_counter
+    problems: Mapping[Setting, Problem],
+    repeats: int,
+    seed: int,
+    clock: Clock = perf_counter,
+    patience: float = PATIENCE,
 ) -> list[Timed]:
     """Every setting solved once and those that finished ``repeats`` times more, in their own order.
 
-    A setting is left out where a coarser one of its family took too long; the outcome says so.
+    Without repeats the first time is all there is, as for whoever is after the errors alone.
+    A setting is left out where a coarser one of its family took more than ``patience`` seconds; the
+    outcome says so.
     """
-    firsts = _first_solves(problems, clock)
-    again: dict[Setting, list[float]] = {
+    firsts = _first_solves(problems, clock, patience)
+    again: dict[Setting, list[Trajectory]] = {
         one.setting: [] for one in firsts if one.trajectory.outcome is Outcome.FINISHED
     }
     spent = {one.setting: one.trajectory.seconds for one in firsts}
     order = random.Random(seed)
     for _ in range(repeats):
-        settings = [s for s, made in again.items() if not made or spent[s] <= _PATIENCE]
+        settings = [s for s, made in again.items() if not made or spent[s] <= patience]
         order.shuffle(settings)
         for setting in settings:
-            seconds = setting.solver.solve(problems[setting]).seconds
-            again[setting].append(seconds)
-            spent[setting] += seconds
-    return [
-        Timed(one.setting, one.trajectory, one.first, tuple(again.get(one.setting, ())))
-        for one in firsts
-    ]
+            # The numbers are those of the first solve; kept, they would fill the memory.
+            solved = replace(setting.solver.solve(problems[setting]), quantities={})
+            again[setting].append(solved)
+            spent[setting] += solved.seconds
+    return [_with_times(one, again.get(one.setting, ())) for one in firsts]
 
 
-def _first_solves(problems: Mapping[Setting, Problem], clock: Clock) -> list[Timed]:
+def _with_times(one: Timed, again: Sequence[Trajectory]) -> Timed:
+    if not again and one.trajectory.outcome is Outcome.FINISHED:
+        again = (one.trajectory,)
+    best = min(again, key=lambda solved: solved.seconds, default=None)
+    inner = best.inner_seconds if best is not None else None
+    return replace(one, seconds=tuple(solved.seconds for solved in again), inner=inner)
+
+
+def _first_solves(
+    problems: Mapping[Setting, Problem], clock: Clock, patience: float
+) -> list[Timed]:
     found: list[Timed] = []
     dear: set[str] = set()
     for setting, problem in problems.items():
         if setting.family in dear:
-            detail = f"a coarser setting took more than {_PATIENCE:g} s"
+            detail = f"a coarser setting took more than {patience:g} s"
             found.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=detail), 0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
         found.append(Timed(setting, trajectory, clock() - began))
-        if not trajectory.seconds <= _PATIENCE:
+        if not trajectory.seconds <= patience:
             dear.add(setting.family)
     return found
 

@@ -17,7 +17,7 @@ from verify.trade.accuracy import Accuracy, Truth
 from verify.trade.front import front, front_sentences, request_sentences
 from verify.trade.point import Point, point
 from verify.trade.setting import Setting, settings
-from verify.trade.timing import REPEATS, SEED, WHAT_IS_TIMED, Clock, Timed, timed
+from verify.trade.timing import PATIENCE, REPEATS, SEED, WHAT_IS_TIMED, Clock, Timed, timed
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,14 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
+        """``sentences`` tell the front in words, ``integrators`` that of integrators alone."""
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
             "points": [p.row() for p in self.points],
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
+            "integrators": self._front_of_integrators(),
             "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,
@@ -51,6 +53,12 @@ class TradeOff:
             "provenance": provenance(self.scene.digest),
         }
 
+    def _front_of_integrators(self) -> list[str]:
+        """The front in words without what needs no steps; empty where that is not on the front."""
+        if all(p.timed.setting.is_integrator for p in self.front):
+            return []
+        return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
+
 
 def trade_off(
     scene: Scene,
@@ -58,11 +66,12 @@ def trade_off(
     repeats: int = REPEATS,
     seed: int = SEED,
     clock: Clock = perf_counter,
+    patience: float = PATIENCE,
 ) -> TradeOff:
-    """Measure these settings on the scene, or all there are."""
+    """Measure these settings on the scene, or all there are; see `timing.timed`."""
     asked = settings(scene) if asked is None else asked
     posed, refused = _posed(scene, asked)
-    measured = {one.setting: one for one in timed(posed, repeats, seed, clock)}
+    measured = {one.setting: one for one in timed(posed, repeats, seed, clock, patience)}
     measured |= {one.setting: one for one in refused}
     truths = Truths()
     found = [
@@ -97,12 +106,15 @@ def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Proble
     posed: dict[Setting, Problem] = {}
     refused: list[Timed] = []
     for setting in asked:
-        try:
-            reason = setting.solver.unavailable(setting.rung)
-            if not reason:
-                posed[setting] = pose(scene, setting.rung)
-                continue
-        except NotRepresentable as fault:
-            reason = str(fault)
+        reason = setting.withheld or setting.solver.unavailable(setting.rung)
+        if not reason:
+            try:
+                problem = pose(scene, setting.rung)
+                reason = setting.solver.unsuited(problem)
+            except NotRepresentable as fault:
+                reason = str(fault)
+        if not reason:
+            posed[setting] = problem
+            continue
         refused.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=reason), 0.0))
     return posed, refused

@@ -156,7 +156,8 @@ class RealRoots:
 
     @property
     def number(self) -> int:
-        return len(self._isolated)
+        bound = self._bound()
+        return self._changes(-bound) - self._changes(bound)
 
     def number_up_to(self, z: Fraction) -> int:
         """How many of them are <= z."""
@@ -169,9 +170,13 @@ class RealRoots:
         return list(self._split(-bound, bound))
 
     def _bound(self) -> Fraction:
-        """A power of two above every root (Cauchy)."""
-        ratio = 1 + max(abs(c / self.polynomial[0]) for c in self.polynomial)
-        return power_of_two(floor_log2(ratio) + 1)
+        """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).
+
+        As near to the roots in any units, which Cauchy's 1 + max |c_k/c_0| is not.
+        """
+        first, *others = self.polynomial
+        exponents = [-(-(floor_log2(c / first) + 1) // k) for k, c in enumerate(others, 1) if c]
+        return power_of_two(1 + max(exponents, default=0))
 
     def _split(self, low: Fraction, high: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
         pending = [(low, high)]

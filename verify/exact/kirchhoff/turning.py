@@ -41,6 +41,7 @@ class TurningBody(Enclosed):
             tensors.apply(tensors.transpose(body.coupling), x), tensors.apply(body.angular, y)
         )
         self._axis = tensors.plus(omega, (Fraction(0), Fraction(0), self._rate))
+        self._to_space = rotation_matrix(start.attitude)
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         rows = [self._at(t) for t in elapsed]
@@ -57,7 +58,7 @@ class TurningBody(Enclosed):
             "angular_impulse": _applied(turn, balls(start.angular)),
         }
         if self._track:
-            to_space = [balls(row) for row in rotation_matrix(start.attitude)]
+            to_space = [balls(row) for row in self._to_space]
             # The rows of the turn are the columns of its inverse.
             columns = [_applied(to_space, _turned(self._axis, row, t)) for row in turn]
             found["attitude"] = [list(row) for row in zip(*columns, strict=True)]
@@ -66,8 +67,7 @@ class TurningBody(Enclosed):
         return found
 
     def _centre(self, t: Fraction) -> list[arb]:
-        start = self._start
-        to_space = rotation_matrix(start.attitude)
+        start, to_space = self._start, self._to_space
         if not any(tensors.cross(self._axis, self._velocity)):
             # A straight path is rational, and may pass through the origin of space exactly.
             path = tensors.apply(to_space, tensors.scaled(t, self._velocity))

@@ -99,7 +99,7 @@ class FixedStep(Solver):
         return "" if rung.name == "f64" else f"{self.name} is made in float64: f64 alone"
 
     def solve(self, problem: Problem) -> Trajectory:
-        if reason := self._not_made_for(problem):
+        if reason := self.unsuited(problem) or self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
         course = _Course(self, problem)
         if not course.steps <= _MOST_STEPS:
@@ -121,12 +121,12 @@ class FixedStep(Solver):
             seconds=seconds,
         )
 
-    def _not_made_for(self, problem: Problem) -> str:
+    def unsuited(self, problem: Problem) -> str:
         if problem.scene.model != "euler":
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
         if any(Body.of(problem).M) and not self.takes_moment:
             return f"{self.name} is made for a body without a moment"
-        return self.unavailable(problem.rung)
+        return ""
 
 
 class _Course:

@@ -9,9 +9,10 @@ an endless or a broken run             the number of steps is bounded and the ou
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import pairwise
 from math import isfinite
 from time import perf_counter
@@ -23,18 +24,18 @@ import numpy as np
 from verify.models.algebra import is_absent
 from verify.models.form import Form
 from verify.models.problem import Problem
-from verify.models.rates import fastest_rate
+from verify.models.rates import Linearised
 from verify.scenes.precision import Rung
-from verify.scenes.table import exact_number
 from verify.solvers.solver import Solver
 from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.name import named_at, tolerance
 from verify.solvers.taylor.numbers import arithmetic, unavailable
-from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+from verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
 # In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
 # a start close to an unstable axis, where the step would grow with the logarithm of the distance,
 # is what the cap is for.
-_LONGEST_STEP = 0.5
+LONGEST_STEP = 0.5
 # The rate is looked at again this many times along the way, and the fastest seen so far counts.
 _SEGMENTS = 24
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more.
@@ -43,6 +44,9 @@ _STEPS_PER_RADIAN = 64
 _MOST_RADIANS = 1e10
 # Beyond this many states straight-line code compiles longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
+
+# The samples of one stretch after the other, each a row of the states.
+Rows = list[np.ndarray[Any, Any]]
 
 _OUTCOMES = {
     hy.taylor_outcome.time_limit: Outcome.FINISHED,
@@ -64,54 +68,77 @@ class Taylor(Solver):
     tolerance: Fraction | None = None
 
     def unavailable(self, rung: Rung) -> str:
+        if self.tolerance is not None and not rung.round(self.tolerance) > 0:
+            # heyoka would take it for its own default.
+            return f"{rung.name} has no number for a tolerance so small"
         return unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
-        integrator = _integrator(problem.form, problem.rung, self.tolerance)
-        compiled = perf_counter()
-        outcome, steps, rows = _propagate(integrator, problem)
-        seconds = perf_counter() - compiled
-        numbers = arithmetic(problem.rung)
-        quantities = {}
+        integrator = compiled(problem.form, problem.rung, self.tolerance)
+        ready = perf_counter()
+        outcome, steps, rows, inner = _propagate(integrator, problem)
+        seconds = perf_counter() - ready
+        quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
-            exact = [[numbers.exact(value) for value in row] for row in rows]
-            quantities = from_scaled(problem, exact)
+            # Exact numbers of many samples take longer than the samples: the judge asks for them.
+            quantities = Postponed(problem, partial(_exact, rows, problem.rung))
         return Trajectory(
             outcome=outcome,
             quantities=quantities,
             steps=steps,
             evaluations=steps * int(integrator.order),
             seconds=seconds,
-            compile_seconds=compiled - began,
+            compile_seconds=ready - began,
+            inner_seconds=inner,
         )
 
 
 def at_tolerance(text: str) -> Taylor:
     """The driver at a tolerance that is a decimal or a/b; ValueError for one that is not positive."""
-    tolerance = exact_number(text)
-    if not tolerance > 0:
-        raise ValueError(f"expected a positive tolerance, got {text!r}")
-    return Taylor(setting=f"tol={text}", tolerance=tolerance)
+    return named(named_at(text))
+
+
+def named(name: str) -> Taylor:
+    """The driver that `taylor` or `taylor?tol=NUMBER` names; ValueError for any other name."""
+    return Taylor(name, tolerance=tolerance(name))
+
+
+def _exact(rows: Rows, rung: Rung) -> list[list[Fraction]]:
+    exact = arithmetic(rung).exact
+    return [[exact(value) for value in row] for stretch in rows for row in stretch]
 
 
 @lru_cache(maxsize=64)
-def _integrator(form: Form, rung: Rung, tolerance: Fraction | None) -> Any:
-    """One compiled integrator per form, rung and tolerance; the rest is filled in per problem."""
+def compiled(
+    form: Form,
+    rung: Rung,
+    tolerance: Fraction | None,
+    literals: tuple[Fraction, ...] | None = None,
+) -> Any:
+    """One compiled integrator per form, rung and tolerance; the rest is filled in per problem.
+
+    Parameters cost what literals cost, and serve every body: literals are for measuring that.
+    """
     use_own_cache()
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
     states = hy.make_vars(*form.states)
-    rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
+    if literals is None:
+        coefficients = [hy.par[i] for i in range(len(form.parameters))]
+    else:
+        coefficients = [hy.expression(numbers.number(value)) for value in literals]
+    rates = form.rates(states, coefficients)
     system = [
         (state, hy.expression(0.0) if is_absent(rate) else rate)
         for state, rate in zip(states, rates, strict=True)
     ]
+    passed = len(form.parameters) if literals is None else 0
     return hy.taylor_adaptive(
         system,
         state=np.array([zero] * len(states), dtype=numbers.fp_type),
         time=zero,
-        pars=np.array([zero] * len(form.parameters), dtype=numbers.fp_type),
+        pars=np.array([zero] * passed, dtype=numbers.fp_type),
         fp_type=numbers.fp_type,
         compact_mode=numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
         # heyoka takes 0 for the machine epsilon of the type.
@@ -119,37 +146,47 @@ def _integrator(form: Form, rung: Rung, tolerance: Fraction | None) -> Any:
     )
 
 
-def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, list[Any]]:
-    """Sample the problem's times; the outcome is FINISHED only if every row is there and finite."""
+def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, float]:
+    """Sample the problem's times; the outcome is FINISHED only if every row is there and finite.
+
+    Also the number of steps, the rows, and the seconds that heyoka's own code took.
+    """
     numbers = arithmetic(problem.rung)
-    integrator.time = numbers.number(Fraction(0))
+    zero = numbers.array([Fraction(0)])
+    integrator.time = zero[0]
     integrator.state[:] = numbers.array(problem.initial)
     integrator.pars[:] = numbers.array(problem.parameters)
+    times = numbers.times(problem.times)
     # The grid starts at the integrator's own time, asked for or not.
-    grid = problem.times if problem.times[0] == 0 else (Fraction(0), *problem.times)
-    rows, total_steps, outcome, rate = [integrator.state.copy()], 0, Outcome.FINISHED, 0.0
+    grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+    linearised, rate = Linearised(problem), 0.0
+    rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
     for first, last in _segments(len(grid)):
-        rate = max(rate, fastest_rate(problem, [float(value) for value in integrator.state]))
+        rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
         if not isfinite(rate):
-            return Outcome.NON_FINITE, total_steps, []
-        radians = rate * float(abs(grid[last] - grid[first]))
+            return Outcome.NON_FINITE, total_steps, [], inner
+        radians = rate * abs(float(grid[last] - grid[first]))
         if not radians <= _MOST_RADIANS:
-            return Outcome.STEP_LIMIT, total_steps, []
+            return Outcome.STEP_LIMIT, total_steps, [], inner
+        longest = numbers.double(LONGEST_STEP / rate)
+        instants = grid[first : last + 1]
+        began = perf_counter()
         status, _, _, steps, _, reached = integrator.propagate_grid(
-            numbers.array(grid[first : last + 1]),
-            max_delta_t=numbers.number(problem.rung.round(Fraction(_LONGEST_STEP / rate))),
+            instants,
+            max_delta_t=longest,
             max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
         )
-        rows.extend(reached[1:])
+        inner += perf_counter() - began
+        rows.append(reached[1:])
         total_steps += int(steps)
         outcome = _OUTCOMES.get(status, Outcome.INTERRUPTED)
-        if outcome is Outcome.FINISHED and not _are_finite(reached):
+        if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
             outcome = Outcome.NON_FINITE
         if outcome is not Outcome.FINISHED:
-            return outcome, total_steps, []
-    if len(rows) != len(grid):
-        return Outcome.INTERRUPTED, total_steps, []
-    return outcome, total_steps, rows[len(grid) - len(problem.times) :]
+            return outcome, total_steps, [], inner
+    if sum(map(len, rows)) != len(grid):
+        return Outcome.INTERRUPTED, total_steps, [], inner
+    return Outcome.FINISHED, total_steps, rows[len(grid) - len(times) :], inner
 
 
 def _segments(instants: int) -> list[tuple[int, int]]:
@@ -157,8 +194,3 @@ def _segments(instants: int) -> list[tuple[int, int]]:
     pieces = min(instants - 1, _SEGMENTS)
     ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)}) if pieces else []
     return list(pairwise(ends))
-
-
-def _are_finite(rows: np.ndarray[Any, Any]) -> bool:
-    """x - x is 0 for a finite number of any type, and NaN for all others."""
-    return all(bool(value - value == 0) for value in rows.flat)

@@ -1,0 +1,314 @@
+"""Claims: exact fields that find every identity, verdicts that no failed check can earn, numbers told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+
+from verify.claims.claim import Claim, Residual, Verdict, examine, measured, worse
+from verify.claims.field import Element, Field, cross, dot, identity, rotation
+from verify.claims.heinbockel.equations import _left_of_70
+from verify.claims.heinbockel.rigid import rigid, unsymmetric
+from verify.claims.hydromechanics.algebraic import plain, quartics
+from verify.claims.hydromechanics.clebsch import body
+from verify.claims.hydromechanics.fourth import GENERIC, SECOND_CASE, STEKLOV, SYMMETRIC, integrals
+from verify.claims.hydromechanics.poles import leading_coefficients
+from verify.claims.hydromechanics.solid import loaded
+from verify.claims.trajectory import trajectory
+from verify.exact.invariants import invariants
+from verify.models.euler import heinbockel_moment
+from verify.models.kirchhoff import clebsch_rates, impulse_rates
+from verify.scenes.bodies import ImmersedBody
+from verify.scenes.motion import Clock, Impulse
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import is_positive_definite
+
+
+def triangle() -> Field:
+    """u, v and w with w^2 = u^2 + v^2, where u turns into v."""
+    field = Field({"u": 3, "v": 4, "w": 5}, {"w": lambda f: f["u"] ** 2 + f["v"] ** 2})
+    field.turn({"u": -1 * field["v"], "v": field["u"]})
+    return field
+
+
+# The field.
+
+numbers = st.fractions(min_value=-4, max_value=4, max_denominator=5)
+
+
+@given(st.lists(numbers, min_size=6, max_size=6))
+def test_arithmetic_at_a_point_is_that_of_rationals(coefficients: list[Fraction]) -> None:
+    """Sums, products, powers and quotients of elements have the values that Fractions give."""
+    field = triangle()
+
+    def built(u: Any, v: Any, w: Any) -> Any:
+        a, b, c, d, e, f = coefficients
+        return (a * u**2 + b * v - c * w**3) * (d - u * v) + (e * w + f) / (u**2 + 7)
+
+    element = built(*(field[name] for name in "uvw"))
+    assert field.value(element) == built(Fraction(3), Fraction(4), Fraction(5))
+
+
+def test_a_root_is_replaced_wherever_its_square_occurs() -> None:
+    """(w - u)(w + u) = v^2 is an identity, (w - u)(w + u) = u^2 is none."""
+    field = triangle()
+    u, v, w = (field[name] for name in "uvw")
+    assert ((w - u) * (w + u) - v**2).is_zero
+    assert not ((w - u) * (w + u) - u**2).is_zero
+    assert (1 / (w - u) - (w + u) / v**2).is_zero
+
+
+def test_i_is_a_root_of_minus_one() -> None:
+    """(u + i v)(u - i v) = w^2, and |3 + 4 i| = 5."""
+    field = triangle()
+    u, v, i = field["u"], field["v"], field["i"]
+    assert ((u + i * v) * (u - i * v) - field["w"] ** 2).is_zero
+    assert field.size(u + i * v) == 5.0
+
+
+def test_the_rate_obeys_the_rules() -> None:
+    """Product and quotient rule, and d(atan v/u)/dt = 1 for the rotation."""
+    field = triangle()
+    u, v, w = (field[name] for name in "uvw")
+    a, b = u**2 + 2 * w, v * w - 3
+    rate = field.rate
+    assert (rate(a * b) - rate(a) * b - a * rate(b)).is_zero
+    assert (rate(a / b) - (rate(a) * b - a * rate(b)) / b**2).is_zero
+    assert (rate(v / u) / (1 + (v / u) ** 2) - 1).is_zero
+    assert rate(w).is_zero
+
+
+def test_a_rate_that_a_root_cannot_have_is_refused() -> None:
+    """w^2 = u^2 + v^2 with u' = v needs w' = u v/w; w' = 0 is refused."""
+    field = Field({"u": 3, "v": 4, "w": 5}, {"w": lambda f: f["u"] ** 2 + f["v"] ** 2})
+    with pytest.raises(ValueError, match="expected the rate of a root, got another @ w"):
+        field.turn({"u": field["v"]})
+    field.turn({"u": field["v"], "w": field["u"] * field["v"] / field["w"]})
+
+
+def test_a_point_off_the_root_is_refused() -> None:
+    """w = 6 is no root of 9 + 16."""
+    with pytest.raises(ValueError, match="expected w\\^2 = 25"):
+        Field({"u": 3, "v": 4, "w": 6}, {"w": lambda f: f["u"] ** 2 + f["v"] ** 2})
+
+
+def test_partial_derivatives_divide_out_denominators() -> None:
+    """d((u + v)/u)/du = -v/u^2, for what is not reduced to lowest terms too."""
+    field = triangle()
+    u, v = field["u"], field["v"]
+    for quotient in ((u + v) / u, (u + v) * v / (u * v)):
+        assert (field.partial(quotient, "u") + v / u**2).is_zero
+
+
+def test_division_by_zero_is_refused() -> None:
+    """A divisor that is zero by the relation of a root is seen."""
+    field = triangle()
+    with pytest.raises(ZeroDivisionError, match="not identically zero"):
+        field["u"] / (field["w"] ** 2 - field["u"] ** 2 - field["v"] ** 2)
+
+
+def test_the_quaternion_makes_a_rotation() -> None:
+    """R R^T = 1 and det R = 1 for e0^2 = 1 - e1^2 - e2^2 - e3^2."""
+    b = rigid()
+    R = rotation([b.field[f"e{k}"] for k in range(4)])
+    for j in range(3):
+        for k in range(3):
+            assert (dot(R[j], R[k]) - int(j == k)).is_zero
+    assert (dot(cross(R[0], R[1]), R[2]) - 1).is_zero
+
+
+def test_an_identity_without_differences_satisfies_nothing() -> None:
+    """A form that compares nothing is a NaN, which is neither true nor false."""
+    found = identity(triangle, lambda field: [])()
+    assert not found.is_satisfied
+    assert not found.is_refuted
+
+
+# The equations of the ledger against those of the solvers, across the wall.
+
+
+def test_the_laws_are_those_that_solvers_are_given() -> None:
+    """48 (3), (4) with all 21 coefficients and Clebsch's form agree with models, written apart."""
+    s = loaded()
+    x_rate, y_rate = impulse_rates(s.x, s.y, s.U, s.Omega, s.X, s.L)
+    b = body()
+    cx, cy = clebsch_rates(b.x, b.y, list(b.six), [0, 0, 0], [0, 0, 0])
+    for found, own in zip(x_rate + y_rate, s.dx + s.dy, strict=True):
+        assert (found - own).is_zero
+    for found, own in zip([*cx, *cy], [*b.x, *b.y], strict=True):
+        assert (b.field.element(found) - b.rate(own)).is_zero
+
+
+def test_the_tensor_form_of_euler_is_that_of_models() -> None:
+    """(2.2.70) written twice, in models and in the ledger, with nine free entries of I."""
+    b = unsymmetric()
+    theirs = heinbockel_moment(b.w, b.dw, b.I)
+    for found, own in zip(theirs, _left_of_70(b), strict=True):
+        assert (found - own).is_zero
+
+
+# Counterexamples, number by number.
+
+
+def test_the_numbers_of_the_counterexamples() -> None:
+    """(11): 36 + 4 i against 24 + 8 i. (17): -56/13 against -112/13. Both at one state."""
+    b = body()
+    value = b.field.value
+    assert (value(b.rate(b.x[0])), value(b.rate(b.x[1]))) == (36, 4)
+    bracket = (b.qq - b.q) * b.x[2] + b.rr * b.y[2]
+    across = -1 * b.r * b.x[2] * b.y[1], b.r * b.x[2] * b.y[0] - bracket
+    assert tuple(map(value, across)) == (24, 8)
+    F2 = b.F**2 - b.x[2] ** 2
+    psi = b.F * (b.Omega[0] * b.x[0] + b.Omega[1] * b.x[1]) / F2 - b.q * b.F
+    assert value(psi) == Fraction(-56, 13)
+    transcribed = (b.FG - b.x[2] * b.y[2]) / F2 * b.F * b.r / b.root * b.rate(b.x[2])
+    assert value(transcribed) == Fraction(-112, 13)
+    assert (value(b.F), value(b.FG), value(b.root)) == (7, 20, -7)
+
+
+def test_the_state_of_the_counterexamples_can_be() -> None:
+    """T is positive definite there."""
+    b = body()
+    six = [b.field.value(c) for c in b.six]
+    p, pp, q, qq, r, rr = six
+    assert min(p, pp, r, rr) > 0
+    assert q**2 < p * r
+    assert qq**2 < pp * rr
+
+
+def test_what_the_transcribed_quartics_leave() -> None:
+    """(28) as transcribed leaves 8 x (a x^4 + 3 (a + b) x^2 + b) of (27) and (29)."""
+    s = plain()
+    x, a, b = s.x, s.a, s.b
+    X1, X2 = quartics(x, a, b, (-1, -1, -1))
+    left = (x + 1) ** 2 * X1 + (x - 1) ** 2 * X2 + 8 * (a + b) * x**3
+    assert (left - 8 * x * (a * x**4 + 3 * (a + b) * x**2 + b)).is_zero
+
+
+# Bodies with and without a fourth integral.
+
+
+@pytest.mark.parametrize("solid", [GENERIC, SYMMETRIC, SECOND_CASE, STEKLOV])
+def test_the_bodies_are_bodies(solid: ImmersedBody) -> None:
+    """T is positive definite, so that the counted integrals are those of something that can be."""
+    assert is_positive_definite(solid.energy_matrix)
+
+
+def test_three_integrals_are_counted_for_every_body() -> None:
+    """T, F^2 and FG are found for each, and y3 for a body of revolution alone."""
+    assert [integrals(solid, 2) for solid in (GENERIC, SECOND_CASE, STEKLOV)] == [3, 4, 4]
+    assert [integrals(solid, 1) for solid in (GENERIC, SYMMETRIC, STEKLOV)] == [0, 1, 0]
+
+
+def test_poles_have_the_exponents_that_the_integrals_give() -> None:
+    """-1 belongs to the place of a pole and 2 to each of T, F^2, FG; the trace leaves two that add to 1."""
+    np = pytest.importorskip("numpy")
+    from verify.claims.hydromechanics.poles import _jacobian
+
+    found = leading_coefficients(GENERIC)
+    assert found
+    energy = np.array([[float(entry) for entry in row] for row in GENERIC.energy_matrix])
+    for c in found:
+        exponents = sorted(
+            np.linalg.eigvals(_jacobian(energy, c) + np.eye(6)), key=lambda e: abs(e - 2)
+        )
+        assert (
+            max(abs(e - 2) for e in exponents[:3]) <= 1e-9
+        )  # doubles, with a condition of 10^5 granted
+        rest = sorted(exponents[3:], key=lambda e: abs(e + 1))
+        assert abs(rest[0] + 1) <= 1e-9
+        assert abs(rest[1] + rest[2] - 1) <= 1e-9
+
+
+def test_a_trajectory_of_the_ledger_keeps_what_the_text_says() -> None:
+    """T, F^2, FG stay to 58 of 60 digits along a trajectory of a body with 21 coefficients."""
+    start = Impulse(tuple(map(Fraction, (1, -2, 3))), tuple(map(Fraction, (2, 1, -1))))
+    times = [Fraction(0), Fraction(1, 4), Fraction(1, 2)]
+    motion = trajectory(GENERIC, start, times)
+    scene = Scene(
+        "g", "g", "kirchhoff", frozenset(), GENERIC, start, Clock(Fraction(0), tuple(times))
+    )
+    with mp.workdps(70):
+        for invariant in invariants(scene):
+            values = invariant.value(motion)
+            assert max(abs(v - values[0]) for v in values) <= mp.mpf(10) ** -58 * invariant.scale(
+                motion
+            )
+
+
+# Verdicts.
+
+
+def gives(size: float, bound: float = 0.0) -> Callable[[], Residual]:
+    return lambda: Residual(size, bound, "a reason")
+
+
+SOUND = Claim(
+    id="text (1)",
+    statement="a = b",
+    domain="",
+    method="",
+    verdict=Verdict.HOLDS,
+    check=gives(0.0),
+    mutants={},
+)
+
+
+@pytest.mark.parametrize(
+    ("changed", "verdict"),
+    [
+        ({}, Verdict.HOLDS),
+        ({"lost": "a bar"}, Verdict.RESTORED),
+        ({"void": "no case"}, Verdict.VACUOUS),
+        ({"gap": "the rest"}, Verdict.UNDECIDED),
+        ({"check": gives(1.0)}, Verdict.UNDECIDED),
+        ({"check": gives(math.nan)}, Verdict.UNDECIDED),
+        ({"transcribed": gives(1.0)}, Verdict.FALSE),
+        ({"transcribed": gives(1.0), "condition": "c"}, Verdict.ONLY_IF),
+        ({"transcribed": gives(0.0)}, Verdict.HOLDS),
+        ({"transcribed": gives(math.nan)}, Verdict.UNDECIDED),
+        ({"transcribed": gives(2e-10, 1e-10)}, Verdict.UNDECIDED),
+        ({"transcribed": gives(1.0), "check": gives(1.0)}, Verdict.UNDECIDED),
+    ],
+)
+def test_a_verdict_is_what_the_checks_give(changed: dict[str, Any], verdict: Verdict) -> None:
+    """A failed check, a NaN, or a false form that is only just missed is undecided."""
+    assert examine(replace(SOUND, **changed)).verdict is verdict
+
+
+def test_a_check_that_comes_to_no_number_is_a_nan() -> None:
+    """An ArithmeticError in a check is an undecided claim with its reason, not a crash."""
+
+    def check() -> Residual:
+        raise ArithmeticError("two evaluations do not agree")
+
+    found = measured(check)
+    assert math.isnan(found.size)
+    assert "do not agree" in found.because
+    assert examine(replace(SOUND, check=check)).row()["residual"]["statement"] is None
+
+
+def test_the_worse_of_two_is_the_one_that_matters() -> None:
+    """A NaN before a miss, a miss before what is within its bound, however small it is."""
+    nan, missed = Residual(math.nan, 1.0, "nan"), Residual(1e-30, 1e-40, "missed")
+    within = Residual(0.5, 1.0, "within")
+    assert worse(within, missed, nan) is nan
+    assert worse(within, missed) is missed
+    assert worse(Residual(0.0, 0.0, "exact"), within) is within
+
+
+def test_an_element_needs_no_order_of_writing() -> None:
+    """A rational on the left of an element adds, subtracts, multiplies and divides as on the right."""
+    u: Element = triangle()["u"]
+    assert (2 + u - (u + 2)).is_zero
+    assert (2 - u + (u - 2)).is_zero
+    assert (2 * u - u * 2).is_zero
+    assert (2 / u * u - 2).is_zero

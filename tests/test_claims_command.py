@@ -1,0 +1,138 @@
+"""The verb `claims`: a table, JSON, exit statuses, and the page with the errata in front."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import verify
+from verify.claims.claim import Claim, Residual, Verdict
+from verify.claims.ledger import claims, examined
+from verify.claims.numbers import CITED
+from verify.cli import main
+from verify.publish.claims import page, write
+from verify.publish.page import MADE_BY
+
+ROOT = Path(verify.__file__).resolve().parents[1]
+PUBLISHED = ROOT / "reports" / "claims.md"
+QUICK = "hydromechanics 49 (11)"
+KEYS = {"id", "statement", "verdict", "correction", "residual"}
+
+Captured = pytest.CaptureFixture[str]
+
+
+def row(claim: Claim) -> dict[str, Any]:
+    (finding,) = examined([claim])
+    return finding.row()
+
+
+def without_checks(claim: Claim) -> dict[str, Any]:
+    """The row that the recorded verdict asks for, with no check run."""
+    fine = lambda: Residual(0.0, 0.0, "")  # noqa: E731
+    missed = (lambda: Residual(1.0, 0.0, "")) if claim.transcribed else None
+    return row(replace(claim, check=fine, transcribed=missed))
+
+
+ROWS = [without_checks(claim) for claim in claims()]
+
+
+def test_json_is_a_list_of_entries(capsys: Captured) -> None:
+    """Id, LaTeX, verdict, correction and residuals of what was asked for, and nothing else on stdout."""
+    assert main(["claims", QUICK, "hydromechanics 49 (2)", "--json"]) == 0
+    second, eleventh = json.loads(capsys.readouterr().out)
+    assert (second["id"], eleventh["id"]) == ("hydromechanics 49 (2)", QUICK)
+    assert set(second) >= KEYS
+    assert second["correction"] is None
+    assert second["residual"] == {"statement": 0.0}
+    assert eleventh["verdict"] == "false as transcribed"
+    assert "(x_1 + x_2i) +" in eleventh["correction"]
+    assert eleventh["residual"]["statement"] == 0.0
+    assert eleventh["residual"]["transcribed"] == pytest.approx((12**2 + 4**2) ** 0.5)
+
+
+def test_the_table_tells_an_entry_in_full(capsys: Captured) -> None:
+    """Statement, correction and counterexample of an entry that was asked for, and the counts."""
+    assert main(["claims", QUICK]) == 0
+    text = capsys.readouterr().out
+    for told in (
+        "false as transcribed",
+        "statement",
+        "correct",
+        "fails for",
+        "36 + 4 i",
+        "checked by",
+    ):
+        assert told in text
+    assert text.rstrip().endswith("1 false as transcribed")
+
+
+def test_an_unknown_id_is_a_wrong_call(capsys: Captured) -> None:
+    """Exit status 2, and what may have been meant."""
+    assert main(["claims", "hydromechanic 49 (17)"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "got 'hydromechanic 49 (17)'; did you mean 'hydromechanics 49 (17)'?" in captured.err
+
+
+def test_an_entry_that_lost_its_verdict_fails(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit status 1, and which verdict was expected; the row is told all the same."""
+    changed = tuple(replace(c, verdict=Verdict.HOLDS) if c.id == QUICK else c for c in claims())
+    monkeypatch.setattr("verify.claims.ledger.claims", lambda: changed)
+    assert main(["claims", QUICK, "--json"]) == 1
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)[0]["recorded"] == "holds"
+    assert f"expected the verdict 'holds', got 'false as transcribed' @ {QUICK}" in captured.err
+
+
+def test_the_page_has_the_errata_in_front() -> None:
+    """Every false entry with its correction before anything else, and every entry in the ledger."""
+    text = page(ROWS, CITED)
+    assert text.startswith(MADE_BY)
+    errata, _, rest = text.partition("## True on a condition")
+    for entry in ROWS:
+        is_false = entry["verdict"] == "false as transcribed"
+        assert (f"**`{entry['id']}`**" in errata) == is_false
+        assert f"| `{entry['id']}`" in rest
+        if is_false:
+            assert f"correct: $`{entry['correction']}`$" in errata
+    for number in CITED:
+        assert number in rest
+
+
+def test_the_page_is_put_in_place(tmp_path: Path) -> None:
+    """One file, claims.md, in the folder given."""
+    assert write(tmp_path / "new", ROWS, CITED) == [tmp_path / "new" / "claims.md"]
+
+
+def test_a_ledger_that_lost_a_verdict_is_not_published(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Exit status 1, and no page."""
+    (quick,) = (c for c in claims() if c.id == QUICK)
+    monkeypatch.setattr(
+        "verify.claims.ledger.claims", lambda: (replace(quick, verdict=Verdict.HOLDS),)
+    )
+    assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
+    assert f"@ {QUICK}" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_published_page_has_every_entry() -> None:
+    """reports/claims.md names its maker, and every entry with its statement as it is now."""
+    text = PUBLISHED.read_text(encoding="utf-8")
+    assert text.startswith(MADE_BY)
+    assert [c.id for c in claims() if f"`{c.id}`" not in text] == []
+    assert [c.id for c in claims() if f"$`{c.statement}`$" not in text] == []
+
+
+@pytest.mark.slow
+def test_the_published_page_can_be_remade() -> None:
+    """The whole ledger, run anew, makes the page that is published."""
+    rows = [finding.row() for finding in examined(claims())]
+    assert page(rows, CITED) == PUBLISHED.read_text(encoding="utf-8")

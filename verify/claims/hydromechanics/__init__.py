@@ -1,0 +1,1 @@
+"""Encyclopaedia Britannica, Hydromechanics, sections 48 and 49: Kirchhoff's equations."""

@@ -1,0 +1,59 @@
+"""`publish --growth`: follow the published ensembles, then write down how their errors grow."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import monotonic
+
+from verify.cli.answer import PASS, Answer, WrongCall
+from verify.cli.streams import say
+
+# Below the folder that is published: what is local there is nobody else's.
+_CHECKPOINTS = "local/growth"
+# Between two signs of life, in seconds.
+_PATIENCE = 10.0
+
+
+def publish_growth(folder: Path, periods: str | None, long: bool) -> Answer:
+    """Follow what is published, or the long ensemble alone, and write data, picture and page."""
+    from verify.growth.published import LONG, PUBLISHED, followed, forget
+    from verify.publish import growth
+
+    entries, checkpoints = LONG if long else PUBLISHED, folder / _CHECKPOINTS
+    most = _read(periods)
+    try:
+        found = followed(entries, checkpoints, _Progress(), most)
+    except ValueError as error:
+        raise WrongCall(f"{error} (--growth)") from error
+    paths = growth.write(folder, found, long)
+    # Only what is stored is done: until then it could still be taken up.
+    forget(entries, checkpoints)
+    written = [str(path) for path in paths]
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
+
+
+def _read(periods: str | None) -> float | None:
+    from verify.cli.verbs import read_time
+
+    if periods is None:
+        return None
+    try:
+        return float(read_time(periods))
+    except (WrongCall, OverflowError) as error:
+        raise WrongCall(f"expected a number of periods, got {periods!r} @ --periods") from error
+
+
+class _Progress:
+    """A line for every ensemble, and now and then how far it is."""
+
+    def __init__(self) -> None:
+        self._label, self._said = "", 0.0
+
+    def __call__(self, label: str, done: int, of: int) -> None:
+        if done == of:
+            say(f"{label}: done")
+        elif label != self._label or monotonic() - self._said >= _PATIENCE:
+            say(f"{label}: piece {done} of {of}")
+        else:
+            return
+        self._label, self._said = label, monotonic()

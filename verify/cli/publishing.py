@@ -1,0 +1,57 @@
+"""What `publish` computes anew before it writes: exact trajectories, and all that is broken on purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from verify.cli.answer import PASS, Answer
+from verify.cli.streams import say
+
+
+def references(folder: Path) -> Answer:
+    """The exact trajectory of every shipped scene."""
+    from verify.publish import reference_files
+    from verify.reference import references
+    from verify.scenes.library import names
+
+    scenes = names()
+    documents = references(scenes, _counting(len(scenes)))
+    return _written(reference_files.write(folder, documents))
+
+
+def controls(folder: Path) -> Answer:
+    """What each gate sees of broken solvers, and what heyoka does where nobody takes care."""
+    from verify.controls import sight
+    from verify.controls.defects import DEFECTS
+    from verify.controls.traps import table
+    from verify.publish import report, traps
+
+    finished = _counting(len(DEFECTS) + len(table.TRAPS))
+    seen = sight.document(sight.sights(DEFECTS, finished))
+    trapped = table.document(table.TRAPS, finished)
+    return _written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
+
+
+def prices(folder: Path) -> Answer:
+    """What each thing that a scene may ask for costs, measured."""
+    from verify.publish import prices as pages
+    from verify.trade.prices import RUNGS, document
+
+    return _written(pages.write(folder, document(_counting(len(RUNGS)))))
+
+
+def _counting(total: int) -> Callable[[str], None]:
+    """Tells each name as it ends, with its place among all."""
+    ended: list[str] = []
+
+    def finished(name: str) -> None:
+        ended.append(name)
+        say(f"{len(ended)}/{total} {name}")
+
+    return finished
+
+
+def _written(paths: list[Path] | tuple[Path, ...]) -> Answer:
+    written = [str(path) for path in paths]
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))

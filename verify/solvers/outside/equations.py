@@ -1,0 +1,122 @@
+"""The equations as the protocol hands them over, in plain arithmetic that every library can compile.
+
+They are written in scalars, without a loop or an array, so that numba compiles them, JAX traces them
+and Python runs them as they stand. Euler: H' = H x K H + M. Kirchhoff: x' = x x Omega + X and
+y' = y x Omega + x x U + L, with U = A x + B y and Omega = B^T x + C y. With the attitude
+q' = q (0, Omega) / 2, with the centre c' = R U.
+
+s  state: H, or x and y; then q, then c, as far as tracked (3, 6, 7, 10 or 13 numbers)
+p  parameters: K by rows and M (12), or A B C by rows, X and L (33)
+q  attitude, scalar first, body to space       c  centre, in space axes
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+Rates = Callable[[Any, Any], tuple[Any, ...]]
+Vectors = Callable[..., tuple[Any, ...]]
+Jit = Callable[[Any], Any]
+
+
+def euler(s: Any, p: Any) -> tuple[Any, ...]:
+    """H' and omega: 3 and 3."""
+    w1 = p[0] * s[0] + p[1] * s[1] + p[2] * s[2]
+    w2 = p[3] * s[0] + p[4] * s[1] + p[5] * s[2]
+    w3 = p[6] * s[0] + p[7] * s[1] + p[8] * s[2]
+    return (
+        s[1] * w3 - s[2] * w2 + p[9],
+        s[2] * w1 - s[0] * w3 + p[10],
+        s[0] * w2 - s[1] * w1 + p[11],
+        w1,
+        w2,
+        w3,
+    )
+
+
+def kirchhoff(s: Any, p: Any) -> tuple[Any, ...]:
+    """x', y', Omega and U: four times 3."""
+    x1, x2, x3, y1, y2, y3 = s[0], s[1], s[2], s[3], s[4], s[5]
+    U1 = p[0] * x1 + p[1] * x2 + p[2] * x3 + p[9] * y1 + p[10] * y2 + p[11] * y3
+    U2 = p[3] * x1 + p[4] * x2 + p[5] * x3 + p[12] * y1 + p[13] * y2 + p[14] * y3
+    U3 = p[6] * x1 + p[7] * x2 + p[8] * x3 + p[15] * y1 + p[16] * y2 + p[17] * y3
+    w1 = p[9] * x1 + p[12] * x2 + p[15] * x3 + p[18] * y1 + p[19] * y2 + p[20] * y3
+    w2 = p[10] * x1 + p[13] * x2 + p[16] * x3 + p[21] * y1 + p[22] * y2 + p[23] * y3
+    w3 = p[11] * x1 + p[14] * x2 + p[17] * x3 + p[24] * y1 + p[25] * y2 + p[26] * y3
+    return (
+        x2 * w3 - x3 * w2 + p[27],
+        x3 * w1 - x1 * w3 + p[28],
+        x1 * w2 - x2 * w1 + p[29],
+        y2 * w3 - y3 * w2 + x2 * U3 - x3 * U2 + p[30],
+        y3 * w1 - y1 * w3 + x3 * U1 - x1 * U3 + p[31],
+        y1 * w2 - y2 * w1 + x1 * U2 - x2 * U1 + p[32],
+        w1,
+        w2,
+        w3,
+        U1,
+        U2,
+        U3,
+    )
+
+
+def attitude_rate(q0: Any, q1: Any, q2: Any, q3: Any, w1: Any, w2: Any, w3: Any) -> tuple[Any, ...]:
+    """q' = q (0, omega) / 2."""
+    return (
+        0.5 * (-q1 * w1 - q2 * w2 - q3 * w3),
+        0.5 * (q0 * w1 + q2 * w3 - q3 * w2),
+        0.5 * (q0 * w2 + q3 * w1 - q1 * w3),
+        0.5 * (q0 * w3 + q1 * w2 - q2 * w1),
+    )
+
+
+def to_space(q0: Any, q1: Any, q2: Any, q3: Any, v1: Any, v2: Any, v3: Any) -> tuple[Any, ...]:
+    """v + 2 r x (r x v + q0 v), r = (q1, q2, q3): the vector in space axes."""
+    a1 = q2 * v3 - q3 * v2 + q0 * v1
+    a2 = q3 * v1 - q1 * v3 + q0 * v2
+    a3 = q1 * v2 - q2 * v1 + q0 * v3
+    return (
+        v1 + 2.0 * (q2 * a3 - q3 * a2),
+        v2 + 2.0 * (q3 * a1 - q1 * a3),
+        v3 + 2.0 * (q1 * a2 - q2 * a1),
+    )
+
+
+def _as_it_is(function: Any) -> Any:
+    return function
+
+
+def rates(columns: list[str], jit: Jit = _as_it_is) -> Rates:
+    """The rates of all that an answer with these columns needs; ``jit`` compiles each function."""
+    turn: Vectors = jit(attitude_rate)
+    shift: Vectors = jit(to_space)
+    is_euler, turns, shifts = "w1" in columns, "q0" in columns, "c1" in columns
+    free: Rates = jit(euler if is_euler else kirchhoff)
+
+    def spin(s: Any, p: Any) -> tuple[Any, ...]:
+        return free(s, p)[:3]
+
+    def spin_and_attitude(s: Any, p: Any) -> tuple[Any, ...]:
+        f = free(s, p)
+        return f[:3] + turn(s[3], s[4], s[5], s[6], f[3], f[4], f[5])
+
+    def impulse(s: Any, p: Any) -> tuple[Any, ...]:
+        return free(s, p)[:6]
+
+    def impulse_and_attitude(s: Any, p: Any) -> tuple[Any, ...]:
+        f = free(s, p)
+        return f[:6] + turn(s[6], s[7], s[8], s[9], f[6], f[7], f[8])
+
+    def impulse_attitude_and_centre(s: Any, p: Any) -> tuple[Any, ...]:
+        f = free(s, p)
+        turned = turn(s[6], s[7], s[8], s[9], f[6], f[7], f[8])
+        return f[:6] + turned + shift(s[6], s[7], s[8], s[9], f[9], f[10], f[11])
+
+    if is_euler:
+        found = spin_and_attitude if turns else spin
+    elif turns:
+        found = impulse_attitude_and_centre if shifts else impulse_and_attitude
+    else:
+        found = impulse
+    compiled: Rates = jit(found)
+    return compiled

@@ -1,0 +1,78 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "scikit-sundae==1.2.0",
+#   "numba==0.68.1",
+#   "numpy==2.4.6",
+#   "scipy==1.17.1",
+# ]
+# [tool.taylor-verify]
+# methods = ["adams", "bdf"]
+# rungs = ["f64"]
+# ///
+"""CVODE of SUNDIALS, by scikit-sundae: variable-order Adams (to order 12) and BDF (to order 5).
+
+The right-hand side is compiled by numba; the library calls it by way of Python. The states at the
+samples are CVODE's own interpolation, a polynomial of the method's order. CVODE counts its steps, but
+scikit-sundae does not hand the count on: a run step by step, not timed, counts them.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from question import (  # type: ignore[import-not-found]
+    Question,
+    Setting,
+    Solved,
+    answer,
+    compiled_rates,
+    twice,
+)
+
+METHODS = {"adams": "Adams", "bdf": "BDF"}
+# CVODE stops after 500 steps between two samples where nothing is said.
+MOST_STEPS = 10**7
+
+
+def solve(question: Question, setting: Setting) -> Solved:
+    import numpy
+    from sksundae.cvode import CVODE  # type: ignore[import-not-found]
+
+    began = time.perf_counter()
+    fill = compiled_rates(question)
+    start = numpy.array(question.state)
+    # Compiled for arrays that are read-only, as CVODE's are.
+    read_only = start.copy()
+    read_only.flags.writeable = False
+    fill(read_only, numpy.empty_like(start))
+    compiling = time.perf_counter() - began
+
+    def rates(t: float, y: Any, yp: Any) -> None:
+        fill(y, yp)
+
+    solver = CVODE(
+        rates,
+        method=METHODS[setting.method],
+        rtol=setting.rtol,
+        atol=setting.atol,
+        max_num_steps=MOST_STEPS,
+    )
+    found, seconds, more = twice(lambda: solver.solve(question.instants, start))
+    if not found.success:
+        raise SystemExit(f"CVODE: {found.message}")
+    return Solved(found.y, _steps(solver, question, start), found.nfev, seconds, compiling + more)
+
+
+def _steps(solver: Any, question: Question, start: Any) -> int:
+    solver.init_step(0.0, start)
+    steps, now = 0, 0.0
+    while now < question.end:
+        now = float(solver.step(question.end, method="onestep").t)
+        steps += 1
+    return steps
+
+
+if __name__ == "__main__":
+    answer(solve)

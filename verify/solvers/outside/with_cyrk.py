@@ -1,0 +1,105 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "CyRK==0.20.0",
+#   "numba==0.68.1",
+#   "numpy==2.4.6",
+#   "scipy==1.17.1",
+# ]
+# [tool.taylor-verify]
+# methods = ["dop853", "tsit5", "vern7", "vern8", "lsoda"]
+# rungs = ["f64"]
+# ///
+"""CyRK: explicit Runge-Kutta methods and LSODA in C++, called with equations compiled by numba.
+
+Nothing of a propagation is Python. The states at the samples are the interpolants of the methods.
+CyRK's solver for numba, `nbsolve2_ivp`, takes twenty seconds to compile and then hands its arguments
+to a C function; here that function is called directly. CyRK does not count evaluations: the compiled
+right-hand side does, in the argument that CyRK keeps for it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+from question import (  # type: ignore[import-not-found]
+    Question,
+    Setting,
+    Solved,
+    answer,
+    compiled_rates,
+    twice,
+)
+
+METHODS = {
+    "dop853": "DOP853",
+    "tsit5": "Tsit5",
+    "vern7": "Vern7",
+    "vern8": "Vern8",
+    "lsoda": "LSODA",
+}
+# Megabytes, above which CyRK refuses to go on.
+MOST_MEMORY = 2000
+
+
+def solve(question: Question, setting: Setting) -> Solved:
+    address: list[int] = []
+
+    def propagate() -> tuple[Any, int, int]:
+        if not address:
+            compiled = _right_hand_side(question)
+            # Whoever holds the address must hold the code behind it too.
+            propagate.compiled = compiled  # type: ignore[attr-defined]
+            address.append(compiled.address)
+        return _propagated(address[0], question, setting)
+
+    (states, steps, evaluations), seconds, compiling = twice(propagate)
+    return Solved(states, steps, evaluations, seconds, compiling)
+
+
+def _right_hand_side(question: Question) -> Any:
+    from CyRK import cyjit  # type: ignore[import-not-found]
+    from numba import carray  # type: ignore[import-not-found]
+
+    fill, n = compiled_rates(question), len(question.state)
+
+    def counted(out: Any, t: float, state: Any, count: Any) -> None:
+        count[0] += 1.0
+        fill(carray(state, (n,)), carray(out, (n,)))
+
+    return cyjit(counted)
+
+
+def _propagated(address: int, question: Question, setting: Setting) -> tuple[Any, int, int]:
+    """The states, the steps and the evaluations; the arguments are those of CyRK's own C function."""
+    import numpy
+    from CyRK.cy.common import MAX_SIZE  # type: ignore[import-not-found]
+    from CyRK.cy.pyhelpers import find_ode_method_int  # type: ignore[import-not-found]
+    from CyRK.nb import numba_solver as c  # type: ignore[import-not-found]
+
+    start, instants = numpy.array(question.state), numpy.array(question.instants)
+    rtol, atol, count = (numpy.array([value]) for value in (setting.rtol, setting.atol, 0.0))
+    found = c.c_numba_cysolve_ivp(
+        *(address, 0.0, question.end, start.ctypes.data, start.size),
+        *(find_ode_method_int(METHODS[setting.method]), 0, 0),  # no size expected, nothing extra
+        *(count.ctypes.data, count.nbytes),
+        *(0, MOST_MEMORY, False),  # any number of steps; no interpolant is kept
+        *(instants.ctypes.data, instants.size),
+        *(0, 0, 0),  # nothing before an evaluation, no events
+        *(rtol.ctypes.data, rtol.size, atol.ctypes.data, atol.size),
+        *(MAX_SIZE, 0.0, True),  # the longest step, the first step, and the counts are kept
+    )
+    try:
+        size = c.c_get_size(found)
+        if not c.c_get_success(found) or size != instants.size:
+            raise SystemExit(f"CyRK: status {c.c_get_status(found)} after {size} samples")
+        states = numpy.ctypeslib.as_array(c.c_get_y_ptr(found), (size, start.size)).copy()
+        counted = ctypes.cast(c.c_get_args_ptr(found), ctypes.POINTER(ctypes.c_double))
+        return states, c.c_get_steps(found), int(counted[0])
+    finally:
+        c.c_free(found)
+
+
+if __name__ == "__main__":
+    answer(solve)

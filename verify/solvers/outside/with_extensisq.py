@@ -1,0 +1,78 @@
+# /// script
+# requires-python = ">=3.11,<3.15"
+# dependencies = [
+#   "extensisq==0.6.0",
+#   "numba==0.68.1",
+#   "numpy==2.4.6",
+#   "scipy==1.17.1",
+# ]
+# [tool.taylor-verify]
+# methods = ["pr7", "pr8", "pr9", "swag"]
+# rungs = ["f64"]
+# from-source = ["extensisq"]
+# ///
+"""extensisq: methods for SciPy's solve_ivp, Prince's pairs of order 7, 8 and 9, and Shampine-Gordon.
+
+The right-hand side is compiled by numba; the steps are Python and NumPy. The states at the samples
+are the interpolants of the methods.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from question import (  # type: ignore[import-not-found]
+    Question,
+    Setting,
+    Solved,
+    answer,
+    compiled_rates,
+    twice,
+)
+
+METHODS = {"pr7": "Pr7", "pr8": "Pr8", "pr9": "Pr9", "swag": "SWAG"}
+
+
+def solve(question: Question, setting: Setting) -> Solved:
+    import extensisq  # type: ignore[import-not-found]
+    import numpy
+    from scipy.integrate import solve_ivp
+
+    fill = compiled_rates(question)
+    method = getattr(extensisq, METHODS[setting.method])
+    steps = 0
+
+    class Counted(method):  # type: ignore[misc, valid-type]
+        """The same; solve_ivp says how often it evaluated, not how many steps it took."""
+
+        def step(self) -> Any:
+            nonlocal steps
+            steps += 1
+            return super().step()
+
+    def rates(t: float, state: Any) -> Any:
+        out = numpy.empty_like(state)
+        fill(state, out)
+        return out
+
+    def propagate() -> Any:
+        nonlocal steps
+        steps = 0
+        return solve_ivp(
+            rates,
+            (0.0, question.end),
+            question.state,
+            method=Counted,
+            t_eval=question.instants,
+            rtol=setting.rtol,
+            atol=setting.atol,
+        )
+
+    found, seconds, compiling = twice(propagate)
+    if found.status != 0:
+        raise SystemExit(f"extensisq: {found.message}")
+    return Solved(found.y.T, steps, found.nfev, seconds, compiling)
+
+
+if __name__ == "__main__":
+    answer(solve)

@@ -1,0 +1,93 @@
+"""What heyoka reports when something ends otherwise than asked, or is asked otherwise than meant."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sqlite3
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+
+
+def decay(x0: float, end: float, **options: Any) -> tuple[Any, Any]:
+    """x' = -x: the integrator, and what propagate_until returned."""
+    x = hy.make_vars("x")
+    ta = hy.taylor_adaptive([(x, -x)], [x0])
+    return ta, ta.propagate_until(end, **options)
+
+
+def blow_up(x0: float, end: float) -> tuple[Any, Any]:
+    """x' = x^2, which is infinite at t = 1/x0."""
+    x = hy.make_vars("x")
+    ta = hy.taylor_adaptive([(x, x * x)], [x0])
+    return ta, ta.propagate_until(end)
+
+
+def tolerance_of_zero() -> Any:
+    """The tolerance of an integrator that was asked for none."""
+    x = hy.make_vars("x")
+    ta = hy.taylor_adaptive([(x, -x)], [1.0], tol=0.0)
+    return ta.tol
+
+
+def lanes(equations: Any, w: Array, end: float) -> tuple[list[Any], Array, Array]:
+    """Several bodies side by side, a column of w each: outcomes, times and states."""
+    ta = hy.taylor_adaptive_batch(equations, w)
+    ta.propagate_until(end)
+    return [outcome for outcome, *_ in ta.propagate_res], ta.time, ta.state
+
+
+def swung(ta: Any, end: float) -> float:
+    """How far a long run has come when it ends or is interrupted."""
+    with contextlib.suppress(KeyboardInterrupt):
+        ta.propagate_until(end)
+    return float(ta.time)
+
+
+def interrupted(seconds: float, end: float) -> float:
+    """The time of the integrator when an interruption after so many seconds is heard of."""
+    x, v = hy.make_vars("x", "v")
+    ta = hy.taylor_adaptive([(x, v), (v, -hy.sin(x))], [1.0, 0.0])
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        return swung(ta, end)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def cache_key() -> str:
+    """What the disk cache has stored of the surroundings in which a piece of code was compiled."""
+    before = hy.llvm_state.get_diskcache_path()
+    enabled = hy.llvm_state.get_diskcache_enabled()
+    with TemporaryDirectory() as folder:
+        hy.llvm_state.set_diskcache_enabled(True)
+        hy.llvm_state.set_diskcache_path(folder)
+        try:
+            hy.llvm_state.clear_memcache()
+            hy.taylor_adaptive([(hy.make_vars("x"), hy.expression(0.25))], [0.0])
+            return stored_key(Path(folder, "cache.db"))
+        finally:
+            hy.llvm_state.set_diskcache_path(before)
+            hy.llvm_state.set_diskcache_enabled(enabled)
+
+
+def stored_key(database: Path) -> str:
+    """What is stored beside each piece of code, to be found by."""
+    connection = sqlite3.connect(database)
+    try:
+        ((key,),) = connection.execute("SELECT DISTINCT env_fingerprint FROM cache")
+    finally:
+        connection.close()
+    return str(key)
