@@ -245,13 +245,13 @@ def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.setattr(verbs, "_judge", lambda *call: asked.append(call) or [])
     assert main(["run", "extremes"]) == 0
     names = library.names("extremes")
-    assert asked.pop() == (list(names), "taylor", ["f64"], {})
+    assert asked.pop() == (list(names), "taylor", ["f64"], {}, False)
     (scene, rung), why = next(iter(shipped().left_out.items()))
     assert main(["run", "extremes", "--rung", rung]) == 0
     assert (scene, rung) in asked.pop()[3]
     assert f"not run: {scene} on {rung}: {why}" in capsys.readouterr().err
     assert main(["run", scene, "--rung", rung]) == 0
-    assert asked.pop() == ([scene], "taylor", [rung], {})
+    assert asked.pop() == ([scene], "taylor", [rung], {}, False)
     assert main(["run", "extremes", scene, "--rung", rung]) == 0
     assert (scene, rung) not in asked.pop()[3]
 
@@ -259,7 +259,7 @@ def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys:
 def test_what_is_left_out_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """No job holds a run that is left out, and a scene with no rung left has no job."""
     made: list[Any] = []
-    monkeypatch.setattr("verify.standard.run_all", lambda jobs, _: made.extend(jobs) or [])
+    monkeypatch.setattr("verify.standard.run_all", lambda jobs, _, **how: made.extend(jobs) or [])
     verbs._judge(["a", "b"], "taylor", ["f64", "mp237"], [("a", "mp237"), ("b", "f64")])
     assert [(job.scene, job.rungs) for job in made] == [("a", ("f64",)), ("b", ("mp237",))]
     made.clear()

@@ -338,7 +338,7 @@ def test_the_front_page_links_to_the_reference_where_there_is_one(report: Path) 
     file.parent.mkdir()
     file.write_text("mine", encoding="utf-8")
     publish(report)
-    assert "](reference)" in front_page(report)
+    assert "](reference/README.md)" in front_page(report)
     assert file.read_text(encoding="utf-8") == "mine"
 
 

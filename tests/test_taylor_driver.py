@@ -2,6 +2,10 @@
 
 import math
 import pickle
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -26,6 +30,7 @@ from verify.scenes.precision import LADDER, power_of_two, rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback
+from verify.solvers.taylor import driver
 from verify.solvers.taylor.cache import processor_key, use_own_cache
 from verify.solvers.taylor.driver import Taylor
 from verify.solvers.taylor.numbers import arithmetic
@@ -405,3 +410,70 @@ def test_equally_spaced_instants_are_a_sequence_of_rationals() -> None:
     with pytest.raises(IndexError):
         spaced[5]
     assert pickle.loads(pickle.dumps(spaced)) == plain
+
+
+@pytest.mark.parametrize("name", ["f64", "f80"])
+def test_the_callback_of_a_long_stretch_changes_no_number(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """It is there to hear an interrupt: heyoka takes the same steps with it, bit for bit."""
+    problem = pose(load("kirchhoff/whole-motion"), rung(name))
+    without = Taylor().solve(problem)
+    monkeypatch.setattr(driver, "_LONG_RADIANS", {})
+    heard = Taylor().solve(problem)
+    assert heard.steps == without.steps
+    for quantity, values in without.quantities.items():
+        assert np.array_equal(heard.quantities[quantity], values)
+
+
+def test_an_interrupt_is_heard_within_a_second_of_a_long_run() -> None:
+    """A stretch of minutes, to one far sample, ends with KeyboardInterrupt where it is."""
+    program = (
+        "import sys\n"
+        "from dataclasses import replace\n"
+        "from fractions import Fraction\n"
+        "from verify.models.problem import pose\n"
+        "from verify.scenes.motion import Clock\n"
+        "from verify.scenes.precision import rung\n"
+        "from verify.scenes.reader import load\n"
+        "from verify.solvers.taylor.driver import Taylor\n"
+        "clock = Clock(Fraction(0), (Fraction(10**9),))\n"
+        "problem = pose(replace(load('euler/generic'), clock=clock), rung('f64'))\n"
+        "print('posed', flush=True)\n"
+        "Taylor().solve(problem)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as running:
+        assert running.stdout is not None
+        assert running.stdout.readline() == "posed\n"
+        time.sleep(1.5)
+        running.send_signal(signal.SIGINT)
+        # A second is the aim; the machine may be busy.
+        _, error = running.communicate(timeout=10)
+    assert running.returncode != 0
+    assert error.rstrip().endswith("KeyboardInterrupt")
+
+
+def test_a_long_path_costs_the_impulses_nothing() -> None:
+    """heyoka's tolerance is a part of the largest state: the centre, far off, would be that state."""
+    start = load("kirchhoff/whole-motion")
+    clock = Clock(Fraction(0), tuple(map(Fraction, (1, 10, 100, 2000))))
+    far = replace(start.initial, centre=(Fraction(10**9), Fraction(0), Fraction(0)))
+    for scene in (replace(start, clock=clock), replace(start, initial=far)):
+        verdicts = run(scene, "taylor", "f64").verdicts
+        assert {verdict.quantity for verdict in verdicts} >= {"impulse", "centre", "T", "F2", "FG"}
+        assert all(verdict.verdict is Status.PASS for verdict in verdicts), verdicts
+
+
+def test_few_samples_are_solved_with_as_much_care_as_many() -> None:
+    """The cap on the step is renewed between two samples that are far apart, and the sample is met."""
+    scene = load("euler/tennis-racket")
+    last = scene.clock.instants[-1]
+    few = run(replace(scene, clock=Clock(scene.clock.start, (last,))), "taylor", "f64")
+    many = run(scene, "taylor", "f64")
+    assert all(verdict.verdict is Status.PASS for verdict in few.verdicts)
+    assert few.verdicts[0].steps <= many.verdicts[0].steps * 1.1

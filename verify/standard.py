@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from verify.unfinished import forget, keep, kept
+
 if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
 
@@ -32,6 +34,14 @@ class Job:
     rungs: tuple[str, ...]
 
 
+class Interrupted(KeyboardInterrupt):
+    """An interrupt of a run of which ``finished`` of ``jobs`` jobs are kept, to go on from there."""
+
+    def __init__(self, finished: int, jobs: int) -> None:
+        super().__init__()
+        self.finished, self.jobs = finished, jobs
+
+
 Finished = Callable[[Job], None]
 Asked = TypeVar("Asked")
 Result = TypeVar("Result")
@@ -42,18 +52,36 @@ def jobs(scenes: Iterable[str], solver: str, rungs: Sequence[str]) -> list[Job]:
 
 
 def run_all(
-    asked: Sequence[Job], finished: Finished, workers: int | None = None
+    asked: Sequence[Job], finished: Finished, workers: int | None = None, resume: bool = False
 ) -> list[Judgement]:
     """Every job's judgements, rung by rung; ``finished`` is told of each job as it ends.
+
+    What an interrupted run had finished is not run again if ``resume`` is asked for: of several jobs
+    each is kept as it ends, until all have. An interrupt is raised as Interrupted.
 
     One job runs in this process, several in as many as there are cores: heyoka's compiled
     integrators and the truth's big integers both hold the interpreter. Raises Failed for a job that
     broke, or lost its process; whatever ends this early, an interrupt too, ends the workers first.
     """
+    if len(asked) == 1:
+        (job,) = asked
+        found = _run(job)
+        finished(job)
+        return found
+    if not resume:
+        forget()
+    ended: list[Job] = []
+
+    def ends(job: Job) -> None:
+        ended.append(job)
+        finished(job)
+
     workers = min(workers or available_cores(), len(asked))
-    if workers <= 1:
-        return _in_this_process(asked, finished)
-    results = on_all_cores(_run, asked, _expense, finished, workers)
+    try:
+        results = on_all_cores(_run_or_recall, asked, _expense, ends, workers)
+    except KeyboardInterrupt as interrupt:
+        raise Interrupted(len(ended), len(asked)) from interrupt
+    forget()
     return [judgement for result in results for judgement in result]
 
 
@@ -111,12 +139,13 @@ def fault(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}{place} (a fault of taylor-verify: please report it)"
 
 
-def _in_this_process(asked: Sequence[Job], finished: Finished) -> list[Judgement]:
-    results = []
-    for job in asked:
-        results += _run(job)
-        finished(job)
-    return results
+def _run_or_recall(job: Job) -> list[Judgement]:
+    """One of several: kept as soon as it is finished, and not run again if it is kept."""
+    found = kept(job)
+    if found is None:
+        found = _run(job)
+        keep(job, found)
+    return found
 
 
 def _run(job: Job) -> list[Judgement]:
@@ -146,7 +175,7 @@ def _expense(job: Job) -> int:
 
     scene = load(job.scene)
     body = scene.body
-    has_closed_form = body.is_free and (isinstance(body, RigidBody) or body.clebsch is not None)
+    has_closed_form = body.is_free and (isinstance(body, RigidBody) or body.axis_of_symmetry)
     states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
     return -states if has_closed_form else -3 * states
 

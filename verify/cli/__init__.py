@@ -25,8 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with stdout_reserved():
             answer = options.act(options)
         return _print(answer, options.json)
-    except KeyboardInterrupt:
-        say("interrupted")
+    except KeyboardInterrupt as interrupt:
+        say(_told_of(interrupt))
         return INTERRUPTED
     except Exception as error:
         if sys.flags.dev_mode:
@@ -47,6 +47,17 @@ def _print(answer: Answer, as_json: bool) -> int:
     for message in answer.messages:
         say(message)
     return answer.status
+
+
+def _told_of(interrupt: KeyboardInterrupt) -> str:
+    """One line: nothing was written, and how to go on if there is something to go on from."""
+    finished, jobs = getattr(interrupt, "finished", 0), getattr(interrupt, "jobs", 0)
+    if not finished:
+        return "interrupted"
+    return (
+        f"interrupted: {finished} of {jobs} scenes are finished and kept, nothing is written; the "
+        "same command with --resume goes on from there"
+    )
 
 
 def _told(error: Exception) -> str:

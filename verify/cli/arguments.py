@@ -118,6 +118,11 @@ def _add_run(found: Any) -> None:
     )
     verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
     verb.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the last run of several scenes was interrupted",
+    )
+    verb.add_argument(
         "--against",
         metavar="DIR",
         help="fail if a number has left the rounding class of the one published there",
@@ -270,6 +275,13 @@ def _add_publish(found: Any) -> None:
         action="store_true",
         help="instead measure speed against accuracy on four scenes, in fresh processes (minutes; a "
         "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
+    )
+    made.add_argument(
+        "--reach",
+        action="store_true",
+        help="instead measure how many digits each precision leaves of families of extremes, over "
+        "their number and periods (minutes, all cores), and write DIR/data/reach.json, "
+        "DIR/tables/reach.md and its pictures",
     )
     made.add_argument(
         "--growth",

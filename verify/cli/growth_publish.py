@@ -33,13 +33,13 @@ def publish_growth(folder: Path, periods: str | None, long: bool) -> Answer:
 
 
 def _read(periods: str | None) -> float | None:
-    from verify.cli.verbs import read_time
+    from verify.scenes.table import exact_number
 
     if periods is None:
         return None
     try:
-        return float(read_time(periods))
-    except (WrongCall, OverflowError) as error:
+        return float(exact_number(periods))
+    except (OverflowError, ValueError) as error:
         raise WrongCall(f"expected a number of periods, got {periods!r} @ --periods") from error
 
 

@@ -282,6 +282,8 @@ def explanation_text(found: Mapping[str, Any]) -> str:
         print_line(console, f"source: {found['source']}")
     for warning in found["warnings"]:
         print_line(console, Text("warning", "yellow"), f": {warning}")
+    for sentence in found["body"]:
+        print_indented(console, "body: ", sentence)
     print_line(console, f"tracked: {', '.join(found['track'])}")
     if found["equations"] is not None:
         _print_problem(console, found)

@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> Answer:
     folder = writable(options.out) if options.out is not None else None
     published = _published(options, rungs) if options.against is not None else None
     asked = outputs(options)
-    results = _judge(scenes, options.solver, rungs, without)
+    results = _judge(scenes, options.solver, rungs, without, options.resume)
     verdicts = [verdict for result in results for verdict in result.verdicts]
     held = hold(verdicts)
     status, messages = held.exit_status(verdicts), []
@@ -149,6 +149,7 @@ def exact(options: argparse.Namespace) -> Answer:
         raise WrongCall(f"expected --digits from 1 to {_MOST_DIGITS}, got {options.digits}")
     times = [(text.strip(), read_time(text)) for text in options.at.split(",")]
     (scene,) = read_scenes([options.scene])
+    from verify.exact.ellipsoid import formed_to
     from verify.exact.printed import document
     from verify.exact.route import solution
     from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
@@ -156,6 +157,7 @@ def exact(options: argparse.Namespace) -> Answer:
     route = options.route or "arb"
     try:
         with working(f"exact {scene.name}"):
+            scene = formed_to(scene, options.digits)
             found = solution(scene, route)
             printed = document(scene, found, times, options.digits)
     except NoClosedForm as reason:
@@ -256,6 +258,10 @@ def publish(options: argparse.Namespace) -> Answer:
         from verify.cli.tradeoff_publish import publish_tradeoff
 
         return publish_tradeoff(writable(options.folder, "--from"), options.outside)
+    if options.reach:
+        from verify.cli.reach_publish import publish_reach
+
+        return publish_reach(writable(options.folder, "--from"))
     if options.growth:
         from verify.cli.growth_publish import publish_growth
 
@@ -285,6 +291,7 @@ def _judge(
     solver: str,
     rungs: Sequence[str],
     left_out: Iterable[tuple[str, str]] = (),
+    resume: bool = False,
 ) -> list[Judgement]:
     from verify.cli.progress import advancing
     from verify.standard import jobs, run_all
@@ -297,7 +304,7 @@ def _judge(
         if job.rungs
     ]
     with advancing(len(asked)) as finished:
-        return run_all(asked, finished)
+        return run_all(asked, finished, resume=resume)
 
 
 def _no_text() -> str:

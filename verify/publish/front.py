@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from statistics import median
-from typing import Final
 
 from verify.judge.verdict import Verdict
 from verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
+from verify.publish.contents import others
 from verify.publish.data import versions
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY, counts
 from verify.publish.runs import STATE_QUANTITIES, Run, gravest, is_scored, place_of_rung, runs
-from verify.publish.sights import CONTROLS
-from verify.publish.trades import NUMBERS as TRADEOFF
-
-REFERENCE: Final = "reference"
 
 _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
@@ -45,20 +41,12 @@ _CONTENTS = (
     ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
     ("[data/records](data/records)", "of each run the equations and every sample's error"),
 )
-_CONTROLS = ("[tables/controls.md](tables/controls.md)", "what each gate sees of broken solvers")
-_TRADEOFF = ("[tables/tradeoff.md](tables/tradeoff.md)", "speed against accuracy, measured once")
-_REFERENCE = (f"[{REFERENCE}]({REFERENCE})", "exact motions in digits, to test other programs with")
 
 
 def front(verdicts: Sequence[Verdict], folder: Path) -> str:
     """The page for a report in ``folder``, which is asked only for what else there is to link to."""
     found = runs(verdicts)
-    contents = [
-        *_CONTENTS,
-        *([_CONTROLS] if (folder / CONTROLS).is_file() else []),
-        *([_TRADEOFF] if (folder / TRADEOFF).is_file() else []),
-        *([_REFERENCE] if (folder / REFERENCE).is_dir() else []),
-    ]
+    contents = [*_CONTENTS, *(page.row() for page in others(folder))]
     blocks = [
         f"{MADE_BY}\n# How accurate it is",
         _WHAT,

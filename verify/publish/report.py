@@ -13,12 +13,14 @@ from verify.publish import (
     data,
     figures,
     prices,
+    reach,
     sheets,
     sights,
     tables,
     tradeoff,
     trades,
 )
+from verify.publish.contents import others
 from verify.publish.front import front
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import first_line, replace_files
@@ -49,9 +51,8 @@ def publish(folder: Path | str) -> list[Path]:
     """
     place = Path(folder)
     verdicts = load(place)
-    of_controls = _controls(place)
     texts = {
-        f"{TABLES}/README.md": tables.readme(verdicts, controls=bool(of_controls)),
+        f"{TABLES}/README.md": tables.readme(verdicts, others(place)),
         f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
         f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
         f"{TABLES}/conserved.md": tables.conserved(verdicts),
@@ -59,9 +60,10 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/gates.md": tables.gates(verdicts),
         f"{TABLES}/gates.csv": sheets.gates(verdicts),
     }
-    texts |= of_controls
+    texts |= _controls(place)
     texts |= tradeoff.pages(place)
     texts |= prices.pages(place)
+    texts |= reach.pages(place)
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, place)
     return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))

@@ -17,6 +17,7 @@ from verify.publish.cells import (
     ratio,
     reason,
 )
+from verify.publish.contents import Page
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import counts, page, roundoffs, sections, unscored
 from verify.publish.runs import (
@@ -45,11 +46,6 @@ _CONTENTS = (
     ("[State errors](accuracy.md)", "[csv](accuracy.csv)", "the error of what each scene tracks"),
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
     ("[Gates](gates.md)", "[csv](gates.csv)", "every verdict, its bound and why that bound"),
-)
-_CONTROLS = (
-    "[What each gate sees](controls.md)",
-    "[csv](controls.csv)",
-    "solvers that were broken on purpose, and the gates that notice",
 )
 _RUN = (Column("scene"), Column("rung"))
 
@@ -200,9 +196,8 @@ def _gate_row(verdict: Verdict) -> list[str]:
     ]
 
 
-def readme(verdicts: Sequence[Verdict], *, controls: bool = False) -> str:
-    """What the files are and how a cell is read; ``controls`` tells whether that table is there."""
-    contents = [*_CONTENTS, *([_CONTROLS] if controls else [])]
+def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
+    """What the files are and how a cell is read; ``others`` are what else is there."""
     how = [
         "A number has three significant digits; the CSV has them all. A time has its own digits.",
         "Where there is no number stands a word: the verdict, or how a failed run ended. "
@@ -217,7 +212,8 @@ def readme(verdicts: Sequence[Verdict], *, controls: bool = False) -> str:
     return page(
         "Tables",
         verdicts,
-        table([Column("table"), Column("every digit"), Column("what it has")], contents),
+        table([Column("table"), Column("every digit"), Column("what it has")], _CONTENTS),
+        _besides(others),
         counts(verdicts),
         "## How to read a cell",
         bullets(how),
@@ -225,6 +221,11 @@ def readme(verdicts: Sequence[Verdict], *, controls: bool = False) -> str:
         "## Scenes",
         table([Column("scene"), Column("rungs"), Column("SHA-256")], _scenes(verdicts)),
     )
+
+
+def _besides(others: Iterable[Page]) -> str:
+    rows = [other.row("tables") for other in others]
+    return table([Column("besides"), Column("what it has")], rows) if rows else ""
 
 
 def _scenes(verdicts: Sequence[Verdict]) -> list[list[str]]:

@@ -143,6 +143,9 @@ class Outside(Solver):
         environment = self.entrant.environment
         return _failed.get(environment.folder, "") if environment else ""
 
+    def unsuited(self, problem: Problem) -> str:
+        return process.Process(self.name).unsuited(problem)
+
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)

@@ -12,8 +12,8 @@ from math import log10
 from typing import TYPE_CHECKING, Any, Final
 
 from verify.publish.pictures import panels as at
-from verify.publish.pictures.labels import Named, write_names
 from verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from verify.publish.pictures.named import Named
 from verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
 from verify.publish.pictures.panels import Frame, Panel, columns, width_of
 from verify.publish.pictures.series import FALSE, SOUND, Row, Series, amount, front_of
@@ -62,6 +62,8 @@ class Diagram:
 def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
     """The whole figure: the panels row by row, the meaning of the marks below."""
     from matplotlib.figure import Figure
+
+    from verify.publish.pictures.labels import write_names
 
     strips = [_strip_rows(panel, diagram.x) for panel in panels]
     drawn = [one for panel in panels for one in panel.drawn]

@@ -15,7 +15,6 @@ from verify.publish.pictures.diagram import (
     free_place,
     names_of,
 )
-from verify.publish.pictures.labels import write_names
 from verify.publish.pictures.legend import Entry, draw_legend, foot_of
 from verify.publish.pictures.palette import QUIET
 from verify.publish.pictures.panels import Panel, panels_of
@@ -62,6 +61,8 @@ def _typical(series: Sequence[Series]) -> str:
 def _figure(panels: Sequence[Panel]) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
+
+    from verify.publish.pictures.labels import write_names
 
     frames, height = frames_of([0] * len(panels), foot_of(_LEGEND, ""))
     figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from math import isfinite
+from math import isfinite, log10
 from typing import TYPE_CHECKING, Any, Final
 
 from verify.publish.pictures import panels as at
@@ -33,6 +33,8 @@ PANELS: Final = (
     ("T", "energy, relative", ((0.5, "1/2"), (1.0, "1"))),
     ("phase", "phase (rad)", ((1.5, "3/2"), (2.0, "2"))),
 )
+# In decades, between two beginnings that each have their powers drawn.
+_APART: Final = 1.0
 _NOTE: Final = (
     "Root mean square over the starts; thin lines: powers of time, 1/2 and 3/2 for roundings."
 )
@@ -80,7 +82,6 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
     labels = list(next(iter(lines.values())))
     looks = {label: look_of_line(i) for i, label in enumerate(labels)}
     entries = [(line_of(looks[label]), label) for label in labels]
-    # Labels are long: two abreast need twice the lines.
     foot = foot_of(entries, _NOTE)
     width, low = width_of(len(PANELS)), foot + at.BELOW
     height = low + at.HEIGHT + at.HEADING
@@ -100,13 +101,22 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
             continue
         axes.set(xlim=widened([n for n, _ in everything], 0.05, 0.12))
         axes.set(ylim=widened([e for _, e in everything], 0.07, 0.1))
-        for points in drawn.values():
+        for points in apart(list(drawn.values())):
             for power, name in powers:
                 _draw_power(axes, points, power, name)
         for label, points in drawn.items():
             axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **line_of(looks[label]))
     draw_legend(figure, entries, _NOTE, None)
     return figure
+
+
+def apart(lines: Sequence[Points]) -> list[Points]:
+    """Those that begin far from each other: of several beginnings in one place one has the powers."""
+    found: list[Points] = []
+    for points in lines:
+        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in found):
+            found.append(points)
+    return found
 
 
 def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
@@ -138,10 +148,15 @@ def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
 
 
 def labels_of(runs: Sequence[Row]) -> list[str]:
-    """What the lines are called: scene and rung, and the solver where it is not the plain one."""
-    return [
-        " ".join(
-            [run["scene"], run["rung"], run["solver"].removeprefix("taylor").lstrip("?")]
-        ).strip()
-        for run in runs
-    ]
+    """What the lines are called: scene, rung, and the setting of the solver where it has one.
+
+    A scene goes by the last part of its name where no other has the same.
+    """
+    tails = {run["scene"]: run["scene"].rpartition("/")[2] for run in runs}
+    found = []
+    for run in runs:
+        is_alone = list(tails.values()).count(tails[run["scene"]]) == 1
+        scene = tails[run["scene"]] if is_alone else run["scene"]
+        setting = run["solver"].removeprefix("taylor").lstrip("?")
+        found.append(" ".join([scene, run["rung"], setting]).strip())
+    return found

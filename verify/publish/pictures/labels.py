@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from verify.publish.pictures.named import Named, Spot
 from verify.publish.pictures.palette import PAPER, for_text
 from verify.publish.pictures.style import SMALL
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.text import Text
 
-Spot = tuple[float, float]
 Numbers = NDArray[np.float64]
 
 # To the inch.
@@ -53,15 +53,6 @@ _NOT_AN_END: Final = 0.6
 _PER_POINT_AWAY: Final = 0.06
 _FORBIDDEN: Final = 1e4
 _SWEEPS: Final = 4
-
-
-@dataclass(frozen=True)
-class Named:
-    """A line with its name: its pieces are joined points, in the axes' own units."""
-
-    name: str
-    colour: str
-    pieces: Sequence[Sequence[Spot]]
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from verify.publish.pictures.diagram import add_axes, line_of, widened
-from verify.publish.pictures.labels import Named, write_names
 from verify.publish.pictures.legend import draw_legend
+from verify.publish.pictures.named import Named
 from verify.publish.pictures.palette import QUIET
 from verify.publish.pictures.panels import Frame
 from verify.publish.pictures.picture import Picture, save
@@ -69,6 +69,8 @@ def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
 
 def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     from matplotlib.figure import Figure
+
+    from verify.publish.pictures.labels import write_names
 
     figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
     axes = add_axes(figure, _FRAME)

@@ -124,6 +124,8 @@ class FixedStep(Solver):
     def unsuited(self, problem: Problem) -> str:
         if problem.scene.model != "euler":
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+        if problem.given.body.manufactured is not None:
+            return f"{self.name} is made for a body without a moment that changes with time"
         if any(Body.of(problem).M) and not self.takes_moment:
             return f"{self.name} is made for a body without a moment"
         return ""

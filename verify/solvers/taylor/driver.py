@@ -4,6 +4,8 @@ What heyoka does silently by itself and why it cannot happen here:
 a coefficient rounded to a double      all coefficients are parameters of the rung's own type
 a state far from size one              the problem is posed in units of its own size
 a small component lost beside a large  no step is longer than half the fastest linear time scale
+impulses lost beside a long path       each stretch of the path is counted from where it begins
+an interrupt held until the end        a long stretch calls back, and so hears it
 an endless or a broken run             the number of steps is bounded and the outcome is read
 """
 
@@ -14,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
 from itertools import pairwise
-from math import isfinite
+from math import ceil, isfinite
 from time import perf_counter
 from typing import Any, final
 
@@ -29,7 +31,7 @@ from verify.scenes.precision import Rung
 from verify.solvers.solver import Solver
 from verify.solvers.taylor.cache import use_own_cache
 from verify.solvers.taylor.name import named_at, tolerance
-from verify.solvers.taylor.numbers import arithmetic, unavailable
+from verify.solvers.taylor.numbers import Arithmetic, arithmetic, unavailable
 from verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
 # In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
@@ -42,6 +44,9 @@ _SEGMENTS = 24
 _STEPS_PER_RADIAN = 64
 # What would take longer than days is not begun.
 _MOST_RADIANS = 1e10
+# What takes longer than a few tenths of a second calls back after each step: a tenth of a microsecond,
+# which beside the steps of a wide rung is nothing.
+_LONG_RADIANS = {"f32": 2e4, "f64": 2e4, "f80": 2e3}
 # Beyond this many states straight-line code compiles longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
 
@@ -156,10 +161,12 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     integrator.time = zero[0]
     integrator.state[:] = numbers.array(problem.initial)
     integrator.pars[:] = numbers.array(problem.parameters)
-    times = numbers.times(problem.times)
-    # The grid starts at the integrator's own time, asked for or not.
-    grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+    grid, samples = _grid(problem, numbers)
     linearised, rate = Linearised(problem), 0.0
+    # heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on
+    # the centre, so that it may be counted from anywhere.
+    path = [i for i, name in enumerate(problem.form.states) if name.startswith("c")]
+    began_at = integrator.state[path]
     rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
     for first, last in _segments(len(grid)):
         rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
@@ -170,13 +177,18 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
             return Outcome.STEP_LIMIT, total_steps, [], inner
         longest = numbers.double(LONGEST_STEP / rate)
         instants = grid[first : last + 1]
+        integrator.state[path] = zero[0]
         began = perf_counter()
         status, _, _, steps, _, reached = integrator.propagate_grid(
             instants,
             max_delta_t=longest,
             max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
+            callback=_go_on if radians > _LONG_RADIANS.get(problem.rung.name, 0.0) else None,
         )
         inner += perf_counter() - began
+        if path:
+            reached[:, path] += began_at
+            began_at = reached[-1, path]
         rows.append(reached[1:])
         total_steps += int(steps)
         outcome = _OUTCOMES.get(status, Outcome.INTERRUPTED)
@@ -186,7 +198,44 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
             return outcome, total_steps, [], inner
     if sum(map(len, rows)) != len(grid):
         return Outcome.INTERRUPTED, total_steps, [], inner
-    return Outcome.FINISHED, total_steps, rows[len(grid) - len(times) :], inner
+    return Outcome.FINISHED, total_steps, [np.concatenate(rows)[samples]], inner
+
+
+def _grid(problem: Problem, numbers: Arithmetic) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
+    """The instants that heyoka is asked for, and where the samples are among them.
+
+    They begin at its own time, asked for or not. Between few samples there are more, so that the
+    rate and the path are looked at as often there as between many.
+    """
+    times = numbers.times(problem.times)
+    zero = numbers.array([Fraction(0)])
+    grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+    if len(grid) > _SEGMENTS:
+        return grid, slice(len(grid) - len(times), None)
+    exact = list(problem.times) if len(grid) == len(times) else [Fraction(0), *problem.times]
+    instants, samples = exact[:1], [0]
+    for after, before in pairwise(exact):
+        instants += _waypoints(after, before, abs(exact[-1]) / _SEGMENTS, problem.rung)
+        samples.append(len(instants))
+        instants.append(before)
+    return numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> list[Fraction]:
+    """Numbers of the rung between two others, in order and no farther apart than about ``gap``."""
+    pieces = ceil(abs(before - after) / gap)
+    found = [after]
+    for k in range(1, pieces):
+        instant = rung.round(after + (before - after) * Fraction(k, pieces))
+        if min(found[-1], before) < instant < max(found[-1], before):
+            found.append(instant)
+    return found[1:]
+
+
+def _go_on(integrator: Any) -> bool:
+    """heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
+    del integrator
+    return True
 
 
 def _segments(instants: int) -> list[tuple[int, int]]:

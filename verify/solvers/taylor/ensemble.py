@@ -101,7 +101,7 @@ class Ensemble:
             self._prepared(i, lane, t) for i, (lane, t) in enumerate(zip(lanes, until, strict=True))
         ]
         # heyoka steps without the interpreter: threads are as good as processes.
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
+        with ThreadPoolExecutor(_processors()) as pool:
             work = zip(self._groups, self._steppers, strict=True)
             jobs = [
                 pool.submit(self._run, stepper, group, [pairs[i] for i in group], until)
@@ -232,6 +232,13 @@ def batch_width(rung: Rung) -> int:
 def most_steps(lane: Lane, target: Fraction) -> int:
     """A bound that no regular orbit comes near: what needs more has gone astray."""
     return _LEAST_STEPS + int(_STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
+
+
+def _processors() -> int:
+    """How many this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:

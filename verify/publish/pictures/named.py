@@ -1,0 +1,17 @@
+"""A line with a name: what is to be written beside it, apart from how, which asks for NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+Spot = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Named:
+    """A line with its name: its pieces are joined points, in the axes' own units."""
+
+    name: str
+    colour: str
+    pieces: Sequence[Sequence[Spot]]
