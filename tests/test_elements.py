@@ -447,7 +447,7 @@ def test_the_sign_of_A_is_exact(sign: int) -> None:
 # Without a closed form.
 
 
-@pytest.mark.parametrize("name", ["constant-moment", "moment-middle-axis", "spin-up"])
+@pytest.mark.parametrize("name", ["constant-moment", "moment-middle-axis"])
 def test_a_loaded_rigid_body_has_no_elements(name: str) -> None:
     """Nothing is invented: no number, and the words say that there is no closed form."""
     found = elements(load(f"euler/{name}"), 15)

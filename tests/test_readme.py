@@ -41,11 +41,14 @@ def test_every_file_that_is_linked_exists() -> None:
 
 def test_every_regime_is_documented() -> None:
     """The words that `regime` can be are listed where a reader looks for them."""
+    from verify.exact.euler.moments.regime import MomentRegime
     from verify.exact.euler.regime import Regime
 
     kirchhoff = (
         *("rest", "steady", "four-roots", "two-roots", "cubic", "hyperbolic"),
         *("trigonometric", "algebraic", "heteroclinic", "euler-top"),
+        *("planar-swing", "planar-turn", "planar-front", "planar-uniform", "planar-steady"),
     )
-    for word in (*(regime.value for regime in Regime), *kirchhoff, "no closed form"):
+    euler = [regime.value for regime in (*Regime, *MomentRegime)]
+    for word in (*euler, *kirchhoff, "no closed form"):
         assert word in README

@@ -310,7 +310,8 @@ def test_every_shipped_scene_loads_without_a_warning(name: str) -> None:
     """It is read under its own name, as its folder's model, with a digest of its text."""
     scene = load(name)
     assert scene.name == name
-    assert scene.model == name.split("/")[0]
+    folder, rest = name.split("/")
+    assert scene.model == (rest.split("-")[0] if folder == "manufactured" else folder)
     assert scene.warnings == ()
     assert scene.digest == sha256(library.find(name).read_bytes()).hexdigest()
 
@@ -327,7 +328,11 @@ def test_every_shipped_scene_says_why_it_is_there(name: str) -> None:
 def test_every_shipped_scene_is_in_the_table_of_the_readme() -> None:
     """cases/README.md has a row for each scene of the standard set, and for nothing else."""
     readme = (library.cases_directory() / "README.md").read_text()
-    rows = [line.split("`")[1] for line in readme.splitlines() if line.startswith(("| `e", "| `k"))]
+    rows = [
+        line.split("`")[1]
+        for line in readme.splitlines()
+        if line.startswith(("| `e", "| `k", "| `m"))
+    ]
     assert sorted(row for row in rows if "/" in row) == sorted(library.names())
 
 
@@ -431,7 +436,10 @@ MOTIONS = {
     "rest": ("rest",),
     "euler-top": ("zero-impulse", "euler-top"),
     "steady": ("steady-spin", "unstable-spin", "border-spin", "steady-precession"),
-    "trigonometric": ("trigonometric", "beside-a-stable-spin", "isotropic-helicoid"),
+    "trigonometric": (
+        *("trigonometric", "beside-a-stable-spin", "isotropic-helicoid"),
+        "ellipsoid-sphere",
+    ),
     "hyperbolic": ("onto-the-axis", "falling-away"),
     "algebraic": ("algebraic", "algebraic-path"),
     "heteroclinic": ("half-turn", "half-turn-path"),
@@ -439,6 +447,7 @@ MOTIONS = {
     "four-roots": (
         *("four-real-roots", "whole-motion", "planar-swing", "planar-turn"),
         *("backward", "orthogonal-impulses", "through-the-pole"),
+        *("ellipsoid-prolate", "ellipsoid-disc"),
     ),
     "two-roots": (
         *("two-real-roots", "screw", "listed-times"),

@@ -344,8 +344,12 @@ def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyP
 
 def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:
     """What no setting reaches is said, with the one that comes nearest."""
-    with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow"):
-        recommend(scene, 1e-40, [setting_of(Scripted("slow", 1.0))])
+    asked = [setting_of(Scripted("slow", 1.0))]
+    with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow.*rounding alone.*is mp\d+"):
+        recommended(trade_off(scene, asked, repeats=1), 1e-40)
+    # Before it is measured, it is known from the rounding alone.
+    with pytest.raises(OutOfReach, match=r"1e-40.*on f64 rounding alone leaves.*is mp\d+"):
+        recommend(scene, 1e-40, asked)
 
 
 @pytest.mark.parametrize("error", [0.0, -1.0, nan, inf])

@@ -35,6 +35,13 @@ def everything(scene: Scene) -> Scene:
     return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
 
 
+# An axisymmetric body under a moment that is not along its axis: its attitude has no closed form.
+OMEGA_ALONE = {
+    *("euler/moment-across-axis", "euler/moment-across-no-spin"),
+    *("euler/moment-oblique", "euler/moment-backward"),
+}
+
+
 def disagreement(scene: Scene, times: list[Fraction]) -> str:
     """Where the two routes lie further apart than both radii allow; nothing if they overlap."""
     one, other = (solution(scene, route).motion(times, DIGITS) for route in ("arb", "mpmath"))
@@ -64,7 +71,10 @@ def closed_forms() -> list[str]:
 @pytest.mark.parametrize("name", closed_forms())
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
-    scene = everything(load(name))
+    scene = load(name)
+    # The frame of a manufactured motion has no closed form either.
+    if name not in OMEGA_ALONE and scene.body.manufactured is None:
+        scene = everything(scene)
     end = scene.clock.elapsed[-1]
     assert disagreement(scene, [end / 7, end * Fraction(8, 9), -end / 3, 5 * end]) == ""
 

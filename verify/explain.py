@@ -7,6 +7,7 @@ from typing import Any
 
 from mpmath import mp
 
+from verify.exact import ellipsoid
 from verify.exact.elements import Element, Elements, elements
 from verify.exact.solution import Unsettled
 from verify.judge.carrying import Carrying, carrying
@@ -15,6 +16,7 @@ from verify.models.form import Form
 from verify.models.general import in_general_form, whole_form
 from verify.models.problem import NotRepresentable, pose
 from verify.run import run
+from verify.scenes.bodies import ImmersedBody
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
@@ -47,6 +49,7 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
         "bits": rung_named(rung).bits,
         "track": sorted({"omega" if scene.model == "euler" else "impulse"} | scene.track),
         "warnings": list(scene.warnings),
+        "body": ellipsoid.told(scene.body) if isinstance(scene.body, ImmersedBody) else [],
         **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
             **_cost(scene, rung),

@@ -13,6 +13,7 @@ from verify.exact.printed import decimal_text, document
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
@@ -50,6 +51,7 @@ def reference(scene: Scene) -> dict[str, Any]:
         "route": printed["route"],
         "digits": DIGITS,
         "body": _body(scene.body),
+        **_manufactured(scene.body.manufactured),
         "initial": _initial(scene),
         "columns": _columns(printed["rows"]),
     }
@@ -110,6 +112,14 @@ def _body(body: RigidBody | ImmersedBody) -> dict[str, Any]:
         "force": _exact(body.force),
         "couple": _exact(body.couple),
     }
+
+
+def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
+    """The motion of omega, or of x and y as one vector, with the time since the start; if there is one."""
+    if motion is None:
+        return {}
+    waves = [{name: _exact(value) for name, value in vars(wave).items()} for wave in motion.waves]
+    return {"manufactured": {"constant": _exact(motion.constant), "waves": waves}}
 
 
 def _initial(scene: Scene) -> dict[str, Any]:

@@ -277,6 +277,12 @@ def _add_publish(found: Any) -> None:
         "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
     )
     made.add_argument(
+        "--worst",
+        action="store_true",
+        help="instead hunt for the largest error over attainable in families of extremes, and write "
+        "DIR/data/worst.json, DIR/tables/worst.md and the scenes of cases/extremes/worst",
+    )
+    made.add_argument(
         "--reach",
         action="store_true",
         help="instead measure how many digits each precision leaves of families of extremes, over "
@@ -290,6 +296,10 @@ def _add_publish(found: Any) -> None:
         "write how each error grows into DIR/data/growth.json and DIR/tables/growth.md; stopped, it "
         "goes on from DIR/local/growth",
     )
+    verb.add_argument(
+        "--seconds", type=float, default=600.0, metavar="S", help="of --worst; default: 600"
+    )
+    verb.add_argument("--seed", type=int, default=1, metavar="N", help="of --worst; default: 1")
     verb.add_argument(
         "--periods", metavar="N", help="with --growth: follow none for more than N periods"
     )

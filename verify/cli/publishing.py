@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from verify.cli.answer import PASS, Answer
+from verify.cli.answer import PASS, Answer, WrongCall
 from verify.cli.streams import say
 
 
@@ -39,6 +39,20 @@ def prices(folder: Path) -> Answer:
     from verify.trade.prices import RUNGS, document
 
     return _written(pages.write(folder, document(_counting(len(RUNGS)))))
+
+
+def worst(folder: Path, seconds: float, seed: int) -> Answer:
+    """The worst error over attainable in each family; its scenes take the place of those kept."""
+    from verify.hunt import FAMILIES, document, hunt
+    from verify.publish import worst as pages
+    from verify.scenes.library import WORST, cases_directory
+
+    if not seconds > 0:
+        raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
+    found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
+    scenes = {one.family.name: one.scene_text for one in found}
+    kept = pages.keep(cases_directory() / WORST, scenes)
+    return _written([*pages.write(folder, document(found, seconds, seed)), *kept])
 
 
 def _counting(total: int) -> Callable[[str], None]:

@@ -254,6 +254,8 @@ def publish(options: argparse.Namespace) -> Answer:
         return publish_claims(writable(options.folder, "--from"))
     if options.prices:
         return publishing.prices(writable(options.folder, "--from"))
+    if options.worst:
+        return publishing.worst(writable(options.folder, "--from"), options.seconds, options.seed)
     if options.tradeoff:
         from verify.cli.tradeoff_publish import publish_tradeoff
 

@@ -5,7 +5,8 @@ k  principal values of I^-1           omega  k H
 q  attitude quaternion, body to space
 
 The sound twin is the classical Runge-Kutta method of fourth order at the very same step, so small
-that it passes every gate: what fails here is the defect and not the step.
+that it passes every gate: what fails here is the defect and not the step. Last comes a step of
+heyoka's own choice, whose twin is the driver.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from verify.models.frame import attitude_rate
 from verify.models.problem import Problem
 from verify.scenes.precision import exact_value
 from verify.solvers.solver import Solver
+from verify.solvers.taylor.plain.body import Plain
 from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 
 _BRICK: Final = "euler/nesc-brick"
@@ -234,5 +236,16 @@ STEPPING: Final = (
         frozenset(),
         "the state kept in float32 between steps",
         "each step rounds to 24 bits, half a billion times as coarsely as to 53",
+    ),
+    Defect(
+        "unbounded-step",
+        "extremes/euler-unstable-axis-1e-12",
+        "omega",
+        passes=frozenset({"T", "H2"}),
+        what="no bound on the step beside an unstable axis",
+        why="the error of a step is held against the whole state: the distance from the axis, 1e-12 of "
+        "it, is rounded to 1e-16 of the whole and not of itself, and tells when the body tumbles. On "
+        "the orbit that it takes everything is conserved",
+        solver=Plain(),
     ),
 )

@@ -27,12 +27,13 @@ def exact(
     ``taylor``; by default the closed form where there is one. Raises exact.solution.NoClosedForm
     where the route asks for a closed form that is missing.
     """
+    from verify.exact.ellipsoid import formed_to
     from verify.exact.route import solution
     from verify.scenes.reader import load
 
     scene = load(scene) if isinstance(scene, str) else scene
     elapsed = [Fraction(time) - scene.clock.start for time in times]
-    return solution(scene, route).motion(elapsed, digits)
+    return solution(formed_to(scene, digits), route).motion(elapsed, digits)
 
 
 make_callable(__name__, exact)

@@ -33,7 +33,7 @@ FloatArray = np.ndarray[Any, np.dtype[np.float64]]
 # (e, digits): momenta are changed by 10^-e of their size. The first attempt is for regular orbits. A
 # perturbed orbit may lie 10^-e beside a degenerate one, where a closed form can lose 3e digits; the
 # Taylor recursion loses none.
-_CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440))
+_CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440), (250, 1100))
 _TAYLOR_DIGITS: Final = ((12, 32), (30, 70), (60, 130))
 # Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
 _VOLUME_ERROR: Final = mpf("1e-6")
@@ -85,21 +85,24 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
     Raises Unsettled if it never is.
     """
     exact = solution(scene)
-    if exact.route == "taylor":
+    # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
+    if exact.route == "taylor" or scene.body.manufactured is not None:
         table = transition_table(scene, exact, _units(scene), elapsed)
         if table is not None:
             return Transition(tuple(elapsed), table)
     return Transition(tuple(elapsed), dict(_norms(next(settled(scene, elapsed)))))
 
 
-def settled(scene: Scene, elapsed: Sequence[Fraction]) -> Iterator[Derivatives]:
-    """Differences that conserve volume, at one precision after the other.
+def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterator[Derivatives]:
+    """Differences that conserve volume, of 10^-``least`` units or less, at one precision after the other.
 
     Raises Unsettled if there is none.
     """
     ladder = _TAYLOR_DIGITS if solution(scene).route == "taylor" else _CLOSED_FORM_DIGITS
     is_settled = False
     for exponent, digits in ladder:
+        if exponent < least:
+            continue
         found = derivatives(scene, elapsed, exponent, digits)
         if found.volume_error() <= _VOLUME_ERROR:
             is_settled = True

@@ -8,9 +8,12 @@ centre add nothing to them.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from verify.exact.element import Element, Elements
 from verify.exact.euler.elements import elements as euler_elements
 from verify.exact.kirchhoff.elements import elements as kirchhoff_elements
+from verify.exact.kirchhoff.turned import upright
 from verify.scenes.bodies import RigidBody
 from verify.scenes.scene import Scene
 
@@ -25,4 +28,26 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     """
     if isinstance(scene.body, RigidBody):
         return euler_elements(scene, digits)
-    return kirchhoff_elements(scene, digits)
+    named_anew, axis = upright(scene)
+    found = kirchhoff_elements(named_anew, digits)
+    return found if axis == 3 else _about(axis, found)
+
+
+def _about(axis: int, found: Elements) -> Elements:
+    """What is told of x3, y3 and the axis 3, told of the body axis that is the axis of symmetry."""
+
+    def told(text: str) -> str:
+        for of_third in ("x3", "y3", "axis 3"):
+            text = text.replace(of_third, f"{of_third[:-1]}{axis}")
+        return text
+
+    numbers = tuple(
+        replace(
+            element,
+            name=told(element.name),
+            meaning=told(element.meaning),
+            source=told(element.source),
+        )
+        for element in found.numbers
+    )
+    return Elements(found.regime, numbers, tuple(map(told, found.sentences)))

@@ -21,7 +21,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import frexp, isqrt
+from math import ceil, frexp, inf, isqrt, log10
 from typing import Any, Final, final
 
 import numpy as np
@@ -46,6 +46,9 @@ _REGULAR: Final = 8.0
 # Until so many radians every radian is a point of its own, later every 64th part of the time so far.
 _RESOLVED: Final = 64
 _MOST_SAMPLES: Final = 401
+# For a solid in a fluid, steps of float64 cost less than seven orbits of hundreds of digits, until
+# there are thousands; the four of a rigid body, in functions of real numbers, cost less than any.
+_MOST_RADIANS: Final = 2000
 # Norms are wanted to a digit or two.
 _SHARP: Final = 1e-3
 
@@ -55,7 +58,8 @@ class Path(ABC):
 
     ``momentum`` (n, d) and ``centre`` (n, 3; from its start; no rows if it is not tracked) are the
     motion there, in ``units``: powers of two by name, of the blocks of the state and of ``omega``.
-    ``blocks`` are those of the state, each of three components, in their order.
+    ``blocks`` are those of the state, each of three components, in their order. If it comes from
+    differences, they are of 10^-``exponent`` units.
     """
 
     elapsed: tuple[Fraction, ...]
@@ -63,6 +67,7 @@ class Path(ABC):
     blocks: tuple[str, ...]
     momentum: Floats
     centre: Floats
+    exponent: int = 0
 
     @abstractmethod
     def gathered(self, errors: Floats) -> dict[str, Floats]:
@@ -86,27 +91,44 @@ def path(scene: Scene) -> Path:
     found = _along(scene, _few(elapsed))
     rate = fastest(scene, momentum(scene).units, found.momentum)
     times = np.array([abs(float(t)) for t in found.elapsed])
-    if (found.growth() <= _REGULAR * (1 + rate * times)).all():
+    growth = found.growth()
+    if (growth <= _REGULAR * (1 + rate * times)).all():
         return found
-    return _along(scene, _many(elapsed, rate))
+    points = _many(elapsed, rate)
+    is_solid_in_fluid = found.momentum.shape[1] == 6
+    if is_solid_in_fluid and rate * times[-1] <= _MOST_RADIANS and growth.max() < inf:
+        steps = _stepped(scene, points, float(growth.max()))
+        if steps is not None:
+            return steps
+    return _sharp(scene, points, found.exponent)
 
 
 def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
-    exact, units = solution(scene), momentum(scene).units
-    if exact.route == "taylor":
-        found = stepped(scene, exact, units, points)
+    exact = solution(scene)
+    # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
+    if exact.route == "taylor" or scene.body.manufactured is not None:
+        found = _stepped(scene, points)
         if found is not None:
-            return _ByIntegration.of(scene, points, found)
+            return found
     return _sharp(scene, points)
 
 
-def _sharp(scene: Scene, points: Sequence[Fraction]) -> _ByDifference:
+def _stepped(
+    scene: Scene, points: Sequence[Fraction], growth: float = 1.0
+) -> _ByIntegration | None:
+    """From steps along a truth with so many more digits as ``growth`` may magnify its last one by."""
+    exact, units = solution(scene), momentum(scene).units
+    found = stepped(scene, exact, units, points, ceil(log10(growth)))
+    return None if found is None else _ByIntegration.of(scene, points, found)
+
+
+def _sharp(scene: Scene, points: Sequence[Fraction], least: int = 0) -> _ByDifference:
     """From differences so small that products of F with inverses of it have their leading digits.
 
     A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
     ladder is enough, what is found there is noise on top of what is asked: more, and not less.
     """
-    for found in settled(scene, points):
+    for found in settled(scene, points, least):
         path = _ByDifference.of(scene, points, found)
         blurred = path.growth() ** 2 * path.shrinkage().max()
         if (blurred <= _SHARP * 10.0**found.exponent).all():
@@ -169,6 +191,7 @@ class _ByDifference(Path):
     backward: tuple[Any, ...]
     sizes: Floats
     bits: int
+    exponent: int
 
     @classmethod
     def of(cls, scene: Scene, points: Sequence[Fraction], found: Derivatives) -> _ByDifference:
@@ -198,6 +221,7 @@ class _ByDifference(Path):
             backward=tuple(pair[1] for pair in pairs),
             sizes=np.array([_norm(values.astype(float)) for values in found.momentum]),
             bits=bits,
+            exponent=found.exponent,
         )
 
     def gathered(self, errors: Floats) -> dict[str, Floats]:
@@ -330,11 +354,7 @@ class _ByIntegration(Path):
             rows.append(self._sizes(factor))
             for step, sizes in zip(self.steps, errors[1:], strict=True):
                 both = np.hstack([step[:size, :size] @ factor, np.diag(sizes)])
-                # Once beyond float64, for ever.
-                is_finite = np.isfinite(both).all()
-                factor = (
-                    np.linalg.qr(both.T, mode="r").T if is_finite else np.full_like(factor, np.inf)
-                )
+                factor = _narrowed(both)
                 rows.append(self._sizes(factor))
         return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
@@ -352,3 +372,10 @@ class _ByIntegration(Path):
             carried = step[:d, :d] @ carried
             found.append(_norm(carried) if np.isfinite(carried).all() else np.inf)
         return np.array(found)
+
+
+def _narrowed(factor: Floats) -> Floats:
+    """A square L with the same L L^T; what is once beyond float64 is so for ever."""
+    if np.isfinite(factor).all():
+        return np.linalg.qr(factor.T).R.T
+    return np.full((len(factor), len(factor)), np.inf)

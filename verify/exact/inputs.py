@@ -145,7 +145,8 @@ def _energy(scene: Scene, body: ImmersedBody) -> Input:
         change = _with_entry if block == "coupling" else _with_both_entries
         blocks = {"linear": A, "coupling": body.coupling, "angular": C}
         blocks[block] = change(blocks[block], place, amount)
-        return replace(scene, body=ImmersedBody(**blocks, force=body.force, couple=body.couple))
+        a, b, c = blocks.values()
+        return replace(scene, body=ImmersedBody(a, b, c, force=body.force, couple=body.couple))
 
     names = _entry_names("A", _SYMMETRIC) + _entry_names("B", _ALL) + _entry_names("C", _SYMMETRIC)
     # As with q, T > 0 keeps the square of an entry below the product of the two on the diagonal.

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.exact.kirchhoff.integrable import Fourth, fourth_integral
 from verify.exact.mpfr import real, sqrt
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Motion
@@ -44,8 +45,10 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     """The conserved quantities that the tracked quantities of a scene determine.
 
     Euler: ``T``, ``H2``, and ``H_space`` with attitude. Kirchhoff: ``T``, ``F2``, ``FG``, ``y3``
-    for a body of Clebsch's form, ``x_space`` with attitude, ``y_space`` with centre. Under loads
-    they change, by the work and impulse of the loads; their values are defined all the same.
+    for a body of Clebsch's form (``y1`` or ``y2`` where that is its axis) or the fourth integral of
+    another family, by its word (without loads alone), ``x_space`` with attitude, ``y_space`` with
+    centre. Under loads they change, by the work and impulse of the loads; their values are defined
+    all the same.
     """
     if isinstance(scene.body, RigidBody):
         found = [_euler_energy(scene.body), _euler_momentum(scene.body)]
@@ -53,8 +56,11 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
             found.append(_euler_space_momentum(scene.body))
         return tuple(found)
     found = [_energy(scene.body), _F2, _FG]
-    if scene.body.clebsch is not None:
-        found.append(_y3)
+    if scene.body.axis_of_symmetry is not None:
+        found.append(_axial(scene.body.axis_of_symmetry))
+    fourth = fourth_integral(scene)
+    if fourth is not None:
+        found.append(_fourth(fourth))
     if scene.track:
         found.append(_x_space)
     if "centre" in scene.track:
@@ -147,12 +153,20 @@ _FG = Invariant(
     },
 )
 
-_y3 = Invariant(
-    "y3",
-    lambda motion: motion["angular_impulse"][:, 2],
-    lambda motion: _nonzero(_size(motion["angular_impulse"])),
-    lambda motion: {"angular_impulse": _ones(motion["angular_impulse"])},
-)
+
+def _axial(axis: int) -> Invariant:
+    """y3, or the y of whatever body axis it is about which T is Clebsch's."""
+    return Invariant(
+        f"y{axis}",
+        lambda motion: motion["angular_impulse"][:, axis - 1],
+        lambda motion: _nonzero(_size(motion["angular_impulse"])),
+        lambda motion: {"angular_impulse": _ones(motion["angular_impulse"])},
+    )
+
+
+def _fourth(found: Fourth) -> Invariant:
+    return Invariant(found.name, found.value, found.scale, found.sensitivity)
+
 
 _x_space = Invariant(
     "x_space",

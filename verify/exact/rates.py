@@ -6,14 +6,16 @@ z'' = sum of (first' second + first second'). No difference of two motions is ta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
 
+from verify.exact import clocks
 from verify.exact.recursion import Combination
 from verify.exact.taylor import posed
 from verify.scenes.motion import Motion
@@ -45,13 +47,21 @@ class Rates:
     time: int
 
 
-def rates(scene: Scene, motion: Motion) -> Rates:
-    """The derivatives of a motion of this scene, to the roundings of float64."""
+def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = None) -> Rates:
+    """The derivatives of a motion of this scene, to the roundings of float64.
+
+    ``elapsed`` are the times of its rows since the start, the scene's own unless they are given; loads
+    that change with time, those of a manufactured motion, ask for them.
+    """
     flow = _flow(scene)
     names = [name for name in _STATES[scene.model] if name in motion.quantities]
     states = [motion[name].reshape(len(motion.radius), -1) for name in names]
     units = flow.exponents[: sum(block.shape[1] for block in states)]
     z = _floats(np.concatenate(states, axis=1), units)
+    manufactured = scene.body.manufactured
+    if manufactured is not None:
+        times = scene.clock.elapsed if elapsed is None else elapsed
+        z = np.concatenate([z, clocks.floats(manufactured, times)], axis=1)
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
         velocity, acceleration = flow.derivatives(z)
     places, first = {}, 0

@@ -15,8 +15,18 @@ CLOSED_ROUTES: Final = ("arb", "mpmath")
 _CLOSED_FORMS: Final[Mapping[tuple[str, str], str]] = {
     ("euler", "arb"): "verify.exact.euler.theta:enclosed",
     ("euler", "mpmath"): "verify.exact.euler.jacobi:closed_form",
-    ("kirchhoff", "arb"): "verify.exact.kirchhoff.weierstrass:enclosed",
-    ("kirchhoff", "mpmath"): "verify.exact.kirchhoff.jacobi:closed_form",
+    ("kirchhoff", "arb"): "verify.exact.kirchhoff.planar:enclosed",
+    ("kirchhoff", "mpmath"): "verify.exact.kirchhoff.planar:closed_form",
+}
+# The same for a rigid body under a constant moment.
+_LOADED: Final[Mapping[str, str]] = {
+    "arb": "verify.exact.euler.moments.erf:enclosed",
+    "mpmath": "verify.exact.euler.moments.fresnel:closed_form",
+}
+# The same for a body with a manufactured motion, of either model.
+_MANUFACTURED: Final[Mapping[str, str]] = {
+    "arb": "verify.exact.manufactured:enclosed",
+    "mpmath": "verify.exact.manufactured:doubled",
 }
 
 
@@ -37,6 +47,12 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:
-    module, name = _CLOSED_FORMS[scene.model, route].split(":")
+    if scene.body.manufactured is not None:
+        place = _MANUFACTURED[route]
+    elif scene.model == "euler" and not scene.body.is_free:
+        place = _LOADED[route]
+    else:
+        place = _CLOSED_FORMS[scene.model, route]
+    module, name = place.split(":")
     make: Callable[[Scene], Solution] = getattr(import_module(module), name)
     return make(scene)

@@ -86,9 +86,14 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
     is at most 10^-digits of the column, or of the quantity's size (1 for an attitude, the distance
     from the start for a centre) per size of the input where that is larger.
 
-    Raises exact.solution.Unsettled where that cannot be had, ValueError for no times. Costs three
+    Raises exact.solution.Unsettled where that cannot be had, ValueError for no times and for a
+    manufactured motion. Costs three
     motions per component of the initial omega or impulses and of the body; by Taylor that is slow.
     """
+    if scene.body.manufactured is not None:
+        raise ValueError(
+            f"expected loads that do not depend on the body, got a manufactured motion @ {scene.name}"
+        )
     elapsed = tuple(Fraction(time) for time in times_elapsed)
     if not elapsed:
         raise ValueError("expected at least one time since the start, got none")

@@ -14,6 +14,7 @@ from typing import Any, final
 import numpy as np
 from mpmath import mp
 
+from verify.exact import clocks
 from verify.exact.guided import crosswise, placed
 from verify.exact.recursion import (
     Equations,
@@ -29,7 +30,7 @@ from verify.exact.recursion import (
 from verify.exact.rotation import rotation_matrix
 from verify.exact.solution import NO_CLOSED_FORM, Quantities, Settled
 from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Motion, Spin, State
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
@@ -93,8 +94,12 @@ def arcs(scene: Scene, starts: Sequence[State], spans: Sequence[Fraction], digit
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
     Settled to ``digits`` by the agreement of two evaluations, as Solution.motion is, and raises
-    Unsettled likewise.
+    Unsettled likewise. The loads must not change with time, for no arc knows when it begins.
     """
+    if scene.body.manufactured is not None:
+        raise ValueError(
+            f"expected loads that are constant, got a manufactured motion @ {scene.name}"
+        )
     return _Arcs(scene, tuple(starts)).motion(spans, digits)
 
 
@@ -131,7 +136,10 @@ class _Arcs(Settled):
 
 
 def _euler(body: RigidBody, with_attitude: bool) -> Equations:
-    """omega' = K((I omega) x omega + M); each row r of R obeys r' = r x omega."""
+    """omega' = K((I omega) x omega + M); each row r of R obeys r' = r x omega.
+
+    The clock of a manufactured motion comes last.
+    """
     omega: Triple = (0, 1, 2)
     inertia, inverse = body.inertia, body.inverse_inertia
     torque: list[Polynomial] = []
@@ -140,24 +148,37 @@ def _euler(body: RigidBody, with_attitude: bool) -> Equations:
         backward = {(i, j): -inertia[k][i] for i in omega}
         torque.append(_sum(forward, backward))
     right = [_sum(*(_times(c, p) for c, p in zip(row, torque, strict=True))) for row in inverse]
+    right = _driven(right, body, 3 + 9 * with_attitude)
     if with_attitude:
-        right += [p for row in _rows_from(3) for p in _cross(row, omega)]
+        right[3:3] = [p for row in _rows_from(3) for p in _cross(row, omega)]
     return Equations(tensors.apply(inverse, body.moment), (), tuple(right))
 
 
 def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Equations:
-    """Hydromechanics 48 (3), (4), (5); R' = R [Omega]x row by row, centre' = R U."""
-    size = 6 + 9 * with_attitude + 3 * with_centre
+    """Hydromechanics 48 (3), (4), (5); R' = R [Omega]x row by row, centre' = R U; last the clock."""
+    clock = 6 + 9 * with_attitude + 3 * with_centre
+    size = clock + clocks.count(body.manufactured)
     velocity: Triple = (size, size + 1, size + 2)
     omega: Triple = (size + 3, size + 4, size + 5)
-    right = _impulse_rates(body)
+    right = _driven(_impulse_rates(body), body, clock)
+    frame: list[Polynomial] = []
     if with_attitude:
-        right += [p for row in _rows_from(6) for p in _cross(row, omega)]
+        frame += [p for row in _rows_from(6) for p in _cross(row, omega)]
     if with_centre:
-        right += [_dot(row, velocity) for row in _rows_from(6)]
+        frame += [_dot(row, velocity) for row in _rows_from(6)]
+    right[6:6] = frame
     # Only R and the centre ask for U and Omega themselves.
     forms = body.energy_matrix if with_attitude else ()
     return Equations(body.force + body.couple, forms, tuple(right))
+
+
+def _driven(free: list[Polynomial], body: Body, clock: int) -> list[Polynomial]:
+    """The rates with the loads of a manufactured motion, if there is one, and then those of its clock."""
+    motion = body.manufactured
+    if motion is None:
+        return free
+    driven = [_sum(p, q) for p, q in zip(free, clocks.loads(free, motion, clock), strict=True)]
+    return driven + clocks.rates(motion, clock)
 
 
 def _impulse_rates(body: ImmersedBody) -> list[Polynomial]:
@@ -180,10 +201,14 @@ def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
 
 
 def _euler_units(body: RigidBody, start: Vector) -> Units:
-    """omega by its size, or what the moment makes of it; time by omega."""
-    spun = tensors.apply(body.inverse_inertia, body.moment)
-    omega = _largest(exponent(start[:3]), _halved(exponent(spun)), default=0)
-    return Units((omega,) * 3 + (0,) * (len(start) - 3), -omega)
+    """omega by its size, or what the moment makes of it; time by omega, or the fastest of its waves."""
+    spun, motion = tensors.apply(body.inverse_inertia, body.moment), body.manufactured
+    if motion is None:
+        omega = _largest(exponent(start[:3]), _halved(exponent(spun)), default=0)
+        return Units((omega,) * 3 + (0,) * (len(start) - 3), -omega)
+    omega = _largest(exponent(motion.reach), default=0)
+    rate = _largest(omega, clocks.exponent(motion), default=0)
+    return Units((omega,) * 3 + (0,) * (len(start) - 3), -rate)
 
 
 def _kirchhoff_units(body: ImmersedBody, start: Vector) -> Units:
@@ -205,13 +230,17 @@ def _kirchhoff_units(body: ImmersedBody, start: Vector) -> Units:
         _later(exponent(pushed), time),
         default=omega,
     )
+    if body.manufactured is not None:
+        time = -_largest(omega, clocks.exponent(body.manufactured), default=0)
     linear = _largest(exponent(x), _later(exponent(force), time), default=0)
     angular = _largest(
         exponent(y), _later(exponent(couple), time), default=linear + velocity + time
     )
     angular = max(angular, linear + velocity + time)
-    sizes = (linear,) * 3 + (angular,) * 3 + (0,) * 9 + (velocity + time,) * 3
-    return Units(sizes[: len(start)] + (velocity,) * 3 + (omega,) * 3, time)
+    sizes: tuple[int, ...] = (linear,) * 3 + (angular,) * 3 + (0,) * 9 + (velocity + time,) * 3
+    clock = (0,) * clocks.count(body.manufactured)
+    sizes = sizes[: len(start) - len(clock)] + clock
+    return Units(sizes + (velocity,) * 3 + (omega,) * 3, time)
 
 
 def _halved(exponent: int | None) -> int | None:
@@ -262,7 +291,9 @@ def posed(scene: Scene) -> Problem:
     if isinstance(body, RigidBody):
         return problem(_euler(body, bool(scene.track)), _euler_units(body, start), start, moving=3)
     equations = _kirchhoff(body, bool(scene.track), "centre" in scene.track)
-    units = _kirchhoff_units(body, start)
+    motion = body.manufactured
+    # What a manufactured motion reaches, not where it begins, is the size of its impulses.
+    units = _kirchhoff_units(body, start if motion is None else motion.reach + start[6:])
     variables = units.variables[: len(start) + len(equations.forms)]
     return problem(equations, Units(variables, units.time), start, moving=6)
 
@@ -300,7 +331,8 @@ def _start(scene: Scene) -> Vector:
         moving += tuple(entry for row in rotation_matrix(initial.attitude) for entry in row)
     if "centre" in scene.track and isinstance(initial, Impulse):
         moving += initial.centre
-    return moving
+    motion = scene.body.manufactured
+    return moving if motion is None else moving + clocks.at(motion, Fraction(0), 0)
 
 
 # The answer.
@@ -330,5 +362,5 @@ def _quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:
     if scene.track:
         parts["attitude"] = z[:, used : used + 9].reshape(len(z), 3, 3)
     if "centre" in scene.track:
-        parts["centre"] = z[:, used + 9 :]
+        parts["centre"] = z[:, used + 9 : used + 12]
     return parts

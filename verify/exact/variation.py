@@ -8,7 +8,9 @@ axes, and moves the centre c,
 
 with Omega and U linear in z. These are integrated from one node to the next along a motion that starts
 at the truth, and that has to arrive at it: where float64 cannot follow the orbit that far there is no
-answer. A product of such steps leads from any node to any later one; nothing is inverted.
+answer. Of a manufactured motion z* = S w, with w the clock of exact.clocks and w' = N w, the loads are
+S w' - J(z*) z*/2; they do not depend on z, and so are no part of J. A product of such steps leads
+from any node to any later one; nothing is inverted.
 """
 
 from __future__ import annotations
@@ -16,12 +18,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
 
+from verify.exact import clocks
 from verify.exact.solution import Solution
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Motion
@@ -78,11 +82,11 @@ class Stepped(NamedTuple):
 
 
 def stepped(
-    scene: Scene, exact: Solution, units: Vector, elapsed: Sequence[Fraction]
+    scene: Scene, exact: Solution, units: Vector, elapsed: Sequence[Fraction], more_digits: int = 0
 ) -> Stepped | None:
-    """The steps between these times, or None where float64 does not follow the orbit."""
+    """The steps between these times, or None; ``more_digits`` of the truth keep its small components."""
     flow = _Flow.of(scene, units)
-    found = _integrated(scene, exact, flow, units, elapsed)
+    found = _integrated(scene, exact, flow, units, elapsed, more_digits)
     if found is None:
         return None
     wholes, samples = _wholes(flow, *found), found[1]
@@ -102,10 +106,11 @@ class _Flow:
     """The equations in units of their size: d = 3 or 6 components of momentum.
 
     ``twice`` (d, d, d) gives J = twice @ z; ``omega`` and ``velocity`` (3, d) give Omega and, for a
-    solid in a fluid, U. Time is measured in ``time``, lengths in ``length``.
+    solid in a fluid, U. Time is measured in ``time``, lengths in ``length``. ``swing`` is S and N.
     """
 
     constant: Floats
+    swing: clocks.Swing
     twice: Floats
     omega: Floats
     velocity: Floats | None
@@ -132,6 +137,7 @@ class _Flow:
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
         return cls(
             constant=np.array([float(c * time / u) for c, u in zip(constant, units, strict=True)]),
+            swing=clocks.swing(scene.body, units, time),
             twice=twice,
             omega=_floats(omega, units, time),
             velocity=_floats(velocity, units, time / length) if velocity else None,
@@ -143,20 +149,29 @@ class _Flow:
         found: Floats = self.twice @ z
         return found
 
+    def load(self, clock: Floats) -> Floats:
+        """What is constant, and what the manufactured motion takes."""
+        there, rate = self.swing.at(clock)
+        found: Floats = self.constant + rate - self.jacobian(there) @ there / 2
+        return found
+
 
 @dataclass(frozen=True)
 class _Samples:
     """The truth at the points: momentum in units (n, d), R (n, 3, 3) and the centre in lengths (n, 3).
 
-    What is not tracked has no rows.
+    What is not tracked has no rows. ``clock`` (n, m) is w.
     """
 
+    clock: Floats
     momentum: Floats
     attitude: Floats
     centre: Floats
 
 
-def _samples(scene: Scene, truth: Motion, units: Vector, length: Fraction) -> _Samples:
+def _samples(
+    scene: Scene, points: Sequence[Fraction], truth: Motion, units: Vector, length: Fraction
+) -> _Samples:
     with mp.workdps(_FLOAT_DIGITS):
         if isinstance(scene.body, RigidBody):
             inertia = np.array([[mp.convert(c) for c in row] for row in scene.body.inertia])
@@ -167,6 +182,7 @@ def _samples(scene: Scene, truth: Motion, units: Vector, length: Fraction) -> _S
         path = truth.quantities.get("centre", nothing) / mp.convert(length)
         path = path - path[:1]
         return _Samples(
+            clocks.floats(scene.body.manufactured, points),
             (z / np.array([mp.convert(unit) for unit in units])).astype(float),
             truth.quantities.get("attitude", np.empty((0, 3, 3))).astype(float),
             path.astype(float),
@@ -175,8 +191,9 @@ def _samples(scene: Scene, truth: Motion, units: Vector, length: Fraction) -> _S
 
 @dataclass
 class _Errors:
-    """z, R and the derivatives by the momentum at the last point: of z (d, d), theta and c (3, d)."""
+    """w, z, R and the derivatives by the momentum at the last point: of z (d, d), theta, c (3, d)."""
 
+    clock: Floats
     momentum: Floats
     attitude: Floats
     by_momentum: Floats
@@ -188,7 +205,7 @@ class _Errors:
         return _Errors(*(part + h * rate for part, rate in parts))
 
     def _parts(self) -> tuple[Floats, ...]:
-        return self.momentum, self.attitude, self.by_momentum, self.turn, self.shift
+        return self.clock, self.momentum, self.attitude, self.by_momentum, self.turn, self.shift
 
 
 def _rates(flow: _Flow, at: _Errors) -> tuple[Floats, ...]:
@@ -202,39 +219,43 @@ def _rates(flow: _Flow, at: _Errors) -> tuple[Floats, ...]:
     else:
         speed = R @ (flow.velocity @ at.momentum)
         shift = R @ (flow.velocity @ at.by_momentum) - _cross_matrix(speed) @ at.turn
-    return flow.constant + jacobian @ at.momentum / 2, turning, change, turn, shift
+    moved = flow.load(at.clock) + jacobian @ at.momentum / 2
+    return flow.swing.turning @ at.clock, moved, turning, change, turn, shift
 
 
 def _integrated(
-    scene: Scene, exact: Solution, flow: _Flow, units: Vector, elapsed: Sequence[Fraction]
+    scene: Scene,
+    exact: Solution,
+    flow: _Flow,
+    units: Vector,
+    elapsed: Sequence[Fraction],
+    more_digits: int = 0,
 ) -> tuple[list[Floats], _Samples] | None:
     """The steps between the points of ``_refined``, and the truth there."""
     points = list(_refined(elapsed))
-    truth = exact.motion(points, _TRUTH_DIGITS)
+    truth = exact.motion(points, _TRUTH_DIGITS + more_digits)
     with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-        samples = _samples(scene, truth, units, flow.length)
+        samples = _samples(scene, points, truth, units, flow.length)
         steps = _steps(flow, samples, [float(t / flow.time) for t in points])
     return None if steps is None else (steps, samples)
 
 
 def _wholes(flow: _Flow, steps: Sequence[Floats], samples: _Samples) -> list[Floats]:
     """The steps on (z, theta, c) from one of the times asked for to the next."""
-    d, found = len(flow.constant), []
-    for first in range(0, len(steps), _PARTS):
-        step = np.eye(d + 6)
-        for part in range(first, first + _PARTS):
-            step = _whole(steps[part], samples.centre[part : part + 2], d) @ step
-        found.append(step)
-    return found
+    d = len(flow.constant)
+    parts = [_whole(step, samples.centre[k : k + 2], d) for k, step in enumerate(steps)]
+    firsts = range(0, len(parts), _PARTS)
+    return [reduce(lambda done, part: part @ done, parts[k : k + _PARTS]) for k in firsts]
 
 
 def _steps(flow: _Flow, samples: _Samples, times: Sequence[float]) -> list[Floats] | None:
-    """For each pair of neighbouring points, the derivatives of (z, theta, c) there by z here."""
+    """From point to point the derivatives of (z, theta, c) by z."""
     found: list[Floats] = []
     for k, (begin, end) in enumerate(pairwise(times)):
         d = len(flow.constant)
         R = samples.attitude[k] if len(samples.attitude) else np.eye(3)
-        start = _Errors(samples.momentum[k], R, np.eye(d), np.zeros((3, d)), np.zeros((3, d)))
+        nothing = np.zeros((3, d))
+        start = _Errors(samples.clock[k], samples.momentum[k], R, np.eye(d), nothing, nothing)
         reached = _followed(flow, start, end - begin)
         if reached is None or not _arrives(reached, samples.momentum[k + 1]):
             return None
@@ -247,6 +268,7 @@ def _followed(flow: _Flow, at: _Errors, span: float) -> _Errors | None:
     left = span
     for _ in range(_MOST_STEPS):
         rate = np.linalg.norm(flow.jacobian(at.momentum)) + np.linalg.norm(flow.omega @ at.momentum)
+        rate = np.maximum(rate, flow.swing.fastest)
         if not np.isfinite(rate):
             return None
         whole = abs(left) * rate <= _STEP
@@ -356,8 +378,8 @@ def _collected(terms: Iterable[Term]) -> dict[tuple[int, int, int], Fraction]:
 
 
 def _floats(matrix: Matrix, units: Vector, factor: Fraction) -> Floats:
-    rows = [[float(c * u * factor) for c, u in zip(row, units, strict=True)] for row in matrix]
-    return np.array(rows)
+    scaled = np.array([[c * u * factor for c, u in zip(row, units, strict=True)] for row in matrix])
+    return scaled.astype(float)
 
 
 def _cross_matrix(v: Floats) -> Floats:

@@ -30,6 +30,8 @@ from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 PHASE: Final = "phase"
+# What tells the time; attitude and centre follow it.
+_STATES: Final = ("omega", "linear_impulse", "angular_impulse")
 
 # Errors are wanted to so many digits below the rung's own, and far beyond what their sums lose.
 _MORE_DIGITS: Final = 12
@@ -126,7 +128,10 @@ def _state_and_phase(
 def _shifts(
     scene: Scene, exact: Solution, answer: Motion, elapsed: Sequence[Fraction], digits: int
 ) -> Floats | None:
-    """The c of every instant by itself that leaves least of e; None for a motion that rests."""
+    """The c of every instant by itself that leaves least of e, NaN where none is found.
+
+    None for a motion that rests, or slows down so much that it tells no time.
+    """
     names = [name for name in _STATES if name in answer.quantities]
     shifts = [Fraction(0)] * len(elapsed)
     for _ in range(_EVALUATIONS):
@@ -141,18 +146,17 @@ def _shifts(
         unit = power_of_two(flow.time)
         shifts = [c + Fraction(s) * unit for c, s in zip(shifts, steps.tolist(), strict=True)]
         found = np.array([float(c) for c in shifts])
-        if np.all(np.abs(steps) * float(unit) <= _SETTLED * np.abs(found)):
-            return found
-    return np.full(len(elapsed), nan)
-
-
-_STATES: Final = ("omega", "linear_impulse", "angular_impulse")
+        # Written so that a NaN has not settled.
+        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(found)
+        if np.all(settled):
+            break
+    return np.where(settled, found, nan)
 
 
 def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:
-    scaled: Floats = np.frompyfunc(lambda v: float(mp.ldexp(v, -exponent)), 1, 1)(rows).astype(
-        float
-    )
+    """Numbers of mpmath in units of 2^exponent, as float64."""
+    each = np.frompyfunc(lambda value: float(mp.ldexp(value, -exponent)), 1, 1)
+    scaled: Floats = each(rows).astype(float)
     return scaled
 
 

@@ -52,7 +52,7 @@ PUBLISHED: Final = (
         "f64",
         1e6,
         16,
-        "moments 1, 2, 3: coefficients 1/6 and 2/3, whose roundings are all alike",
+        "moments 1, 2, 3, whose coefficients are rounded small fractions",
     ),
     Entry(
         "euler/about-max-axis",

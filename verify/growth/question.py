@@ -50,6 +50,11 @@ class Question:
     seed: int = 1
 
     def __post_init__(self) -> None:
+        if not self.scene.body.is_free:
+            raise ValueError(
+                f"expected a free body, whose conserved quantities are conserved, got loads "
+                f"@ {self.scene.name}"
+            )
         if not (isfinite(self.periods) and self.periods >= LEAST_PERIODS * (1 - _SLACK)):
             raise ValueError(
                 f"expected at least {LEAST_PERIODS:.0f} periods, got {self.periods:g} @ periods"

@@ -177,7 +177,7 @@ class Compared:
         motion = run.motion(elapsed, run.digits)
         if motion is None:
             return None
-        found = self.fit(motion, rates(run.scene, motion), shifts)
+        found = self.fit(motion, rates(run.scene, motion, elapsed), shifts)
         return found if found.is_finite else None
 
     def fit(self, truth: Motion, found: Rates, shifts: Shifts) -> Shifted:

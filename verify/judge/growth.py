@@ -31,6 +31,11 @@ LEVEL: Final = 0.99
 # A page of a hundred gates raises a false alarm once in a thousand publications.
 FALSE_ALARM: Final = 1e-5
 
+# Powers are half apart. What swings within a period, and a bias that has a walk beside it, bend a line
+# over few decades: an interval that is narrower than a tenth of that half, on either side, counts
+# as so wide where a word is looked for.
+_RESOLUTION: Final = 0.05
+
 _LEAST_LANES: Final = 2
 # Two late instants are held against the early ones, of which one alone has no spread to speak of.
 _LATE: Final = 2
@@ -165,8 +170,8 @@ def exponent(
     slopes = _slopes(np.log(times), np.log(np.where(whole == 0, roundoff, np.abs(whole))))
     mean = float(np.mean(slopes))
     reach = student(count - 1, level) * float(np.std(slopes, ddof=1)) / sqrt(count)
-    low, high = mean - reach, mean + reach
-    return Exponent(mean, low, high, word(low, high, law), count, level)
+    found = word(mean, max(reach, _RESOLUTION), law)
+    return Exponent(mean, mean - reach, mean + reach, found, count, level)
 
 
 def _slopes(x: Floats, y: Floats) -> Floats:
@@ -176,9 +181,9 @@ def _slopes(x: Floats, y: Floats) -> Floats:
     return slopes
 
 
-def word(low: float, high: float, law: Law) -> str:
-    """The one word whose exponent is in the interval; else that several are, or between which."""
-    words = _WORDS[law]
+def word(value: float, reach: float, law: Law) -> str:
+    """The one word whose exponent is within reach; else that several are, or between which it is."""
+    words, low, high = _WORDS[law], value - reach, value + reach
     inside = [name for power, name in words.items() if low <= power <= high]
     if inside:
         return inside[0] if len(inside) == 1 else f"unclear: {' or '.join(inside)}"
@@ -208,7 +213,7 @@ def gate(
     Errors that are bounded, or smaller early than one rounding, make E_i larger than the law does: the
     gate then fails less often. An error that is not finite fails.
     """
-    early, late = _early_and_late(times, errors, law, roundoff)
+    early, late = early_and_late(times, errors, law, roundoff)
     lanes, m = len(errors), len(times) - _LATE
     with np.errstate(all="ignore"):
         statistic = float(m * np.sum(np.log1p(late / early)))
@@ -224,7 +229,7 @@ def gate(
     return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
 
 
-def _early_and_late(
+def early_and_late(
     times: Floats, errors: Floats, law: Law, roundoff: float
 ) -> tuple[Floats, Floats]:
     """E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""

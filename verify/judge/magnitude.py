@@ -32,6 +32,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _COMPONENT: Final = 0.5
 # A rounding of the components of a unit quaternion turns the frame by twice as much.
 _ANGLE: Final = 2.0
+# No cosine is larger.
+_WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
 _COMPONENTS: Final = {
     "momentum": ("H1", "H2", "H3"),
@@ -104,7 +106,7 @@ def _posed(given: Scene, bits: int) -> Problem:
 
 def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
     """|component| by name at every time, in the problem's units."""
-    found = {}
+    found: dict[str, Floats] = {}
     momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
     for k, block in enumerate(momenta):
         unit = float(path.units[block] / _unit(problem, block))
@@ -124,11 +126,12 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
 def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
     """S by name, likewise; zero for what nothing changes."""
     form = problem.form
-    states = [Magnitude(sizes[name]) for name in form.states]
+    # What is no part of the body's state is a cosine or a sine, of the loads of a manufactured motion.
+    states = [Magnitude(sizes.get(name, _WAVE)) for name in form.states]
     rates = form.rates(states, [float(value) for value in problem.parameters])
     found = {name: np.zeros_like(size) for name, size in sizes.items()}
     for name, rate in zip(form.states, rates, strict=True):
-        if not is_absent(rate):
+        if name in found and not is_absent(rate):
             found[name] = found[name] + _size(rate)
     return found
 

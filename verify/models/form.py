@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 from verify.models.algebra import ABSENT, is_absent
 from verify.models.euler import angular_velocity, momentum_rate
@@ -44,6 +44,15 @@ class Named(dict[str, Any]):
 Equations = Callable[[Named], Mapping[str, Any]]
 
 
+@runtime_checkable
+class Abbreviated(Protocol):
+    """Equations that are too long to be read as they are, and have names for parts of themselves."""
+
+    def lines(self, n: Named) -> Mapping[str, Any]:
+        """What to write for each name on a left side, a rate (``H1'``) or a part (``M1``)."""
+        ...
+
+
 @dataclass(frozen=True)
 class Form:
     """Equations together with the names of the states and parameters that enter them.
@@ -63,9 +72,20 @@ class Form:
         return [rates[name] for name in self.states]
 
     def text(self) -> tuple[str, ...]:
-        """The equations as they are built, a line for each state: what is absent is not there."""
+        """The equations as they are built, a line for each state: what is absent is not there.
+
+        Where they are abbreviated there is a line for each of the parts as well.
+        """
+        if isinstance(self.equations, Abbreviated):
+            names = self.states + self.parameters
+            lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
+            return tuple(f"{name} = {value}" for name, value in lines.items())
         rates = zip(self.states, self._symbolic(), strict=True)
         return tuple(f"{name}' = {rate}" for name, rate in rates)
+
+    def written(self) -> str:
+        """All rates in full."""
+        return " ".join(map(str, self._symbolic()))
 
     def operations(self) -> dict[str, int]:
         """The distinct sums, products and quotients of one evaluation of the rates."""
@@ -91,7 +111,7 @@ class Form:
 # Forms are few and scenes are many: a family of bodies asks for one and the same.
 @lru_cache(maxsize=256)
 def _entering(form: Form) -> tuple[str, ...]:
-    written = set(re.findall(r"[A-Za-z]\d*'?", " ".join(form.text())))
+    written = set(re.findall(r"[A-Za-z]\d*'?", form.written()))
     return tuple(name for name in form.parameters if name in written)
 
 

@@ -10,12 +10,15 @@ from dataclasses import replace
 from fractions import Fraction
 
 from verify.models.form import Equations, Form, euler_equations, kirchhoff_equations
+from verify.models.manufactured import Loaded
 from verify.models.problem import Problem
 from verify.scenes.bodies import RigidBody
 from verify.scenes.tensors import Matrix, Vector
 
 _ATTITUDE = ("e0", "e1", "e2", "e3")
 _CENTRE = ("c1", "c2", "c3")
+# Letters of what a manufactured motion is made of.
+_OF_MOTION = "hknabfg"
 _MOMENTUM = ("H1", "H2", "H3")
 _IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
@@ -27,6 +30,11 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
     """
     numbers = _coefficients(problem)
     equations, own = _of(problem.scene.model)
+    motion = problem.given.body.manufactured
+    if motion is not None:
+        equations = Loaded(equations, len(motion.waves))
+        own += tuple(name for name in problem.form.states if name[0] in "uv")
+        numbers |= {n: value for n, value in problem.parameter.items() if n[0] in _OF_MOTION}
     frame = tuple(name for name in problem.form.states if name[0] in "ec")
     known = {**problem.parameter, **problem.state}
     states = own + frame

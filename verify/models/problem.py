@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from mpmath import mp
 
+from verify.models import manufactured
 from verify.models.choice import Choice, constants_told, for_immersed_body, for_rigid_body
 from verify.models.form import Equations, Form
 from verify.models.times import are_distinct, rounded_times
@@ -20,6 +21,7 @@ from verify.models.units import Units, natural_units
 from verify.scenes import tensors
 from verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from verify.scenes.instants import Instants
+from verify.scenes.manufactured import Wave
 from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from verify.scenes.scene import Scene
@@ -84,6 +86,8 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda: (start + t * unit for t in times)))
     data = _rounded_data(scene, units, rounding)
+    if scene.body.manufactured is not None:
+        data = _with_clock(data, scene, units, rounding)
     data = _with_frame(data, scene, rung)
     form = data.choice.form(data.states)
     numbers = data.numbers
@@ -116,8 +120,14 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 
     Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
     to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. The instants are exact. The
-    rest is as `pose` would have it. Raises NotRepresentable where the rounded data are no body.
+    rest is as `pose` would have it. Raises NotRepresentable where the rounded data are no body, and for a
+    manufactured motion: what others make of its loads, and which of its numbers they round, is theirs.
     """
+    if scene.body.manufactured is not None:
+        raise NotRepresentable(
+            "expected loads that are constant, got a manufactured motion, whose loads everybody rounds in "
+            f"a way of his own: hand a solver to `run` instead of a file to `check` @ {scene.name}"
+        )
     posed, clock = pose(scene, rung), Clock(scene.clock.start, instants)
     body, initial = _stored(scene, _Rounding(rung))
     return replace(
@@ -179,6 +189,50 @@ def _rounded_data(scene: Scene, units: Units, rounding: _Rounding) -> _Data:
         return _round_euler(scene.body, scene.initial, units, rounding)
     assert isinstance(scene.initial, Impulse)
     return _round_kirchhoff(scene.body, scene.initial, units, rounding)
+
+
+def _with_clock(data: _Data, scene: Scene, units: Units, rounded: _Rounding) -> _Data:
+    """The same under the loads of its manufactured motion, with the clock of these among the states.
+
+    The coefficients of H*, or x* and y*, and the frequencies are formed exactly and rounded once. The
+    constant part is what the rounded start leaves of it, so that the motion begins where the state does.
+    """
+    body = scene.body
+    assert body.manufactured is not None
+    motion = body.manufactured
+    sizes: Vector = (units.impulse,) * 3 + (units.momentum,) * 3
+    if isinstance(body, RigidBody):
+        motion, sizes = motion.mapped(body.inertia), sizes[3:]
+    scaled = motion.in_units(tuple(1 / size for size in sizes), 1 / units.time)
+    one = Fraction(1)
+    waves = [
+        Wave(rounded(w.frequency), rounded.vector(w.cosine, one), rounded.vector(w.sine, one))
+        for w in scaled.waves
+    ]
+    held = manufactured.begun(waves, tuple(data.numbers[name] for name in data.states))
+    given = held.in_units(sizes, units.time)
+    if isinstance(data.body, RigidBody):
+        given = given.mapped(data.body.inverse_inertia)
+    numbers = {**_coefficients(data.body, units), **data.numbers, **manufactured.numbers(held)}
+    choice = replace(
+        data.choice,
+        equations=manufactured.Loaded(data.choice.equations, len(waves)),
+        numbers=numbers,
+        because=(*data.choice.because, *manufactured.told(held)),
+    )
+    states = data.states + manufactured.states(held)
+    return _Data(choice, states, replace(data.body, manufactured=given), data.initial)
+
+
+def _coefficients(body: Body, units: Units) -> dict[str, Fraction]:
+    """Those of T that the loads are formed of, whatever shorter equations do without."""
+    if isinstance(body, RigidBody):
+        return {}
+    return {
+        **_upper_triangle("A", _rescaled(body.linear, 1 / units.inverse_mass)),
+        **_entries("B", _rescaled(body.coupling, 1 / units.coupling)),
+        **_upper_triangle("C", _rescaled(body.angular, 1 / units.inverse_inertia)),
+    }
 
 
 def _with_frame(data: _Data, scene: Scene, rung: Rung) -> _Data:

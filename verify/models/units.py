@@ -60,7 +60,12 @@ def natural_units(scene: Scene) -> Units:
 
 
 def _euler_units(body: RigidBody, initial: Spin, span: Fraction) -> Units:
-    momentum = tensors.apply(body.inertia, initial.omega)
+    momentum, motion = tensors.apply(body.inertia, initial.omega), body.manufactured
+    if motion is not None:
+        # Not where the motion begins counts, but how far it goes, and how fast its waves are.
+        reached = _size(motion.mapped(body.inertia).reach) or Fraction(1)
+        rate = max(_size(motion.reach), motion.highest) or Fraction(1)
+        return Units(time=1 / _binary(rate), momentum=reached)
     unit = _size(momentum) or _binary(_size(body.moment) * span) or Fraction(1)
     rate = _size(initial.omega) or _largest(body.inverse_inertia) * unit
     return Units(time=1 / _binary(rate), momentum=unit)
@@ -68,16 +73,19 @@ def _euler_units(body: RigidBody, initial: Spin, span: Fraction) -> Units:
 
 def _kirchhoff_units(body: ImmersedBody, initial: Impulse, span: Fraction) -> Units:
     """x keeps its norm without a force; y may start at zero and take up all the energy."""
-    state = initial.linear + initial.angular
+    state, motion = initial.linear + initial.angular, body.manufactured
+    if motion is not None:
+        state = motion.reach
     doubled_energy = tensors.dot(state, tensors.apply(body.energy_matrix, state))
     spun_up = _root(doubled_energy / _largest(body.angular)) if doubled_energy else Fraction(0)
-    impulse = _size(initial.linear) or _binary(_size(body.force) * span)
-    momentum = max(_size(initial.angular), spun_up) or _binary(_size(body.couple) * span)
+    impulse = _size(state[:3]) or _binary(_size(body.force) * span)
+    momentum = max(_size(state[3:]), spun_up) or _binary(_size(body.couple) * span)
     impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
     rate = max(
         _largest(body.linear) * impulse**2 / momentum,
         _largest(body.coupling) * impulse,
         _largest(body.angular) * momentum,
+        Fraction(0) if motion is None else motion.highest,
     )
     return Units(time=1 / _binary(rate), momentum=momentum, impulse=impulse)
 

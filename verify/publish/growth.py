@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from verify.judge.verdict import Status
-from verify.publish import data
+from verify.publish import data, figures
 from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.pictures import growth as diagram
@@ -21,7 +21,6 @@ from verify.publish.replacement import replace_files
 GROWTH: Final = f"{data.FOLDER}/growth.json"
 LONG: Final = f"{data.FOLDER}/growth-long.json"
 PAGE: Final = "tables/growth.md"
-FIGURES: Final = "figures"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --growth; do not edit"}
 _MAKER: Final = "<!-- made by taylor-verify publish --growth; do not edit -->"
@@ -44,11 +43,21 @@ _LEGEND: Final = (
     "second half of the decades.",
     "The word is the one whose exponent the interval contains: bounded 0, random walk ½, bias 1; for "
     "phase and state one more, as they follow the rate (and *jitter* ½, *constant rate* 1). Where it "
-    "contains several the word is *unclear*, where none, *between*.",
+    "contains several the word is *unclear*, where none, *between*; an interval of less than a "
+    "twentieth on either side counts as so wide, as no error is a pure power of time.",
 )
 _NO_CONSERVATION: Final = (
-    "A small drift certifies no state: compare it with the phase beside it, which is larger by the "
-    "number of steps."
+    "A small drift certifies no state: compare it with the phase beside it, which is larger by a "
+    "factor that itself grows with time."
+)
+
+_LEANING: Final = (
+    "**Where roundings lean to one side.** A product with a coefficient of many random digits is rounded "
+    "up as far as down. A coefficient that is a rounded small fraction, such as 1/6, leaves remainders "
+    "that are nearly thirds of a unit in the last place; the coefficient's own rounding moves all of "
+    "them to one side, and the mean rounding is up to a sixth of a unit, with a sign that "
+    "hangs on the size of the other factor. An orbit that favours a size has a bias then, which no "
+    "tolerance removes: round numbers make a handy example and a hard one."
 )
 
 Row = Mapping[str, Any]
@@ -106,6 +115,7 @@ def page(found: Row, pictures: str = "") -> str:
         *(block for run in runs for block in _section(run)),
         "## The gate",
         _gate_told(runs),
+        _LEANING,
         _NO_CONSERVATION,
         "## To remake this",
         bullets(_remake(found["provenance"])),
@@ -126,13 +136,11 @@ def picture_of(found: Row) -> Picture | None:
 
 
 def _drawn(place: Path) -> list[Path]:
-    from verify.publish.pictures.picture import save
-
     picture = picture_of(load(place))
     if picture is None:
         return []
     try:
-        return save([picture], place / FIGURES)
+        return figures.draw(place, [picture])
     except ImportError:
         # The page says everything in numbers; a picture is for those who have matplotlib.
         return []
@@ -140,9 +148,7 @@ def _drawn(place: Path) -> list[Path]:
 
 def _shown(place: Path, found: Row) -> str:
     picture = picture_of(found)
-    if picture is None or not (place / FIGURES / f"{picture.stem}.svg").exists():
-        return ""
-    return f"![{prose(picture.alt)}](../{FIGURES}/{picture.stem}.svg)"
+    return figures.shown(place, [picture]) if picture else ""
 
 
 def _gates(runs: Iterable[Row]) -> str:
@@ -222,7 +228,7 @@ def _remake(provenance: Row) -> list[str]:
         f"`taylor-verify publish --growth` follows the ensembles anew, writes [growth.json](../{GROWTH}), "
         "the picture and this page: minutes, all cores. It may be stopped and goes on from where it was.",
         "`taylor-verify publish --growth --long` follows the long run, 100 million periods, likewise: "
-        "an hour or more.",
+        "a thousand pieces of some seconds.",
         "Roundings are other draws on another processor, and so are the last digits here; the exponents "
         "are the same within their intervals.",
         f"Machine: {prose(provenance['processor'])}; {versions}. Made by {code(provenance['command'])}.",

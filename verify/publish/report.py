@@ -19,6 +19,7 @@ from verify.publish import (
     tables,
     tradeoff,
     trades,
+    worst,
 )
 from verify.publish.contents import others
 from verify.publish.front import front
@@ -63,6 +64,7 @@ def publish(folder: Path | str) -> list[Path]:
     texts |= _controls(place)
     texts |= tradeoff.pages(place)
     texts |= prices.pages(place)
+    texts |= worst.pages(place)
     texts |= reach.pages(place)
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, place)

@@ -11,7 +11,10 @@ from verify.judge.verdict import Status, Verdict
 STATE_QUANTITIES = ("omega", "impulse", "attitude", "centre")
 
 # The order of columns: energy, momenta in body axes, momenta in space. Others come after these.
-CONSERVED_QUANTITIES = ("T", "H2", "H_space", "F2", "FG", "y3", "x_space", "y_space")
+CONSERVED_QUANTITIES = (
+    *("T", "H2", "H_space", "F2", "FG", "y1", "y2", "y3"),
+    *("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov", "x_space", "y_space"),
+)
 
 # The worst first.
 GRAVITY = (

@@ -340,7 +340,7 @@ def _conserving(traps: Iterable[Trap]) -> str:
 
 
 def _unseen(traps: Iterable[Trap]) -> str:
-    """What passes the gate of the state too, because that is as wide as the whole state allows."""
+    """What passes the gate of the state too."""
     lost = [
         (trap, case)
         for trap, case in conserving(traps)
@@ -354,11 +354,10 @@ def _unseen(traps: Iterable[Trap]) -> str:
     passed = [case for _, case in lost if case.gates[_STATE].verdict == "pass"]
     worst = max((case.error or 0.0 for case in passed), default=0.0)
     return (
-        f"{bold('No gate of this suite sees')} {len(lost)} answers of {', '.join(keys)}: what "
-        "rounding may leave is counted against the whole state and not against its smallest "
-        f"component. The gate of the state passes errors up to {figure(worst)} there, and is vacuous "
-        "for the rest. The driver is right all the same; that is why its step is bounded, and not "
-        "only judged."
+        f"{bold('No gate of this suite sees')} {len(lost)} answers of {', '.join(keys)}: roundings "
+        f"alone may carry the state as far. The gate of the state passes errors up to {figure(worst)} "
+        "there, and is vacuous for the rest. The driver is right all the same; that is why its step is "
+        "bounded, and not only judged."
     )
 
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 from verify.scenes import tensors
+from verify.scenes.ellipsoid import inverse_inertias
+from verify.scenes.manufactured import Manufactured
 from verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
+
+# Irrational coefficients become rationals of so many bits: 120 digits.
+COEFFICIENT_BITS: Final = 400
 
 
 @dataclass(frozen=True)
@@ -15,11 +21,13 @@ class RigidBody:
     """A rigid body about a fixed point or its centre of mass.
 
     ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
-    components, I_12 = -int xy dm); ``moment`` is constant in body axes.
+    components, I_12 = -int xy dm); ``moment`` is constant in body axes. Where there is a
+    ``manufactured`` omega, the moment is the one that makes it a motion of this body.
     """
 
     inertia: Matrix
     moment: Vector = ZERO_VECTOR
+    manufactured: Manufactured | None = None
 
     @cached_property
     def inverse_inertia(self) -> Matrix:
@@ -28,7 +36,7 @@ class RigidBody:
 
     @property
     def is_free(self) -> bool:
-        return not any(self.moment)
+        return not any(self.moment) and self.manufactured is None
 
 
 @dataclass(frozen=True)
@@ -37,7 +45,9 @@ class ImmersedBody:
 
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
-    constant in body axes.
+    constant in body axes. ``ellipsoid`` is the shape of which the coefficients are the rounded ones,
+    for a body that was given so. Where there is a ``manufactured`` motion of (x, y), the loads are those
+    that make it a motion of this body.
     """
 
     linear: Matrix
@@ -45,15 +55,29 @@ class ImmersedBody:
     angular: Matrix
     force: Vector = ZERO_VECTOR
     couple: Vector = ZERO_VECTOR
+    ellipsoid: Ellipsoid | None = None
+    manufactured: Manufactured | None = None
 
     @property
     def is_free(self) -> bool:
-        return not any(self.force) and not any(self.couple)
+        return not any(self.force + self.couple) and self.manufactured is None
 
     @cached_property
     def energy_matrix(self) -> Matrix:
         """The 6x6 matrix [[A, B], [B^T, C]]: (U, Omega) = energy_matrix (x, y)."""
         return tensors.blocks(self.linear, self.coupling, self.angular)
+
+    @cached_property
+    def axis_of_symmetry(self) -> int | None:
+        """The body axis about which T is of Clebsch's form; 3 where there is a choice."""
+        blocks = (self.linear, self.coupling, self.angular)
+        if not all(tensors.is_diagonal(block) for block in blocks):
+            return None
+        for axis in (3, 1, 2):
+            i, j = axis % 3, (axis + 1) % 3
+            if all(block[i][i] == block[j][j] for block in blocks):
+                return axis
+        return None
 
     @cached_property
     def clebsch(self) -> Clebsch | None:
@@ -92,6 +116,38 @@ class Clebsch:
         )
 
 
+@dataclass(frozen=True)
+class Ellipsoid:
+    """A homogeneous ellipsoid, its semi-axes along body axes 1, 2, 3, in a fluid; origin the centre.
+
+    The semi-axes are positive. A density of zero asks for a fluid and three different semi-axes: else
+    nothing resists a motion, and there is no T of the impulses.
+    """
+
+    semi_axes: Vector
+    density: Fraction
+    fluid_density: Fraction
+
+    def body(self, bits: int = COEFFICIENT_BITS) -> ImmersedBody:
+        """The body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), rounded once to so many bits."""
+        linear, angular = inverse_inertias(self.semi_axes, self.density, self.fluid_density, bits)
+        return ImmersedBody(
+            linear=tensors.diagonal(linear),
+            coupling=ZERO_MATRIX,
+            angular=tensors.diagonal(angular),
+            ellipsoid=self,
+        )
+
+
 Body = RigidBody | ImmersedBody
 
-__all__ = ["ZERO_MATRIX", "ZERO_VECTOR", "Body", "Clebsch", "ImmersedBody", "RigidBody"]
+__all__ = [
+    "COEFFICIENT_BITS",
+    "ZERO_MATRIX",
+    "ZERO_VECTOR",
+    "Body",
+    "Clebsch",
+    "Ellipsoid",
+    "ImmersedBody",
+    "RigidBody",
+]

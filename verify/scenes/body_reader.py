@@ -1,7 +1,8 @@
 """The ``[body]`` table of a scene becomes a body, its positivity decided in rationals.
 
 Legend: ``inertia`` I, ``moment`` M; ``clebsch`` has p, p', q, q', r, r' (``p_prime`` and so on);
-``energy`` has A, B, C of T = x.A x/2 + x.B y + y.C y/2 as ``linear``, ``coupling``, ``angular``.
+``energy`` has A, B, C of T = x.A x/2 + x.B y + y.C y/2 as ``linear``, ``coupling``, ``angular``;
+``ellipsoid`` has ``semi_axes`` along body axes 1, 2, 3, ``density`` and ``fluid_density``.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from fractions import Fraction
 from typing import Final
 
 from verify.scenes import tensors
-from verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
-from verify.scenes.faults import NOT_BUILT, shown
+from verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
+from verify.scenes.faults import shown
 from verify.scenes.table import Table
-from verify.scenes.tensors import ZERO_VECTOR, Matrix
+from verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
@@ -110,9 +111,49 @@ def _positive(form: Table, body: ImmersedBody) -> ImmersedBody | None:
     return body if _is_positive(form, expected, body.energy_matrix) else None
 
 
-def _ellipsoid(table: Table) -> None:
-    table.take("ellipsoid", "a table")
-    table.fault("`clebsch` or `energy`", f"an ellipsoid, {NOT_BUILT}", "ellipsoid")
+def _ellipsoid(table: Table) -> ImmersedBody | None:
+    """A homogeneous ellipsoid, its inertia and added inertia by Lamb's integrals."""
+    form = table.table("ellipsoid")
+    if form is None:
+        return None
+    semi_axes = form.vector("semi_axes")
+    density, fluid_density = form.number("density"), form.number("fluid_density")
+    form.close()
+    are_sound = [
+        _has_positive_axes(form, semi_axes),
+        _is_density(form, density, "density"),
+        _is_density(form, fluid_density, "fluid_density"),
+    ]
+    if semi_axes is None or density is None or fluid_density is None or not all(are_sound):
+        return None
+    ellipsoid = Ellipsoid(semi_axes, density, fluid_density)
+    return ellipsoid.body() if _resists(form, ellipsoid) else None
+
+
+def _has_positive_axes(form: Table, semi_axes: Vector | None) -> bool:
+    wrong = [(i, axis) for i, axis in enumerate(semi_axes or ()) if axis <= 0]
+    for i, axis in wrong:
+        form.fault("a positive semi-axis", shown(axis), f"semi_axes[{i}]")
+    return not wrong
+
+
+def _is_density(form: Table, density: Fraction | None, key: str) -> bool:
+    if density is not None and density < 0:
+        form.fault("a density that is not negative", shown(density), key)
+        return False
+    return True
+
+
+def _resists(form: Table, ellipsoid: Ellipsoid) -> bool:
+    """Whether every motion takes an impulse: of a body without mass the fluid alone resists."""
+    if ellipsoid.density == 0 and ellipsoid.fluid_density == 0:
+        form.fault("a body or a fluid with mass", "two densities of 0", "density")
+        return False
+    if ellipsoid.density == 0 and len(set(ellipsoid.semi_axes)) < 3:
+        expected = "a positive density where two semi-axes are equal"
+        form.fault(expected, "0", "density", "a shell has little mass, but some")
+        return False
+    return True
 
 
 def warnings(body: Body) -> tuple[str, ...]:

@@ -6,11 +6,8 @@ import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from typing import Final
 
 from verify.scenes.precision import float_text
-
-NOT_BUILT: Final = "which this version does not build yet"
 
 _LONGEST_SHOWN = 60
 

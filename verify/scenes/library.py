@@ -10,6 +10,8 @@ from verify.scenes.faults import Refused
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
+# What a hunt has found; it runs with the extremes.
+WORST: Final = "extremes/worst"
 
 _MOST_SUGGESTED = 3
 
@@ -40,8 +42,9 @@ def names(*folders: str) -> tuple[str, ...]:
 
 def named(scene: str) -> tuple[str, ...]:
     """What a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
-    is_folder = scene in (*STANDARD_SET, EXTREMES)
-    return (names(scene) if is_folder else ()) or (scene,)
+    folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
+    is_folder = scene in (*STANDARD_SET, EXTREMES, WORST)
+    return (names(*folders) if is_folder else ()) or (scene,)
 
 
 def find(scene: str) -> Path:
@@ -64,11 +67,11 @@ def _scenes(folder: Path) -> list[Path]:
 
 
 def _name(file: Path) -> str:
-    return f"{file.parent.name}/{file.stem}"
+    return file.relative_to(cases_directory()).with_suffix("").as_posix()
 
 
 def _near(scene: str) -> str:
-    known = names(*STANDARD_SET, EXTREMES)
+    known = names(*STANDARD_SET, EXTREMES, WORST)
     close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
     # The part after the slash is often all that somebody remembers.
     close += [name for name in known if scene and scene in name and name not in close]

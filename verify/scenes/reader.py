@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Final, NamedTuple, TypeVar
@@ -17,7 +18,9 @@ from verify.scenes import library
 from verify.scenes.bodies import Body
 from verify.scenes.body_reader import immersed_body, rigid_body, warnings
 from verify.scenes.clock_reader import clock
-from verify.scenes.faults import NOT_BUILT, Faults, Refused, near, shown
+from verify.scenes.faults import Faults, Refused, near, shown
+from verify.scenes.manufactured import Manufactured
+from verify.scenes.manufactured_reader import manufactured
 from verify.scenes.motion import IDENTITY, Impulse, Quaternion, Spin, State
 from verify.scenes.scene import Scene
 from verify.scenes.table import Table
@@ -29,7 +32,9 @@ T = TypeVar("T")
 class Model(NamedTuple):
     """How the parts of a scene that differ from model to model are read.
 
-    ``always`` is what every motion holds, tracked or not; ``extras`` may be tracked besides.
+    ``always`` is what every motion holds, tracked or not; ``extras`` may be tracked besides. ``moving``
+    are the vectors of a manufactured motion, ``loads`` those that it determines, and ``placed`` reads
+    what of the initial state it leaves open.
     """
 
     name: str
@@ -37,6 +42,9 @@ class Model(NamedTuple):
     initial: Callable[[Table], State | None]
     always: str
     extras: frozenset[str]
+    moving: tuple[str, ...]
+    loads: tuple[str, ...]
+    placed: Callable[[Table], State | None]
 
 
 def load(scene: str | Path) -> Scene:
@@ -61,9 +69,11 @@ def read(text: str, name: str) -> Scene:
     model = _model(top)
     track = _track(top, model)
     body = _part(top, "body", model.body if model else _unread)
-    initial = _part(top, "initial", model.initial if model else _unread)
+    if top.has("manufactured"):
+        body, initial = _manufactured(top, model, body)
+    else:
+        initial = _part(top, "initial", model.initial if model else _unread)
     time = _part(top, "time", clock)
-    _refuse_manufactured(top)
     top.close()
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
@@ -135,10 +145,53 @@ def _track(top: Table, model: Model | None) -> frozenset[str] | None:
     return (words | {"attitude"} if "centre" in words else words) & model.extras
 
 
-def _refuse_manufactured(top: Table) -> None:
-    if top.has("manufactured"):
-        top.take("manufactured", "a table")
-        top.fault("a free or loaded body", f"a manufactured motion, {NOT_BUILT}", "manufactured")
+def _manufactured(
+    top: Table, model: Model | None, body: Body | None
+) -> tuple[Body | None, State | None]:
+    """The body with its manufactured motion, and the state in which that motion begins."""
+    if model is None:
+        for part in ("manufactured", "initial"):
+            if top.has(part):
+                _part(top, part, _unread)
+        return None, None
+    table = top.table("manufactured")
+    motion = None if table is None else manufactured(table, model.moving)
+    if table is not None:
+        table.close()
+    start = (top.table("initial") if top.has("initial") else None) or top.empty("initial")
+    for name in model.moving:
+        if start.has(name):
+            start.take(name, "nothing")
+            got = "another one beside a manufactured motion"
+            start.fault("the start that the motion has", got, name, f"remove `{name}`")
+    initial = model.placed(start)
+    start.close()
+    for load in model.loads:
+        given = getattr(body, load, ())
+        if any(given):
+            expected = "no load beside a manufactured motion, which determines its own"
+            top.fault(expected, shown(list(given)), f"body.{load}", f"remove `{load}`")
+    if body is None or motion is None or initial is None:
+        return None, None
+    return replace(body, manufactured=motion), _begun(initial, motion)
+
+
+def _begun(initial: State, motion: Manufactured) -> State:
+    """The state with the vectors that the motion has at its start."""
+    if isinstance(initial, Spin):
+        return replace(initial, omega=motion.start)
+    return replace(initial, linear=motion.start[:3], angular=motion.start[3:])
+
+
+def _turned(table: Table) -> Spin | None:
+    attitude = _attitude(table)
+    return Spin(ZERO_VECTOR, attitude) if attitude else None
+
+
+def _placed(table: Table) -> Impulse | None:
+    attitude = _attitude(table)
+    centre = table.vector("centre", default=ZERO_VECTOR)
+    return Impulse(ZERO_VECTOR, ZERO_VECTOR, attitude, centre) if attitude and centre else None
 
 
 def _spin(table: Table) -> Spin | None:
@@ -171,8 +224,26 @@ def _attitude(table: Table) -> Quaternion | None:
 MODELS: Final = {
     model.name: model
     for model in (
-        Model("euler", rigid_body, _spin, "omega", frozenset({"attitude"})),
-        Model("kirchhoff", immersed_body, _impulse, "impulse", frozenset({"attitude", "centre"})),
+        Model(
+            name="euler",
+            body=rigid_body,
+            initial=_spin,
+            always="omega",
+            extras=frozenset({"attitude"}),
+            moving=("omega",),
+            loads=("moment",),
+            placed=_turned,
+        ),
+        Model(
+            name="kirchhoff",
+            body=immersed_body,
+            initial=_impulse,
+            always="impulse",
+            extras=frozenset({"attitude", "centre"}),
+            moving=("linear_impulse", "angular_impulse"),
+            loads=("force", "couple"),
+            placed=_placed,
+        ),
     )
 }
 

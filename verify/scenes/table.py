@@ -67,6 +67,25 @@ class Table:
             self.fault("a table", shown(entries), key)
         return None
 
+    def tables(self, key: str) -> list[Table] | None:
+        """An array of tables, not empty; each entry that is none is a fault."""
+        entries = self.take(key, "an array of tables")
+        if entries is None:
+            return None
+        if not isinstance(entries, list) or not entries:
+            self.fault("an array of tables", shown(entries), key)
+            return None
+        for i, entry in enumerate(entries):
+            if not isinstance(entry, dict):
+                self.fault("a table", shown(entry), f"{key}[{i}]")
+        if not all(isinstance(entry, dict) for entry in entries):
+            return None
+        return [Table(e, self.path(f"{key}[{i}]"), self.faults) for i, e in enumerate(entries)]
+
+    def empty(self, key: str) -> Table:
+        """The table of that name as if it were there, with nothing in it."""
+        return Table({}, self.path(key), self.faults)
+
     def text(self, key: str, default: str | None = None) -> str | None:
         """A string; empty or missing is a fault, unless there is a default."""
         if default is not None and not self.has(key):

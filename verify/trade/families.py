@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
+from math import isqrt
 from typing import Final
 
 from mpmath import mp
@@ -30,7 +31,7 @@ from verify.scenes.scene import Scene
 Numbers = tuple[Fraction | int, ...]
 
 QUARTERS: Final = 4
-# Half-decades, then decades: with four instants each they are no more than the nodes of a floor.
+# Half-decades, then decades, where a period is cheap.
 PERIODS: Final = (1, 3, 10, 30, 100, 300, 1000, 10_000, 100_000)
 # The period enters the instants alone, which are exact again as soon as they are written down.
 _PERIOD_DIGITS: Final = 12
@@ -38,6 +39,10 @@ _START: Final = Fraction(0)
 
 # How many periods are worth their seconds: on f128 a period takes hundreds of times as long as on f64.
 _FAR: Final = {"f32": 1000, "f64": 1000, "f80": 100, "f128": 10}
+# Beside an unstable motion of six impulses the floor is what takes long.
+_NEARER: Final = {"f32": 30, "f64": 30, "f80": 30, "f128": 10}
+# A period of 1/e turns, in steps that the driver allows to be no longer than some hundred turns.
+_SLOW: Final = {"f32": 10, "f64": 10, "f80": 3, "f128": 1}
 _FARTHER: Final = {"f32": 1000, "f64": 1000, "f80": 1000, "f128": 100, "mp237": 3}
 _FARTHEST: Final = {"f32": 100_000, "f64": 100_000, "f80": 10_000, "f128": 100, "mp237": 10}
 
@@ -156,20 +161,22 @@ def _near() -> tuple[Family, ...]:
             *(lambda d: _euler((1, 2, 3), (d, 1, 0)), _FARTHER),
         ),
         Family(
-            # |H|^2 - 2T J2 is d^2 there and 2d/3 here, to first order: the start is not slow.
+            # Half-way from one turn of the unstable spin to the next, where omega2 is zero.
             *("separatrix", "a triaxial body, 1 - k^2 = d, from the middle of a flip", "d"),
             *("the separatrix itself", _decades(-2, -14, -2)),
             lambda d: _euler((1, Fraction(4, 3), 2), (1, 0, half + d / 4)),
         ),
         Family(
             *("unstable-spin", "Clebsch's body at d beside its unstable spin", "d"),
-            *("the spin itself", _decades(-2, -20, -2)),
+            *("the spin itself", _decades(-2, -18, -4)),
             lambda d: _kirchhoff(falling, (d, 0, Fraction(5, 4)), (0, 0, 1)),
+            _NEARER,
         ),
         Family(
             *("homoclinic", "Clebsch's body, y3 off the homoclinic orbit's by d", "d"),
-            *("the orbit itself", _decades(-2, -14, -2)),
+            *("the orbit itself", _decades(-2, -14, -4)),
             lambda d: _kirchhoff(falling, (1, 0, three_quarters), (half, -half, 1 + d)),
+            _NEARER,
         ),
     )
 
@@ -179,8 +186,8 @@ def _gaps() -> tuple[Family, ...]:
     off_axis = (three_quarters, half, Fraction(-5, 8))
     return (
         Family(
-            *("nearly-spherical", "moments 1, 1 + e, 1 - e", "e", "a sphere", _decades(-2, -14, -3)),
-            lambda e: _euler((1, 1 + e, 1 - e), off_axis),
+            *("nearly-spherical", "moments 1, 1 + e, 1 - e", "e", "a sphere"),
+            *(_decades(-2, -6, -1), lambda e: _euler((1, 1 + e, 1 - e), off_axis), _SLOW),
         ),
         Family(
             *("nearly-axisymmetric", "moments 1, 1 + e, 2", "e"),
@@ -204,9 +211,9 @@ def _ratios() -> tuple[Family, ...]:
     thousandth = Fraction(1, 1000)
     return (
         Family(
-            *("inertia-ratio", "moments 1, S, S^2, all spins alike", "S"),
-            *("unlike moments", _decades(1, 7, 1)),
-            lambda s: _euler((1, s, s * s), (1, 1, 1)),
+            *("inertia-ratio", "moments 1, sqrt R, R, all spins alike", "R"),
+            *("unlike moments", _decades(2, 14, 2)),
+            lambda r: _euler((1, isqrt(int(r)), r), (1, 1, 1)),
         ),
         Family(
             *("thin-rod", "a rod, moments 1/R, 1, 1 + 1/R", "R"),
@@ -238,7 +245,7 @@ def _scales() -> tuple[Family, ...]:
         ),
         Family(
             *("mixed-scales", "moments of 1/S, omega of S", "S"),
-            *("the ends of the range of numbers", _decades(10, 290, 40)),
+            *("the ends of the range of numbers", _decades(10, 250, 80)),
             lambda s: _euler((1 / s, 2 / s, 3 / s), (Fraction(3, 10) * s, s, Fraction(1, 5) * s)),
         ),
     )

@@ -9,7 +9,7 @@ the same orbit, instants and steps. An error of 1 is the size of the motion: fro
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, inf, isfinite, log10
 from typing import Any, Final
@@ -19,10 +19,12 @@ from mpmath import mp
 
 from verify.exact.elements import elements
 from verify.exact.route import solution
+from verify.exact.solution import Unsettled
 from verify.judge.attainable import floor
 from verify.judge.errors import largest, state_errors
 from verify.judge.provenance import provenance
 from verify.models.problem import NotRepresentable, Problem, pose
+from verify.scenes.motion import Motion
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
 from verify.scenes.scene import Scene
@@ -34,6 +36,8 @@ from verify.trade.families import QUARTERS, Family, at_quarters, families, famil
 # As the judge has them.
 _MORE_DIGITS: Final = 3
 _SPARE_BITS: Final = 96
+# Of a truth that says only how large the motion is.
+_DIGITS_OF_SCALES: Final = 15
 # From here on nothing is left, and a longer run would tell nothing new.
 _LOST: Final = 1.0
 # Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
@@ -44,8 +48,9 @@ _SAME_PERIOD: Final = Fraction(1, 10)
 class Reach:
     """One member of a family on one rung, after each number of ``periods``.
 
-    ``errors`` and ``floors`` are the largest up to then, as many as there are periods; an error of a run
-    that was lost is inf from there on. Both are empty where nothing was run, and ``why`` says why.
+    ``errors`` and ``floors`` are the largest up to then; inf, of a run that was lost, from there on.
+    There are no floors for periods that no rung was followed for. Both are empty where nothing was
+    run, and ``why`` says why.
     """
 
     family: str
@@ -95,7 +100,6 @@ class Member:
 
     family: str
     value: str
-    rungs: tuple[str, ...] = field(default=())
 
     @property
     def label(self) -> str:
@@ -107,52 +111,44 @@ def members() -> int:
     return sum(len(one.values) for one in families())
 
 
-def reach(one: Family, value: str, rung: Rung) -> Reach:
-    """What is left of one member on one rung."""
-    scene, periods = one.scene(value), one.periods(rung.name)
-    nothing = Reach(one.name, value, rung.name, periods)
-    if reason := Taylor().unavailable(rung):
-        return _because(nothing, reason)
-    try:
-        # A member that is lost within a period is not followed for a thousand.
-        first = _after(scene, periods[:1], rung)
-        rest = first if not first.errors[-1] < _LOST else _after(scene, periods, rung)
-    except (NotRepresentable, _Another) as fault:
-        return _because(nothing, str(fault))
-    return Reach(
-        *(one.name, value, rung.name, periods),
-        errors=_to_the_end(rest.errors, periods),
-        floors=_to_the_end(rest.floors, periods),
-        steps=rest.steps,
-        why=rest.why,
-    )
+def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[Reach]:
+    """What is left of one member on each of the rungs."""
+    scene = one.scene(value)
+    found = [
+        _followed(Reach(one.name, value, rung.name, one.periods(rung.name)), scene, rung)
+        for rung in rungs
+    ]
+    return _with_floors(found, scene)
 
 
 class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
     """Rounding the data makes another orbit of them; the text says which."""
 
 
-@dataclass(frozen=True)
-class _Followed:
-    """A run: for every number of periods the largest error and floor up to then."""
+def _followed(nothing: Reach, scene: Scene, rung: Rung) -> Reach:
+    """With the errors of as many periods as were run, or the reason why there are none."""
+    if reason := Taylor().unavailable(rung):
+        return replace(nothing, why=reason)
+    try:
+        # A member that is lost within its first period is not followed for a thousand.
+        first = _solved(nothing, nothing.periods[:1], scene, rung)
+        return _solved(nothing, nothing.periods, scene, rung) if first.errors[-1] < _LOST else first
+    except (NotRepresentable, Unsettled, _Another) as fault:
+        return replace(nothing, why=str(fault))
 
-    errors: tuple[float, ...]
-    floors: tuple[float, ...]
-    steps: int
-    why: str = ""
 
-
-def _after(scene: Scene, periods: Sequence[int], rung: Rung) -> _Followed:
-    """Raises NotRepresentable, and _Another where the rung has no such orbit."""
-    asked = at_quarters(scene, periods)
-    problem = pose(asked, rung)
+def _solved(nothing: Reach, periods: Sequence[int], scene: Scene, rung: Rung) -> Reach:
+    """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
+    problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
     trajectory = Taylor().solve(problem)
-    if trajectory.outcome is not Outcome.FINISHED:
-        why = f"the run {trajectory.outcome.value}"
-        return _Followed((inf,), (inf,), trajectory.steps, why)
-    errors, floors = _errors_and_floors(asked, problem, trajectory)
-    return _Followed(_up_to(errors), _up_to(floors), trajectory.steps)
+    errors = _up_to(_errors(problem, trajectory))
+    return replace(nothing, errors=errors, steps=trajectory.steps, why=_unfinished(trajectory))
+
+
+def _unfinished(trajectory: Trajectory) -> str:
+    finished = trajectory.outcome is Outcome.FINISHED
+    return "" if finished else f"the run {trajectory.outcome.value}"
 
 
 def _check_orbit(scene: Scene, problem: Problem) -> None:
@@ -165,20 +161,49 @@ def _check_orbit(scene: Scene, problem: Problem) -> None:
         raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
 
 
-def _errors_and_floors(
-    asked: Scene, problem: Problem, trajectory: Trajectory
-) -> tuple[list[float], list[float]]:
+def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
     """At every instant the largest of all tracked quantities; NaN where an answer is no number."""
     rung, given = problem.rung, problem.given
-    digits = ceil(rung.bits * log10(2)) + _MORE_DIGITS
-    truth = solution(given).motion(given.clock.elapsed, digits)
+    if trajectory.outcome is not Outcome.FINISHED:
+        return [inf] * len(given.clock.instants)
+    truth = _truth(problem)
     with mp.workprec(rung.bits + _SPARE_BITS):
         states = state_errors(given, truth, trajectory.motion(rung.bits + _SPARE_BITS))
-        base = floor(given, asked, truth, rung.unit_roundoff, trajectory.steps)
         bounds = [one.values + one.truth_radius for one in states]
-        errors = [float(largest(row)) for row in zip(*bounds, strict=True)]
-        floors = np.max([base.of_state(one) for one in states], axis=0)
-    return errors, floors.tolist()
+        return [float(largest(row)) for row in zip(*bounds, strict=True)]
+
+
+def _with_floors(found: Sequence[Reach], scene: Scene) -> list[Reach]:
+    """The same with their floors, and to the end of their periods.
+
+    One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
+    Raises Unsettled where its condition cannot be had.
+    """
+    followed = max((one.periods[: len(one.errors)] for one in found), key=len)
+    if not followed:
+        return list(found)
+    asked = at_quarters(scene, followed)
+    truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
+    return [_with_floor(one, asked, truth) if one.errors else one for one in found]
+
+
+def _with_floor(one: Reach, asked: Scene, truth: Motion) -> Reach:
+    elapsed, count = asked.clock.elapsed, len(one.errors)
+    # On another rung the orbit may be followed further: this one takes steps in proportion.
+    steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
+    base = floor(asked, asked, truth, rung_named(one.rung).unit_roundoff, steps)
+    # Only the parts and their scales are asked for: the truth is compared with itself.
+    states = state_errors(asked, truth, truth)
+    worst = np.max([base.of_state(errors) for errors in states], axis=0)
+    floors = _up_to([float(value) for value in worst])[: len(one.periods)]
+    lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
+    beyond = (inf,) * (len(one.periods) - count)
+    return replace(one, errors=one.errors + beyond, floors=floors + lost)
+
+
+def _truth(problem: Problem) -> Motion:
+    digits = ceil(problem.rung.bits * log10(2)) + _MORE_DIGITS
+    return solution(problem.given).motion(problem.given.clock.elapsed, digits)
 
 
 def _up_to(values: Sequence[float]) -> tuple[float, ...]:
@@ -188,18 +213,9 @@ def _up_to(values: Sequence[float]) -> tuple[float, ...]:
     )
 
 
-def _to_the_end(values: Sequence[float], periods: Sequence[int]) -> tuple[float, ...]:
-    """Beyond where a run was given up it is lost."""
-    return (*values, *(inf for _ in periods[len(values) :]))
-
-
-def _because(nothing: Reach, why: str) -> Reach:
-    return Reach(nothing.family, nothing.value, nothing.rung, nothing.periods, why=why)
-
-
 def _measured(member: Member) -> list[Reach]:
     one = family(member.family)
-    return [reach(one, member.value, rung_named(name)) for name in member.rungs or one.far]
+    return reaches(one, member.value, [rung_named(name) for name in one.far])
 
 
 def _expense(member: Member) -> float:
@@ -217,10 +233,6 @@ def _described(one: Family) -> dict[str, Any]:
         "values": list(one.values),
         "rungs": dict(one.far),
     }
-
-
-def rows(reaches: Iterable[Reach]) -> list[dict[str, Any]]:
-    return [one.row() for one in reaches]
 
 
 def _finite(value: float) -> float | None:

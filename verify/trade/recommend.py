@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any, Final
 
@@ -12,16 +12,20 @@ from verify.models.problem import NotRepresentable, pose
 from verify.scenes.precision import Rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
+from verify.solvers.registry import PROCESS
 from verify.solvers.solver import Solver
+from verify.trade.attainability import left_out, narrowest
 from verify.trade.front import sound_points
 from verify.trade.point import Point
-from verify.trade.setting import Setting
+from verify.trade.setting import Setting, settings
 from verify.trade.starts import nearby
 from verify.trade.timing import SEED
 from verify.trade.trade_off import TradeOff, Truths, trade_off
 
 # A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
 MARGIN: Final = 2.0
+# These may compute on a wider precision than they answer on, and so below its floor.
+_OF_ANOTHER_PRECISION: Final = (PROCESS, "mpmath:")
 
 
 class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
@@ -33,7 +37,8 @@ class Recommendation:
     """A setting ready to run: ``solver.solve(pose(scene, rung))``, ``verify.run``, or ``command``.
 
     ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
-    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled.
+    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled. ``left_out``
+    names the rungs that were not measured, because no arithmetic of theirs can reach the target.
     """
 
     scene: str
@@ -45,6 +50,7 @@ class Recommendation:
     starts: int
     seed: int
     seconds: float
+    left_out: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
         return {
@@ -57,6 +63,7 @@ class Recommendation:
             "starts": self.starts,
             "seed": self.seed,
             "seconds": self.seconds,
+            "left_out": list(self.left_out),
             "command": self.command,
             "sentence": self.sentence,
         }
@@ -74,7 +81,7 @@ class Recommendation:
         return (
             f"To stay below {self.target:.3g}: {label}, {self.seconds:.3g} s per solve. Its largest "
             f"error over {self.starts} starts (seed {self.seed}) is {self.error:.2g}; a margin of "
-            f"{self.margin:g} is kept."
+            f"{self.margin:g} is kept.{_not_measured(self.left_out)}"
         )
 
 
@@ -88,11 +95,25 @@ def recommend(
 
     The error is the largest of all tracked quantities, in the judge's units. Raises OutOfReach where
     nothing reaches it, ValueError for what is no positive number, and scenes.faults.Refused for a
-    scene that cannot be read.
+    scene that cannot be read. Rungs on which rounding alone leaves far more are not measured.
     """
     check_target(error)
     scene = load(scene) if isinstance(scene, str) else scene
-    return recommended(trade_off(scene, asked, seed=seed), error)
+    asked = settings(scene) if asked is None else asked
+    without = left_out(scene, (one.rung for one in asked if _computes_on_its_rung(one)), error)
+    kept = [one for one in asked if one.rung not in without or not _computes_on_its_rung(one)]
+    reasons = tuple(without.values())
+    if not kept and reasons:
+        raise OutOfReach(f"{_none_below(scene, error)}: {'; '.join(reasons)}{_wider(scene, error)}")
+    return replace(recommended(trade_off(scene, kept, seed=seed), error), left_out=reasons)
+
+
+def _computes_on_its_rung(setting: Setting) -> bool:
+    return not setting.solver.name.startswith(_OF_ANOTHER_PRECISION)
+
+
+def _not_measured(reasons: Sequence[str]) -> str:
+    return f" Not measured: {'; '.join(reasons)}." if reasons else ""
 
 
 def check_target(error: float) -> None:
@@ -133,11 +154,24 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
 
 
 def _nearest(trade: TradeOff, error: float) -> str:
-    asked = f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {trade.scene.name}"
+    asked, wider = _none_below(trade.scene, error), _wider(trade.scene, error)
     sound = sound_points(trade.points)
     if not sound:
-        return f"{asked}; none gave a sound answer"
+        return f"{asked}; none gave a sound answer{wider}"
     best = min(sound, key=lambda p: p.error)
-    return (
-        f"{asked}; the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
-    )
+    nearest = f"the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
+    return f"{asked}; {nearest}{wider}"
+
+
+def _none_below(scene: Scene, error: float) -> str:
+    return f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}"
+
+
+def _wider(scene: Scene, error: float) -> str:
+    """The narrowest rung that would do, in words."""
+    found = narrowest(scene, error / MARGIN)
+    if found is None:
+        return "; no precision is known on which rounding alone leaves so little"
+    rung, least = found
+    leaves = f"{rung.name} ({least:.2g})"
+    return f"; the narrowest precision on which rounding alone leaves so little is {leaves}"

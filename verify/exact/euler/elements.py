@@ -14,9 +14,12 @@ from typing import Final
 from mpmath import mp, mpf
 
 from verify.exact.element import Element, Elements, settled
+from verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
 from verify.exact.euler.orbit import Orbit, Precession, principal_frame
 from verify.exact.euler.regime import FreeSpin, Regime
-from verify.exact.solution import NO_CLOSED_FORM
+from verify.exact.manufactured import MANUFACTURED, REGIME
+from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
 from verify.scenes.scene import Scene
@@ -42,31 +45,65 @@ _STORY: Final[Mapping[Regime, str]] = {
         "approaches the opposite spin for ever; it has no period."
     ),
 }
+_WORK: Final = "Not conserved: T grows by the work of the moment, H by its impulse."
+_LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
+    MomentRegime.SPHERICAL: (
+        "Three equal moments of inertia and a constant moment in body axes: omega runs along a "
+        "straight line at a constant pace."
+    ),
+    MomentRegime.AXIAL: (
+        "Two equal moments of inertia and a constant moment along the axis: the spin grows evenly, "
+        "and the transverse omega, of constant size, turns in proportion to it, which is a chirp."
+    ),
+    MomentRegime.TRANSVERSE: (
+        "Two equal moments of inertia and a constant moment across the axis: the spin is constant; "
+        "the transverse omega goes round a circle, or, without spin, along a straight line."
+    ),
+    MomentRegime.OBLIQUE: (
+        "Two equal moments of inertia and a constant moment that is neither along the axis nor "
+        "across it: the spin grows evenly, and the transverse omega follows Fresnel's integrals."
+    ),
+}
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Of a free body every element it has; of a body under a moment only the words."""
+    """Of a free body every element it has; of a body under a moment a period at most, and words."""
     assert isinstance(scene.body, RigidBody)
     assert isinstance(scene.initial, Spin)
+    if scene.body.manufactured is not None:
+        return Elements(REGIME, (), MANUFACTURED)
     if not scene.body.is_free:
-        return _loaded(scene.body)
+        return _loaded(scene.body, scene.initial.omega, digits)
     spin = FreeSpin(scene.body.inertia, scene.initial.omega)
     found = settled(lambda _: _numbers(spin), digits)
     story = _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
     return Elements(spin.regime.value, found, (story, _CONSERVED))
 
 
-def _loaded(body: RigidBody) -> Elements:
+def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
-    return Elements(
-        NO_CLOSED_FORM,
-        (),
-        (
+    try:
+        spin = LoadedSpin(body.inertia, body.moment, omega)
+    except NoClosedForm:
+        story = (
             "A constant moment in body axes acts: no closed form is built, and the motion has "
-            "neither a period nor a modulus that could be named.",
-            "Not conserved: T grows by the work of the moment, H by its impulse.",
-        ),
-    )
+            "neither a period nor a modulus that could be named."
+        )
+        return Elements(NO_CLOSED_FORM, (), (story, _WORK))
+    found = settled(lambda _: _circle(spin), digits)
+    return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
+
+
+def _circle(spin: LoadedSpin) -> list[Element]:
+    """Of the one motion under a moment that recurs: the spin is constant, the rest turns evenly."""
+    if spin.regime is not MomentRegime.TRANSVERSE or not spin.turning:
+        return []
+    rate = mp.convert(abs(spin.turning)) / mp.sqrt(mp.convert(spin.axis_squared))
+    body = "(Js - Jd)(e.omega)/Jd"
+    return [
+        Element("period", 2 * mp.pi / rate, "time", "omega recurs in body axes", body),
+        Element("rate", rate, "radians/time", "the transverse omega turns, in body axes", body),
+    ]
 
 
 def _numbers(spin: FreeSpin) -> list[Element]:

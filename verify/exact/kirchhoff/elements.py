@@ -20,9 +20,12 @@ from typing import Final
 from mpmath import mp, mpf
 
 from verify.exact.element import Element, Elements, settled
+from verify.exact.kirchhoff.conserved import conserved
+from verify.exact.kirchhoff.general import elements_of
 from verify.exact.kirchhoff.jacobi import closed_form
 from verify.exact.kirchhoff.quartic import Nutation, Polynomial, derivative, repeated_root, value
 from verify.exact.kirchhoff.regime import regime, turning_points
+from verify.exact.manufactured import MANUFACTURED, REGIME
 from verify.exact.solution import NO_CLOSED_FORM, Orbital
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody
@@ -64,6 +67,8 @@ def elements(scene: Scene, digits: int) -> Elements:
     body, start = scene.body, scene.initial
     assert isinstance(body, ImmersedBody)
     assert isinstance(start, Impulse)
+    if body.manufactured is not None:
+        return Elements(REGIME, (), MANUFACTURED)
     if not body.is_free:
         return Elements(
             NO_CLOSED_FORM,
@@ -75,49 +80,20 @@ def elements(scene: Scene, digits: int) -> Elements:
             ),
         )
     if body.clebsch is None:
-        return Elements(
-            NO_CLOSED_FORM,
-            settled(lambda _: _conserved(body, start), digits),
-            (
-                "The energy is not of Clebsch's form about axis 3: no closed form is built, and "
-                "for a body with three invariants alone none is known.",
-                "Conserved: the kinetic energy T, F^2 = x.x and FG = x.y; in space axes the linear "
-                "impulse and the moment of the impulses.",
-            ),
-        )
+        return elements_of(scene, digits)
     nutation = Nutation.of(body.clebsch, start)
     kind = regime(nutation)
     alone = replace(scene, track=frozenset())
     found = settled(
         lambda working: [
             *_of_regime(kind, nutation, alone, start, working),
-            *_conserved(body, start),
+            *conserved(body, start),
             *_axial(nutation),
         ],
         digits,
     )
     story = [_STORY[kind], *_steady_story(kind, nutation), _CONSERVED]
     return Elements(kind, found, (*story, *_axial_story(nutation)))
-
-
-def _conserved(body: ImmersedBody, start: Impulse) -> list[Element]:
-    """T, F and G; G only where there is an F."""
-    x, y = start.linear, start.angular
-    state = x + y
-    T = tensors.dot(state, tensors.apply(body.energy_matrix, state)) / 2
-    found = [
-        Element("T", mp.convert(T), "energy", "kinetic energy, conserved", "Hydromechanics 48 (i)")
-    ]
-    F2, FG = tensors.dot(x, x), tensors.dot(x, y)
-    F = mp.sqrt(mp.convert(F2))
-    found.append(
-        Element("F", F, "impulse", "linear impulse |x|, conserved", "Hydromechanics 48 (ii)")
-    )
-    if F2:
-        G = mp.convert(FG) / F
-        meaning = "angular impulse along F, x.y/F, conserved"
-        found.append(Element("G", G, "angular impulse", meaning, "Hydromechanics 48 (iii)"))
-    return found
 
 
 def _of_regime(

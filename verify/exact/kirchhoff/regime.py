@@ -33,10 +33,10 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
         raise TypeError(
             f"expected a scene of the model kirchhoff, got {scene.model} @ {scene.name}"
         )
-    if body.clebsch is None:
-        raise NoClosedForm("the energy is not of Clebsch's form about axis 3")
     if not body.is_free:
         raise NoClosedForm("a force or a couple acts on the body")
+    if body.clebsch is None:
+        raise NoClosedForm("the energy is not of Clebsch's form about a body axis")
     return Nutation.of(body.clebsch, start), start
 
 

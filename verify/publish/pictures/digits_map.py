@@ -39,6 +39,7 @@ _HEADINGS: Final = {ACHIEVED: "achieved", ATTAINABLE: "attainable"}
 
 # In inches.
 _LEFT: Final = 0.78
+_NAMES: Final = -0.34
 _BETWEEN: Final = 0.12
 _RIGHT: Final = 0.06
 _CELL: Final = 0.135
@@ -47,6 +48,7 @@ _GAP: Final = 0.14
 _BELOW: Final = 0.42
 _LEGEND: Final = 0.34
 _NUMBER: Final = 5.5
+_MOST_NAMES: Final = 7
 _HATCHED: Final[Mapping[str, Any]] = {
     "facecolor": PAPER,
     "edgecolor": FAINT,
@@ -152,7 +154,8 @@ def _figure(family: Row, maps: Sequence[_Map]) -> Figure:
                 _name_values(axes, family)
             if column == 0:
                 axes.set_yticks(range(len(one.periods)), [_count(n) for n in one.periods])
-                axes.set_ylabel(f"{one.rung}\nperiods", labelpad=4, size=SMALL)
+                axes.set_ylabel(f"{one.rung}\nperiods", size=SMALL)
+                axes.yaxis.set_label_coords(_NAMES / width, 0.5)
         top -= own + _GAP
     _draw_legend(figure)
     return figure
@@ -180,7 +183,7 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
             size=_NUMBER,
             ha="center",
             va="center_baseline",
-            color=text_on(colour),
+            color=text_on(colour) if digits else QUIET,
             gid=f"{one.rung} {_HEADINGS[key]} {one.values[x]} {one.periods[y]}",
         )
 
@@ -201,9 +204,9 @@ def _count(periods: int) -> str:
 
 
 def _name_values(axes: Axes, family: Row) -> None:
-    """Every other value where they are many."""
+    """Some of the values where they are many."""
     values = family["values"]
-    shown = range(0, len(values), max(1, -(-len(values) // 10)))
+    shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
     axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
     axes.set_xlabel(f"{family['symbol']}: towards {family['extreme']}", size=SMALL)
 

@@ -17,7 +17,7 @@ from copy import deepcopy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Final, final
 
 import heyoka as hy
@@ -113,7 +113,7 @@ class Ensemble:
         """The lane with the rate that it steps by, or taken out where that is not finite."""
         if not lane.goes_on:
             return lane
-        rate = max(lane.fastest, self._linearised[i].fastest([float(v) for v in lane.state]))
+        rate = max(lane.fastest, self._linearised[i].fastest([_double(v) for v in lane.state]))
         if not isfinite(rate):
             return replace(lane, outcome=Outcome.NON_FINITE)
         if not rate * abs(float(until - lane.time)) <= _MOST_RADIANS:
@@ -286,6 +286,14 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
         # heyoka takes 0 for the machine epsilon of the type.
         tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
     )
+
+
+def _double(value: Fraction) -> float:
+    """Infinite beyond a double: nothing that is to be stepped is so large in units of its own size."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
 
 
 def _padded(values: Array, width: int) -> Array:
