@@ -130,7 +130,7 @@ def _largest_root(t: float, s: float, d: float) -> float:
         return inf
     if discriminant <= 0:
         # Three real roots.
-        size = sqrt(-p)
+        size = sqrt(max(0.0, -p))
         cube = size * size * size
         angle = acos(max(-1.0, min(1.0, q / cube))) / 3 if cube else 0.0
         return max(abs(shift + 2 * size * cos(angle + 2 * pi * k / 3)) for k in range(3))

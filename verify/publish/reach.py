@@ -39,7 +39,8 @@ _LEGEND: Final = (
     "*attainable* tells the same of the judge's floor: one rounding of every component in every step, "
     "carried on by the orbit. It is a model of random roundings, and no bound.",
     f"*{_NOT_HELD}*: rounded to the rung, the numbers are those of another orbit, its period off by "
-    "more than a tenth or none at all. However exactly that one is followed, it is not the one asked for.",
+    "more than a tenth or none at all. However exactly that one is followed, it is not the one asked for. "
+    f"*{_NOT_RUN}*: there is no such rung on the machine, or its numbers do not hold the scene at all.",
     "Periods are those of omega or of the impulses, instants their quarters. Only omega or the "
     "impulses are compared, but where the attitude is named.",
 )

@@ -12,6 +12,7 @@ from verify.publish import (
     controls,
     data,
     figures,
+    growth,
     prices,
     reach,
     sheets,
@@ -64,6 +65,7 @@ def publish(folder: Path | str) -> list[Path]:
     texts |= _controls(place)
     texts |= tradeoff.pages(place)
     texts |= prices.pages(place)
+    texts |= growth.pages(place)
     texts |= worst.pages(place)
     texts |= reach.pages(place)
     if _is_ours_or_new(place / FRONT):

@@ -23,8 +23,8 @@ from verify.exact.euler.moments.regime import Line
 from verify.exact.euler.orbit import converted
 from verify.scenes import tensors
 
-# |x|^2 + |y|^2 = 1 and every term of f and h is found from series that may cancel e^|z| beforehand;
-# mpmath raises its own precision as far as this many bits, which |z| of some thousands needs.
+# f and h are of size 1, but the terms of their series reach e^|z|. mpmath raises its own precision
+# against that, as far as this many bits: enough for |z| of some thousands, beyond which it has others.
 _MOST_BITS: Final = 20_000
 
 
