@@ -234,6 +234,15 @@ def _over_attainable(rows: Sequence[Row]) -> str:
     )
 
 
+def _stopped(rows: Sequence[Row]) -> list[str]:
+    """The runs that ended on their own, which no number tells from those that were lost."""
+    found = [row for row in rows if row["errors"] and row["why"]]
+    return [
+        f"{row['family']} {row['value']}, {row['rung']}: {prose(row['why'])}. It counts as lost."
+        for row in found
+    ]
+
+
 def _method(found: Document) -> list[str]:
     given = found["provenance"]
     packages = ", ".join(f"{name} {version}" for name, version in given["versions"].items())
@@ -248,5 +257,6 @@ def _method(found: Document) -> list[str]:
         "The wider a rung, the fewer periods are run: a period takes hundreds of times as long on f128 "
         "as on f64.",
         _over_attainable(rows),
+        *_stopped(rows),
         f"Machine: {prose(given['processor'])}; {packages}. Made by {code(given['command'])}.",
     ]

@@ -70,7 +70,7 @@ def is_extreme(scene: str) -> bool:
 def shipped() -> Expectations:
     """Those of the shipped file; raises Refused with every fault of it."""
     file = library.cases_directory() / library.EXTREMES / FILE
-    return read(file.read_text(encoding="utf-8"), library.names(library.EXTREMES))
+    return read(file.read_text(encoding="utf-8"), library.named(library.EXTREMES))
 
 
 def left_out(words: Iterable[str], rungs: Iterable[str]) -> dict[tuple[str, str], str]:

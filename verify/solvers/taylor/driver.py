@@ -5,7 +5,7 @@ a coefficient rounded to a double      all coefficients are parameters of the ru
 a state far from size one              the problem is posed in units of its own size
 a small component lost beside a large  no step is longer than half the fastest linear time scale
 impulses lost beside a long path       each stretch of the path is counted from where it begins
-an interrupt held until the end        a long stretch calls back, and so hears it
+an interrupt held until the end        no stretch takes longer than about half a second
 an endless or a broken run             the number of steps is bounded and the outcome is read
 """
 
@@ -44,9 +44,9 @@ _SEGMENTS = 24
 _STEPS_PER_RADIAN = 64
 # What would take longer than days is not begun.
 _MOST_RADIANS = 1e10
-# What takes longer than a few tenths of a second calls back after each step: a tenth of a microsecond,
-# which beside the steps of a wide rung is nothing.
-_LONG_RADIANS = {"f32": 2e4, "f64": 2e4, "f80": 2e3}
+# That takes about half a second where the processor has the arithmetic. A wide rung calls back after
+# each step instead, which costs a tenth of a microsecond: nothing beside its steps, but much here.
+_RADIANS_AT_ONCE = {"f32": 5e5, "f64": 5e5, "f80": 5e4}
 # Beyond this many states straight-line code compiles longer than it runs.
 _LARGEST_STRAIGHT_LINE = 5
 
@@ -161,14 +161,18 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     integrator.time = zero[0]
     integrator.state[:] = numbers.array(problem.initial)
     integrator.pars[:] = numbers.array(problem.parameters)
-    grid, samples = _grid(problem, numbers)
-    linearised, rate = Linearised(problem), 0.0
+    linearised = Linearised(problem)
+    rate = linearised.fastest([float(value) for value in problem.initial])
+    if not isfinite(rate):
+        return Outcome.NON_FINITE, 0, [], 0.0
+    pieces = _pieces(rate * abs(float(problem.times[-1])), problem.rung)
+    grid, samples = _grid(problem, numbers, pieces)
     # heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on
     # the centre, so that it may be counted from anywhere.
     path = [i for i, name in enumerate(problem.form.states) if name.startswith("c")]
     began_at = integrator.state[path]
     rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
-    for first, last in _segments(len(grid)):
+    for first, last in _segments(len(grid), pieces):
         rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
         if not isfinite(rate):
             return Outcome.NON_FINITE, total_steps, [], inner
@@ -183,7 +187,7 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
             instants,
             max_delta_t=longest,
             max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
-            callback=_go_on if radians > _LONG_RADIANS.get(problem.rung.name, 0.0) else None,
+            callback=None if problem.rung.name in _RADIANS_AT_ONCE else _go_on,
         )
         inner += perf_counter() - began
         if path:
@@ -201,7 +205,17 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     return Outcome.FINISHED, total_steps, [np.concatenate(rows)[samples]], inner
 
 
-def _grid(problem: Problem, numbers: Arithmetic) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
+def _pieces(radians: float, rung: Rung) -> int:
+    """How many times the rate is looked at on a way so long, and an interrupt heard."""
+    at_once = _RADIANS_AT_ONCE.get(rung.name)
+    if at_once is None or not radians <= _MOST_RADIANS:
+        return _SEGMENTS
+    return max(_SEGMENTS, ceil(radians / at_once))
+
+
+def _grid(
+    problem: Problem, numbers: Arithmetic, pieces: int
+) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
     """The instants that heyoka is asked for, and where the samples are among them.
 
     They begin at its own time, asked for or not. Between few samples there are more, so that the
@@ -210,12 +224,12 @@ def _grid(problem: Problem, numbers: Arithmetic) -> tuple[np.ndarray[Any, Any], 
     times = numbers.times(problem.times)
     zero = numbers.array([Fraction(0)])
     grid = times if times[0] == zero[0] else np.concatenate([zero, times])
-    if len(grid) > _SEGMENTS:
+    if len(grid) > pieces:
         return grid, slice(len(grid) - len(times), None)
     exact = list(problem.times) if len(grid) == len(times) else [Fraction(0), *problem.times]
     instants, samples = exact[:1], [0]
     for after, before in pairwise(exact):
-        instants += _waypoints(after, before, abs(exact[-1]) / _SEGMENTS, problem.rung)
+        instants += _waypoints(after, before, abs(exact[-1]) / pieces, problem.rung)
         samples.append(len(instants))
         instants.append(before)
     return numbers.array(instants), samples[len(grid) - len(times) :]
@@ -238,8 +252,8 @@ def _go_on(integrator: Any) -> bool:
     return True
 
 
-def _segments(instants: int) -> list[tuple[int, int]]:
+def _segments(instants: int, pieces: int) -> list[tuple[int, int]]:
     """Stretches of the grid, as first and last index, with one step cap each."""
-    pieces = min(instants - 1, _SEGMENTS)
+    pieces = min(instants - 1, pieces)
     ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)}) if pieces else []
     return list(pairwise(ends))
