@@ -24,7 +24,9 @@ BITS = COEFFICIENT_BITS
 # Rounding to nearest is off by 2^-BITS of the number at most; the rest is for what precedes it.
 ROUNDING = mpf(2) ** -BITS * (1 + mpf(2) ** -30)
 
-SCENES = [name for name in library.names("kirchhoff") if "/ellipsoid-" in name]
+SCENES = [
+    name for name in library.names("kirchhoff") if "/ellipsoid-" in name or "-about-axis-" in name
+]
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -38,13 +40,19 @@ def test_shipped_ellipsoids_are_what_their_files_say(name: str) -> None:
     assert "the one that is solved" in sentences
 
 
-SPHEROIDS = {"prolate": 3, "disc": 3, "oblate-axis-1": 1, "prolate-axis-2": 2, "needle": 1}
+SPHEROIDS = {
+    "kirchhoff/ellipsoid-prolate": 3,
+    "kirchhoff/ellipsoid-disc": 3,
+    "kirchhoff/oblate-about-axis-1": 1,
+    "kirchhoff/prolate-about-axis-2": 2,
+    "kirchhoff/ellipsoid-needle": 1,
+}
 
 
 @pytest.mark.parametrize("name", SPHEROIDS)
 def test_a_spheroid_is_clebschs_body_on_every_rung(name: str) -> None:
     """Rounding leaves the axis of symmetry, the closed form and the motion's regime what they are."""
-    scene = load(f"kirchhoff/ellipsoid-{name}")
+    scene = load(name)
     regime = solution(scene, "arb").regime
     for rung_name in LADDER:
         given_to_solver = pose(scene, rung(rung_name)).given

@@ -12,6 +12,7 @@ from mpmath import mp, mpf
 from verify.exact.elements import elements
 from verify.exact.route import solution
 from verify.exact.solution import NO_CLOSED_FORM
+from verify.scenes.bodies import ImmersedBody
 from verify.scenes.library import names
 from verify.scenes.motion import Motion
 from verify.scenes.precision import exact_value
@@ -35,20 +36,22 @@ def period(scene: Scene) -> Fraction | None:
     return exact_value(orbit["period"].value) if "period" in orbit else None
 
 
-def recurring(motion: Motion, row: int) -> list[Any]:
-    """What a period brings back: omega, or x3 and the lengths of x and y."""
+def recurring(motion: Motion, row: int, axis: int) -> list[Any]:
+    """What a period brings back: omega, or x along the axis of symmetry and the lengths of x and y."""
     if "omega" in motion.quantities:
         return list(motion["omega"][row])
     x, y = motion["linear_impulse"][row], motion["angular_impulse"][row]
-    return [x[2], mp.norm(list(x)), mp.norm(list(y))]
+    return [x[axis], mp.norm(list(x)), mp.norm(list(y))]
 
 
 def missed(scene: Scene, span: Fraction) -> mpf:
     """How far from its start the motion is after this time, in parts of omega or of the impulses."""
     motion = solution(scene).motion([Fraction(0), span], DIGITS)
+    body = scene.body
+    axis = ((body.axis_of_symmetry or 3) if isinstance(body, ImmersedBody) else 3) - 1
     assert all(radius <= mpf(10) ** -DIGITS for radius in motion.radius)
     with mp.workdps(PERIOD_DIGITS):
-        start, end = (np.array(recurring(motion, row), dtype=object) for row in (0, 1))
+        start, end = (np.array(recurring(motion, row, axis), dtype=object) for row in (0, 1))
         scale = mp.norm(list(start))
         return mp.norm(list(end - start)) / scale if scale else mp.norm(list(end))
 

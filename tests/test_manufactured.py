@@ -41,7 +41,7 @@ from verify.solvers.trajectory import Trajectory
 
 NAMES = library.names("manufactured")
 EULER = "manufactured/euler-full-tensor"
-KIRCHHOFF = "manufactured/kirchhoff-two-frequencies"
+KIRCHHOFF = "manufactured/kirchhoff-tones"
 
 
 def bare(name: str) -> Scene:
@@ -356,7 +356,7 @@ def test_a_motion_that_stands_still_is_answered(step: str) -> None:
 @pytest.mark.parametrize("step", ["f32", "f64"])
 def test_the_size_of_a_motion_does_not_matter(size: str, step: str) -> None:
     """A motion far beyond the range of single precision is one of size one in other units."""
-    scene = bare("manufactured/euler-two-frequencies")
+    scene = bare("manufactured/euler-tones")
     factor, motion = Fraction(size), motion_of(scene)
     faster = motion.in_units((factor,) * 3, 1 / factor)
     times = tuple(t / factor for t in scene.clock.elapsed)

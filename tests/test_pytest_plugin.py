@@ -248,17 +248,18 @@ def test_a_tolerance_asks_for_a_narrow_truth(
 
 def test_a_verdict_that_is_no_fail_says_what_to_do() -> None:
     """A gate of which rounding alone reaches the size of the motion is vacuous, and says so."""
-    # A deviation grows by exp(t/sqrt 3): at t = 40 by 10^10, and one of f32 starts at 10^-8.
+    # At the first flip all components are of size one, and round at 10^-8; back beside the axis such
+    # a deviation grows by exp(t/sqrt 3), at t = 60 by more than 10^8.
     text = """
-title = "The steady spin about the middle axis, for too long"
+title = "Beside the middle axis, for too long"
 model = "euler"
 [body]
 inertia = [1, 2, 3]
 [initial]
-omega = [0, 1, 0]
+omega = [1e-4, 1, 0]
 [time]
-end = 40
-samples = 5
+end = 60
+samples = 61
 """
     judgement = run(read(text, "too long"), "taylor", "f32")
     found = {v.quantity: v.verdict for v in judgement.verdicts}

@@ -278,7 +278,9 @@ def test_the_verb_writes_data_and_page(
     )
     assert main(["publish", "--tradeoff", "--from", str(tmp_path), "--json"]) == 0
     written = json.loads(capsys.readouterr().out)["written"]
-    assert {Path(name).name for name in written} == {
+    pictures = {name for name in written if Path(name).parent.name == "figures"}
+    assert {Path(name).suffix for name in pictures} == {".svg", ".pdf"}
+    assert {Path(name).name for name in set(written) - pictures} == {
         *("tradeoff.json", "tradeoff-timings.json", "tradeoff.md", "tradeoff.csv")
     }
     page = tmp_path / "tables" / "tradeoff.md"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Final
@@ -38,6 +39,6 @@ _PAGES: Final = (
 )
 
 
-def others(folder: Path) -> list[Page]:
-    """Those that are there."""
-    return [page for page in _PAGES if (folder / page.path).exists()]
+def others(folder: Path, made: Collection[str] = ()) -> list[Page]:
+    """Those that are there, or are among the files that are about to be."""
+    return [page for page in _PAGES if page.path in made or (folder / page.path).exists()]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from statistics import median
 
 from verify.judge.verdict import Verdict
 from verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
-from verify.publish.contents import others
+from verify.publish.contents import Page
 from verify.publish.data import versions
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY, counts
@@ -43,10 +42,10 @@ _CONTENTS = (
 )
 
 
-def front(verdicts: Sequence[Verdict], folder: Path) -> str:
-    """The page for a report in ``folder``, which is asked only for what else there is to link to."""
+def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
+    """The page of a report, with links to what else there is."""
     found = runs(verdicts)
-    contents = [*_CONTENTS, *(page.row() for page in others(folder))]
+    contents = [*_CONTENTS, *(page.row() for page in others)]
     blocks = [
         f"{MADE_BY}\n# How accurate it is",
         _WHAT,

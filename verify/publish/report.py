@@ -53,8 +53,14 @@ def publish(folder: Path | str) -> list[Path]:
     """
     place = Path(folder)
     verdicts = load(place)
-    texts = {
-        f"{TABLES}/README.md": tables.readme(verdicts, others(place)),
+    measured = (
+        *(_controls(place), tradeoff.pages(place), prices.pages(place)),
+        *(growth.pages(place), worst.pages(place), reach.pages(place)),
+    )
+    texts = {name: text for pages in measured for name, text in pages.items()}
+    besides = others(place, texts)
+    texts |= {
+        f"{TABLES}/README.md": tables.readme(verdicts, besides),
         f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
         f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
         f"{TABLES}/conserved.md": tables.conserved(verdicts),
@@ -62,14 +68,8 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/gates.md": tables.gates(verdicts),
         f"{TABLES}/gates.csv": sheets.gates(verdicts),
     }
-    texts |= _controls(place)
-    texts |= tradeoff.pages(place)
-    texts |= prices.pages(place)
-    texts |= growth.pages(place)
-    texts |= worst.pages(place)
-    texts |= reach.pages(place)
     if _is_ours_or_new(place / FRONT):
-        texts[FRONT] = front(verdicts, place)
+        texts[FRONT] = front(verdicts, besides)
     return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))
 
 
