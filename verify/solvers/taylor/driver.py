@@ -165,8 +165,9 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     rate = linearised.fastest([float(value) for value in problem.initial])
     if not isfinite(rate):
         return Outcome.NON_FINITE, 0, [], 0.0
-    pieces = _pieces(rate * abs(float(problem.times[-1])), problem.rung)
-    grid, samples = _grid(problem, numbers, pieces)
+    times = numbers.times(problem.times)
+    pieces = _pieces(rate * abs(float(times[-1])), problem.rung)
+    grid, samples = _grid(problem, times, numbers, pieces)
     # heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on
     # the centre, so that it may be counted from anywhere.
     path = [i for i, name in enumerate(problem.form.states) if name.startswith("c")]
@@ -214,14 +215,13 @@ def _pieces(radians: float, rung: Rung) -> int:
 
 
 def _grid(
-    problem: Problem, numbers: Arithmetic, pieces: int
+    problem: Problem, times: np.ndarray[Any, Any], numbers: Arithmetic, pieces: int
 ) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
     """The instants that heyoka is asked for, and where the samples are among them.
 
     They begin at its own time, asked for or not. Between few samples there are more, so that the
     rate and the path are looked at as often there as between many.
     """
-    times = numbers.times(problem.times)
     zero = numbers.array([Fraction(0)])
     grid = times if times[0] == zero[0] else np.concatenate([zero, times])
     if len(grid) > pieces:
