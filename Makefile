@@ -5,21 +5,21 @@ PYTHON ?= $(shell for python in python3 python3.14 python3.13 python3.12 python3
 BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
-RUNGS = f32 f64 f80 f128 mp237
 
 .PHONY: help verify verify-all test test-all bench reports tradeoff check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 
-# Both are run, whatever the first one finds.
-verify: $(INSTALLED)  ## Run the standard set on all rungs, the extremes on f64; print the verdicts (to reports/local)
-	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
-		$(BIN)/taylor-verify run extremes --out reports/local/extremes && exit $$status
+verify:  ## Run the standard set on all rungs, the extremes on f64; print the verdicts (to reports/local)
+verify-all:  ## The same with the extremes on all rungs
+verify-all: EXTREMES_ON = --rung f32 f64 f80 f128 mp237
 
-verify-all: $(INSTALLED)  ## The same with the extremes on all rungs
+# Both are run, whatever the first one finds; an interrupt (130) ends both.
+verify verify-all: $(INSTALLED)
 	@status=0; $(BIN)/taylor-verify run --out reports/local || status=$$?; \
-		$(BIN)/taylor-verify run extremes --rung $(RUNGS) --out reports/local/extremes && exit $$status
+		[ $$status -ne 130 ] || exit 130; \
+		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
 
 test: lint  ## Check style and types, then run all but the slow tests
 	@$(BIN)/python -m pytest -n 2 -m 'not slow'

@@ -257,7 +257,7 @@ def _floor(asked: Scene, steps: int) -> Array:
 
 def _floor_of(asked: Scene, steps: int) -> tuple[Floor, Motion]:
     truth = solution(asked).motion(asked.clock.elapsed, 25)
-    return floor(asked, asked, truth, Fraction(1, 2**53), steps), truth
+    return floor(asked, asked, Fraction(1, 2**53), steps), truth
 
 
 def edge(d: float, samples: int, tumbles: float = 1.0) -> Scene:

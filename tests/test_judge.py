@@ -275,7 +275,7 @@ def _truth(scene: Scene) -> Motion:
 
 
 def _floor_of(scene: Scene, steps: int) -> Floor:
-    return floor(scene, scene, _truth(scene), Fraction(1, 2**53), steps)
+    return floor(scene, scene, Fraction(1, 2**53), steps)
 
 
 def test_sound_solver_stays_near_the_floor_and_not_far_below() -> None:

@@ -142,7 +142,7 @@ def apart(run: Run, image: Motion, steps: int) -> float:
     """
     asked, motion = run.problem.scene, run.motion
     u = run.problem.rung.unit_roundoff
-    one, other = (floor(asked, asked, motion, u, n) for n in (run.trajectory.steps, steps))
+    one, other = (floor(asked, asked, u, n) for n in (run.trajectory.steps, steps))
     shares = []
     with mp.workprec(BITS):
         for errors in state_errors(asked, motion, image):

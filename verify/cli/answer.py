@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 PASS, FAIL, WRONG_CALL, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -19,3 +20,9 @@ class Answer(NamedTuple):
     document: dict[str, Any] | list[dict[str, Any]]
     text: Callable[[], str]
     messages: Sequence[str] = ()
+
+
+def files_written(paths: Iterable[Path]) -> Answer:
+    """The answer of a verb whose work is files: their names."""
+    written = [str(path) for path in paths]
+    return Answer(PASS, {"written": written}, lambda: "\n".join(written))

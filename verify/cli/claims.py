@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify.cli.answer import FAIL, PASS, Answer, WrongCall
+from verify.cli.answer import FAIL, PASS, Answer, WrongCall, files_written
 
 if TYPE_CHECKING:
     from verify.claims.claim import Claim
@@ -39,8 +39,7 @@ def publish_claims(folder: Path) -> Answer:
     missed = _missed(rows)
     if missed:
         return Answer(FAIL, {"written": []}, lambda: "", missed)
-    written = [str(path) for path in write(folder, rows, CITED)]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
+    return files_written(write(folder, rows, CITED))
 
 
 def _examined(asked: Sequence[Claim]) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from time import monotonic
 
-from verify.cli.answer import PASS, Answer, WrongCall
+from verify.cli.answer import Answer, WrongCall, files_written
 from verify.cli.streams import say
 
 # Below the folder that is published: what is local there is nobody else's.
@@ -28,8 +28,7 @@ def publish_growth(folder: Path, periods: str | None, long: bool) -> Answer:
     paths = growth.write(folder, found, long)
     # Only what is stored is done: until then it could still be taken up.
     forget(entries, checkpoints)
-    written = [str(path) for path in paths]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
+    return files_written(paths)
 
 
 def _read(periods: str | None) -> float | None:

@@ -1,11 +1,11 @@
-"""What `publish` computes anew before it writes: exact trajectories, and all that is broken on purpose."""
+"""What `publish` computes or measures anew before it writes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 
-from verify.cli.answer import PASS, Answer, WrongCall
+from verify.cli.answer import Answer, WrongCall, files_written
 from verify.cli.streams import say
 
 
@@ -17,7 +17,7 @@ def references(folder: Path) -> Answer:
 
     scenes = names()
     documents = references(scenes, _counting(len(scenes)))
-    return _written(reference_files.write(folder, documents))
+    return files_written(reference_files.write(folder, documents))
 
 
 def controls(folder: Path) -> Answer:
@@ -30,7 +30,7 @@ def controls(folder: Path) -> Answer:
     finished = _counting(len(DEFECTS) + len(table.TRAPS))
     seen = sight.document(sight.sights(DEFECTS, finished))
     trapped = table.document(table.TRAPS, finished)
-    return _written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
+    return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
 
 
 def prices(folder: Path) -> Answer:
@@ -38,7 +38,24 @@ def prices(folder: Path) -> Answer:
     from verify.publish import prices as pages
     from verify.trade.prices import RUNGS, document
 
-    return _written(pages.write(folder, document(_counting(len(RUNGS)))))
+    return files_written(pages.write(folder, document(_counting(len(RUNGS)))))
+
+
+def tradeoff(folder: Path, outside: bool) -> Answer:
+    """Speed against accuracy on the published scenes, measured in fresh processes."""
+    from verify.publish import report
+    from verify.trade.measurement import measurement
+
+    found = measurement(with_outside=outside, finished=say)
+    return files_written(report.publish_tradeoff(folder, found.numbers(), found.times()))
+
+
+def reach(folder: Path) -> Answer:
+    """How far each precision carries in every family of extremes."""
+    from verify.publish import reach as pages
+    from verify.trade.reach import document, members
+
+    return files_written(pages.write(folder, document(_counting(members()))))
 
 
 def worst(folder: Path, seconds: float, seed: int) -> Answer:
@@ -52,7 +69,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
     found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}
     kept = pages.keep(cases_directory() / WORST, scenes)
-    return _written([*pages.write(folder, document(found, seconds, seed)), *kept])
+    return files_written([*pages.write(folder, document(found, seconds, seed)), *kept])
 
 
 def _counting(total: int) -> Callable[[str], None]:
@@ -64,8 +81,3 @@ def _counting(total: int) -> Callable[[str], None]:
         say(f"{len(ended)}/{total} {name}")
 
     return finished
-
-
-def _written(paths: list[Path] | tuple[Path, ...]) -> Answer:
-    written = [str(path) for path in paths]
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from verify.cli.console import new_console, print_indented, print_line, text_of
+from verify.publish.pictures.wording import label_of
 
 _NOT_RUN = "not run"
 _HEADINGS = {
@@ -35,8 +36,8 @@ def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
         print_line(console, f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            label = f"{row['solver']} {row['setting']} {row['rung']}"
-            print_line(console, Text(row["standing"], "bold red"), f"  {label}: {row['because']}")
+            told = f"  {label_of(row)}: {row['because']}"
+            print_line(console, Text(row["standing"], "bold red"), told)
     print_line(
         console,
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
@@ -72,8 +73,7 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
     for heading in (*errors, *numbers):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
-        label = " ".join(w for w in (row["solver"], row["setting"], row["rung"]) if w)
-        mark = "*" if label in trade["front"] else "" if row["standing"] == "sound" else "!"
+        mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
         table.add_row(
             *(mark, Text(f"{row['solver']} {row['setting']}".rstrip()), row["rung"]),
@@ -94,9 +94,8 @@ def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
         table.add_column(heading, justify="right", no_wrap=True)
     for row in points:
         if row.get("cold"):
-            label = " ".join(w for w in (row["solver"], row["setting"], row["rung"]) if w)
             cells = [*(row["cold"][part] for part in parts), row["seconds"]]
-            table.add_row(Text(label), *(_short(value) for value in cells))
+            table.add_row(Text(label_of(row)), *(_short(value) for value in cells))
     return table
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
+from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, files_written
 from verify.cli.streams import say
 
 if TYPE_CHECKING:
@@ -242,39 +242,29 @@ def explain(options: argparse.Namespace) -> Answer:
 def publish(options: argparse.Namespace) -> Answer:
     """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
     from verify.cli import publishing
+    from verify.cli.claims import publish_claims
+    from verify.cli.growth_publish import publish_growth
     from verify.publish import report
 
-    if options.reference:
-        return publishing.references(writable(options.folder, "--from"))
-    if options.controls:
-        return publishing.controls(writable(options.folder, "--from"))
-    if options.claims:
-        from verify.cli.claims import publish_claims
-
-        return publish_claims(writable(options.folder, "--from"))
-    if options.prices:
-        return publishing.prices(writable(options.folder, "--from"))
-    if options.worst:
-        return publishing.worst(writable(options.folder, "--from"), options.seconds, options.seed)
-    if options.tradeoff:
-        from verify.cli.tradeoff_publish import publish_tradeoff
-
-        return publish_tradeoff(writable(options.folder, "--from"), options.outside)
-    if options.reach:
-        from verify.cli.reach_publish import publish_reach
-
-        return publish_reach(writable(options.folder, "--from"))
-    if options.growth:
-        from verify.cli.growth_publish import publish_growth
-
-        folder = writable(options.folder, "--from")
-        return publish_growth(folder, options.periods, options.long)
+    anew: dict[str, Callable[[Path], Answer]] = {
+        "reference": publishing.references,
+        "controls": publishing.controls,
+        "claims": publish_claims,
+        "prices": publishing.prices,
+        "reach": publishing.reach,
+        "tradeoff": partial(publishing.tradeoff, outside=options.outside),
+        "worst": partial(publishing.worst, seconds=options.seconds, seed=options.seed),
+        "growth": partial(publish_growth, periods=options.periods, long=options.long),
+    }
+    for option, write in anew.items():
+        if getattr(options, option):
+            return write(writable(options.folder, "--from"))
     if options.periods is not None or options.long:
         raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
     if options.outside:
         raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
     try:
-        written = [str(path) for path in report.publish(options.folder)]
+        return files_written(report.publish(options.folder))
     except FileNotFoundError as error:
         raise WrongCall(
             f"expected what `run --out {options.folder}` writes, got no such file "
@@ -282,7 +272,6 @@ def publish(options: argparse.Namespace) -> Answer:
         ) from error
     except ValueError as error:
         raise WrongCall(str(error)) from error
-    return Answer(PASS, {"written": written}, lambda: "\n".join(written))
 
 
 # What the verbs share.

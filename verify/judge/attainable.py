@@ -123,13 +123,12 @@ class Floor:
         return found
 
 
-def floor(given: Scene, asked: Scene, truth: Motion, unit_roundoff: Fraction, steps: int) -> Floor:
+def floor(given: Scene, asked: Scene, unit_roundoff: Fraction, steps: int) -> Floor:
     """The floor for a run of ``steps`` steps on the rounded scene ``given``.
 
     The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
     rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
     """
-    del truth
     shared = _floor(given, asked, unit_roundoff, steps)
     return shared if shared.worst() <= _SAME_ORBIT else _floor(given, given, unit_roundoff, steps)
 

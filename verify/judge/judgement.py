@@ -99,7 +99,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
     answer = trajectory.motion(bits + _SPARE_BITS)
     with mp.workprec(bits + _SPARE_BITS):
         with costs.of(CONDITION):
-            base = floor(given, problem.scene, truth, problem.rung.unit_roundoff, trajectory.steps)
+            base = floor(given, problem.scene, problem.rung.unit_roundoff, trajectory.steps)
         with costs.of(ERRORS):
             states = state_errors(given, truth, answer)
             shifts = time_shifts(given, exact, truth, answer, digits, states)

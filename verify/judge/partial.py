@@ -92,7 +92,7 @@ def _states_apart(
     """Attitude and centre against the truth, and nothing that is conserved."""
     given, rung = problem.given, problem.rung
     with mp.workprec(rung.bits + _SPARE_BITS):
-        base = floor(given, problem.scene, truth, rung.unit_roundoff, 0)
+        base = floor(given, problem.scene, rung.unit_roundoff, 0)
         rows = []
         for errors in state_errors(given, truth, Motion(filled, truth.radius)):
             if errors.quantity in ("attitude", "centre"):
@@ -176,7 +176,7 @@ def _omega(problem: Problem, truth: Motion) -> _Omega:
     rows = angular_velocity(body, truth.quantities)
     sizes = norms(rows)
     scale = max(sizes) or mpf(1)
-    base = floor(given, problem.scene, truth, problem.rung.unit_roundoff, 0)
+    base = floor(given, problem.scene, problem.rung.unit_roundoff, 0)
     squares = (base.unit_roundoff * (sizes / scale).astype(float)) ** 2
     for part, matrix in (("linear_impulse", body.coupling), ("angular_impulse", body.angular)):
         norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)

@@ -14,6 +14,7 @@ from verify.publish.cells import NOTHING, figure
 from verify.publish.doubles import doubles_table
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY
+from verify.publish.pictures.wording import label_of
 from verify.publish.timing_method import how_it_was_timed, remake, what_is_timed
 from verify.publish.trades import Row, Trade, Trades, load
 
@@ -112,7 +113,7 @@ def _by_digits(found: Trades) -> str:
 def _yardstick(trade: Trade, name: str) -> str:
     """What the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
     for row in trade.sound:
-        if _label(row) == name:
+        if label_of(row) == name:
             inner, seconds = row["inner_seconds"], row["seconds"]
             part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
             digits = f"{row['achieved_digits']:.1f} digits" if row["achieved_digits"] else "exact"
@@ -233,7 +234,7 @@ def _front(trade: Trade) -> str:
 def _front_line(row: Row) -> str:
     digits = row["achieved_digits"]
     left = "every digit" if digits is None else f"{digits:.1f} digits"
-    name = code(_label(row).removesuffix(f" {row['rung']}"))
+    name = code(label_of(row).removesuffix(f" {row['rung']}"))
     return f"{left}: {name}, {_ratio(row)} times the yardstick"
 
 
@@ -263,7 +264,7 @@ def _geometric(found: Trades) -> str:
 def _failures(found: Trades) -> str:
     columns = [Column("scene"), Column("setting"), Column("what it is"), Column("because")]
     rows = [
-        [code(trade.scene), code(_label(row)), prose(_standing(row)), prose(row["because"])]
+        [code(trade.scene), code(label_of(row)), prose(_standing(row)), prose(row["because"])]
         for trade in found.trades
         for row in trade.rows
         if row["standing"] != "sound" or row["ratio"] is None
@@ -277,10 +278,6 @@ def _standing(row: Row) -> str:
 
 def _ran(row: Row) -> bool:
     return bool(row["standing"] != "not run")
-
-
-def _label(row: Row) -> str:
-    return " ".join(word for word in (row["solver"], row["setting"], row["rung"]) if word)
 
 
 def _family(family: str) -> str:

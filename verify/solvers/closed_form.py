@@ -22,7 +22,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from importlib import import_module
-from importlib.util import find_spec
 from math import atan2, copysign, sqrt
 from time import perf_counter
 from typing import Any, Final, final
@@ -35,6 +34,7 @@ from verify.scenes.bodies import RigidBody
 from verify.scenes.precision import Rung, exact_value
 from verify.solvers.geometric.fixed_step import Body
 from verify.solvers.options import options
+from verify.solvers.scipy import unavailable
 from verify.solvers.solver import Solver
 from verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
@@ -53,11 +53,7 @@ class ClosedForm(Solver):
     setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
-        if rung.name != "f64":
-            return f"{self.name} is made in float64: f64 alone"
-        if find_spec("scipy") is None:
-            return "SciPy is not installed: pip install 'taylor-verify[scipy]'"
-        return ""
+        return unavailable(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
         body = problem.given.body

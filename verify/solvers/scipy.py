@@ -36,6 +36,15 @@ _LEAST_RTOL: Final = 100 * Fraction(1, 2**52)
 _MOST_EVALUATIONS: Final = 10**7
 
 
+def unavailable(name: str, rung: Rung) -> str:
+    """Why a solver made of SciPy cannot run on that rung here; empty where it can."""
+    if rung.name != "f64":
+        return f"{name} is made in float64: f64 alone"
+    if find_spec("scipy") is None:
+        return "SciPy is not installed: pip install 'taylor-verify[scipy]'"
+    return ""
+
+
 @final
 @dataclass(frozen=True)
 class SciPy(Solver):
@@ -48,11 +57,7 @@ class SciPy(Solver):
     setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
-        if rung.name != "f64":
-            return f"{self.name} is made in float64: f64 alone"
-        if find_spec("scipy") is None:
-            return "SciPy is not installed: pip install 'taylor-verify[scipy]'"
-        return ""
+        return unavailable(self.name, rung)
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):

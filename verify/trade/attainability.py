@@ -40,7 +40,7 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
     try:
         given = pose(scene, rung).given
         truth = solution(given).motion(given.clock.elapsed, _DIGITS)
-        base = floor(given, scene, truth, rung.unit_roundoff, 0)
+        base = floor(given, scene, rung.unit_roundoff, 0)
     except (NotRepresentable, Unsettled):
         return None
     # Only the parts and their scales are asked for: the truth is compared with itself.

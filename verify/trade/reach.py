@@ -191,7 +191,7 @@ def _with_floor(one: Reach, asked: Scene, truth: Motion) -> Reach:
     elapsed, count = asked.clock.elapsed, len(one.errors)
     # On another rung the orbit may be followed further: this one takes steps in proportion.
     steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
-    base = floor(asked, asked, truth, rung_named(one.rung).unit_roundoff, steps)
+    base = floor(asked, asked, rung_named(one.rung).unit_roundoff, steps)
     # Only the parts and their scales are asked for: the truth is compared with itself.
     states = state_errors(asked, truth, truth)
     worst = np.max([base.of_state(errors) for errors in states], axis=0)

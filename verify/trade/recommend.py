@@ -17,7 +17,7 @@ from verify.solvers.solver import Solver
 from verify.trade.attainability import left_out, narrowest
 from verify.trade.front import sound_points
 from verify.trade.point import Point
-from verify.trade.setting import Setting, settings
+from verify.trade.setting import Setting, label, settings
 from verify.trade.starts import nearby
 from verify.trade.timing import SEED
 from verify.trade.trade_off import TradeOff, Truths, trade_off
@@ -76,12 +76,11 @@ class Recommendation:
 
     @property
     def sentence(self) -> str:
-        words = (self.solver.name, self.solver.setting, self.rung.name)
-        label = " ".join(word for word in words if word)
         return (
-            f"To stay below {self.target:.3g}: {label}, {self.seconds:.3g} s per solve. Its largest "
-            f"error over {self.starts} starts (seed {self.seed}) is {self.error:.2g}; a margin of "
-            f"{self.margin:g} is kept.{_not_measured(self.left_out)}"
+            f"To stay below {self.target:.3g}: {label(self.solver, self.rung)}, "
+            f"{self.seconds:.3g} s per solve. Its largest error over {self.starts} starts "
+            f"(seed {self.seed}) is {self.error:.2g}; a margin of {self.margin:g} is kept."
+            f"{_not_measured(self.left_out)}"
         )
 
 

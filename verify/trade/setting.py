@@ -36,6 +36,11 @@ TOLERANCE, STEP, NOTHING = "tolerance", "step", ""
 _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
 
 
+def label(solver: Solver, rung: Rung) -> str:
+    """Solver, setting and rung in one line, as they are printed."""
+    return " ".join(word for word in (solver.name, solver.setting, rung.name) if word)
+
+
 @dataclass(frozen=True)
 class Setting:
     """One way to solve a scene, ready to run.
@@ -54,8 +59,7 @@ class Setting:
 
     @property
     def label(self) -> str:
-        words = (self.solver.name, self.solver.setting, self.rung.name)
-        return " ".join(word for word in words if word)
+        return label(self.solver, self.rung)
 
     @property
     def is_integrator(self) -> bool:

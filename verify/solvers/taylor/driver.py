@@ -174,9 +174,10 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     began_at = integrator.state[path]
     rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
     for first, last in _segments(len(grid), pieces):
-        rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
-        if not isfinite(rate):
-            return Outcome.NON_FINITE, total_steps, [], inner
+        if first:
+            rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
+            if not isfinite(rate):
+                return Outcome.NON_FINITE, total_steps, [], inner
         radians = rate * abs(float(grid[last] - grid[first]))
         if not radians <= _MOST_RADIANS:
             return Outcome.STEP_LIMIT, total_steps, [], inner
