@@ -144,7 +144,9 @@ class Outside(Solver):
         return _failed.get(environment.folder, "") if environment else ""
 
     def unsuited(self, problem: Problem) -> str:
-        return process.Process(self.name).unsuited(problem)
+        if problem.given.body.manufactured is not None:
+            return f"{self.name} is made for constant loads, and not for a manufactured motion"
+        return ""
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):

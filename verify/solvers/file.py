@@ -93,7 +93,11 @@ class _Column(NamedTuple):
 
 
 def read(file: str | Path) -> TrajectoryFile:
-    """The trajectory in a CSV, NPZ, Parquet or JSON file; raises Refused with every fault of it."""
+    """The trajectory in a CSV, NPZ, Parquet or JSON file.
+
+    Columns: ``t``; ``w1 w2 w3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3`` (scalar first) or
+    ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Raises Refused with every fault of it.
+    """
     path, faults = Path(file), Faults()
     columns = _named_once(_columns(path), str(file), faults)
     _refuse_unknown(columns, str(file), faults)

@@ -57,11 +57,6 @@ class Process(Solver):
     def command(self) -> list[str]:
         return shlex.split(self.name.removeprefix(PREFIX))
 
-    def unsuited(self, problem: Problem) -> str:
-        if problem.given.body.manufactured is not None:
-            return f"{self.name} is told of constant loads alone, and not of a manufactured motion"
-        return ""
-
     def solve(self, problem: Problem) -> Trajectory:
         asked = json.dumps(protocol.question(problem)).encode()
         began = perf_counter()

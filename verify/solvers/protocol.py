@@ -3,7 +3,7 @@
 The question is one JSON document on the program's standard input. Every key occurs once in it,
 whatever its table, so that a reader may search the text for ``"elapsed":`` and go on from there.
 
-    protocol             1; a later protocol has another number
+    protocol             1; 2 where there is `manufactured`, which a reader of 1 would not look for
     scene, title         the name of the scene and its title
     model                "euler" or "kirchhoff"
     track                what the scene asks besides omega or impulse: "attitude", "centre"
@@ -24,6 +24,10 @@ whatever its table, so that a reader may search the text for ``"elapsed":`` and 
       angular_impulse      y, body axes                          (kirchhoff)
       attitude             quaternion q0..q3, scalar first, body to space, of any length but zero
       centre               the body's origin, space axes         (kirchhoff)
+    manufactured         only where loads change with time: the motion z* that they are made for
+      frequencies          nu, one for each wave
+      cosines, sines       a row for each wave: of H* (euler), or of x* and y*, six numbers (kirchhoff)
+      constant_part        z* without its waves                  (its hex is rounded)
     time                 the same instants twice
       start                the time of the initial state         (its hex is rounded)
       elapsed              t - start, monotonic: integrate over these, from 0
@@ -33,6 +37,14 @@ Every number, vector or matrix is an object of two: ``text``, the exact value (a
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
 They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
 and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data.
+
+Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
+L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
+
+    z*(t) = constant_part + sum over the waves of cosine cos(nu t) + sine sin(nu t)
+          = start + sum over the waves of cosine (cos(nu t) - 1) + sine sin(nu t),
+
+t being the time since the start; H, or x and y, begin there. The second form has exact data alone.
 
 The answer is one JSON object on standard output, and the exit status 0: a list for every name in
 ``columns``, one entry for each instant.
@@ -65,7 +77,8 @@ from fractions import Fraction
 from typing import Any
 
 from verify.models.problem import Problem
-from verify.scenes.bodies import RigidBody
+from verify.scenes.bodies import Body, RigidBody
+from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.precision import Rung, hexadecimal, power_of_two
 from verify.scenes.table import exact_number
@@ -73,6 +86,8 @@ from verify.scenes.tensors import apply
 from verify.solvers.solver import columns
 
 VERSION = 1
+# A program that knows constant loads alone has to be able to tell.
+VERSION_WITH_WAVES = 2
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, and one.
 _TIME_ROUNDINGS = 4
@@ -124,7 +139,7 @@ def question(problem: Problem) -> dict[str, Any]:
     """The document that a program is asked with."""
     scene = problem.scene
     return {
-        "protocol": VERSION,
+        "protocol": VERSION if scene.body.manufactured is None else VERSION_WITH_WAVES,
         "scene": scene.name,
         "title": scene.title,
         "model": scene.model,
@@ -176,10 +191,24 @@ def _data(problem: Problem) -> dict[str, Any]:
                 "centre": initial.centre,
             },
         }
+    if body.manufactured is not None:
+        numbers["manufactured"] = _waves(body, body.manufactured)
     numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
     return {
         table: {key: _written(value, rung) for key, value in entries.items()}
         for table, entries in numbers.items()
+    }
+
+
+def _waves(body: Body, motion: Manufactured) -> dict[str, Any]:
+    """The motion of what a program integrates: of H = I omega, or of x and y as it stands."""
+    if isinstance(body, RigidBody):
+        motion = motion.mapped(body.inertia)
+    return {
+        "frequencies": [wave.frequency for wave in motion.waves],
+        "cosines": [wave.cosine for wave in motion.waves],
+        "sines": [wave.sine for wave in motion.waves],
+        "constant_part": motion.constant,
     }
 
 

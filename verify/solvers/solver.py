@@ -83,7 +83,11 @@ class Callback(Solver):
 
 
 def columns(problem: Problem) -> list[tuple[str, int]]:
-    """The quantities of a state row in their order, each with its number of columns."""
+    """The quantities of a state row in their order, each with its number of columns.
+
+    ``omega`` 3, or ``linear_impulse`` 3 and ``angular_impulse`` 3 (body axes); then ``quaternion`` 4
+    (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked.
+    """
     if problem.scene.model == "euler":
         layout = [("omega", 3)]
     else:

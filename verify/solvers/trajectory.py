@@ -114,6 +114,8 @@ def _names(problem: Problem) -> tuple[str, ...]:
 def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
     """The quantities of states in the problem's own form and units, formed exactly.
 
+    ``rows`` (n, states) stand in the order of ``problem.form.states``, a row for each sample.
+
     omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
     """
     columns = dict(zip(problem.form.states, zip(*rows, strict=True), strict=True))

@@ -148,6 +148,11 @@ def _stored_code() -> list[Case]:
     return [Case("what compiled code is stored under", plain.cache_key(), None, driver)]
 
 
+def _never_found() -> list[Case]:
+    found = f"{plain.stored_by(processes=3)} pieces of code on disk"
+    return [Case("one system in MPFR, compiled by three processes", found, None, "none")]
+
+
 OUTCOMES: Final = (
     Trap(
         "T9",
@@ -279,5 +284,16 @@ OUTCOMES: Final = (
         documented="heyoka.py detected that ode_sys contains one parameter, and set its value to "
         "zero",
         where="notebooks/ODEs%20with%20parameters.html",
+    ),
+    Trap(
+        "S14",
+        "stored code for MPFR numbers is never found again",
+        (plain.stored_by,),
+        _never_found,
+        "compiles one system in several processes with the cache on disk; each stores it anew, under "
+        "a key that addresses enter, and whoever next opens the cache reads all of it",
+        "stores no code for MPFR numbers, and opens the cache once in a process",
+        Cause.FAULT,
+        script="real_is_never_found",
     ),
 )

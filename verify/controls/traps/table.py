@@ -11,7 +11,7 @@ from verify.controls.traps.numbers import NUMBERS
 from verify.controls.traps.outcomes import OUTCOMES
 from verify.controls.traps.trap import Trap
 from verify.judge.gates import FACTOR
-from verify.judge.provenance import versions
+from verify.judge.provenance import command, processor, versions
 
 
 def _place(trap: Trap) -> tuple[str, int, str]:
@@ -33,4 +33,5 @@ def document(
         if finished is not None:
             finished(trap.title)
     known = {package: found for package, found in versions().items() if package != "python"}
-    return {"versions": known, "factor": FACTOR, "traps": rows}
+    machine = {"processor": processor(), "command": command()}
+    return {"versions": known, "machine": machine, "factor": FACTOR, "traps": rows}

@@ -193,6 +193,7 @@ int main(int arguments, char **argument)
     if (!(longest > 0)) fail("expected a positive step");
 
     char *scene = all_of_stdin();
+    if (strstr(scene, "\"manufactured\":")) fail("expected constant loads, got a manufactured motion");
     is_euler = has(scene, "model", "euler", ',');
     if (is_euler) {
         read_numbers(scene, "inverse_inertia", K, 9);

@@ -14,6 +14,7 @@ H  angular momentum   K  inverse inertia    M     moment            omega = K H
 x  linear impulse     y  angular impulse    A B C  T = x.A x/2 + x.B y + y.C y/2
 U = A x + B y         Omega = B^T x + C y   X L   force and couple  all in body axes
 q  attitude, scalar first, body to space    c     centre, in space axes
+z* the motion H*, or x* and y*, that loads which change with time are made for (rk4.c knows none)
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from collections.abc import Callable
 from typing import Any
 
 Vector = list[float]
-Rates = Callable[[Vector], Vector]
+Rates = Callable[[float, Vector], Vector]
 
 
 def floats(number: Any) -> Any:
@@ -71,43 +72,89 @@ def to_space(q: Vector, v: Vector) -> Vector:
     return [v[i] + 2 * turned[i] for i in range(3)]
 
 
-def euler(body: Any) -> Rates:
+def free_euler(body: Any) -> Callable[[Vector], Vector]:
+    """H x K H."""
+    K = floats(body["inverse_inertia"])
+    return lambda H: cross(H, apply(K, H))
+
+
+def euler(body: Any, load: Callable[[float], Vector]) -> Rates:
     """H' = H x K H + M; the state is H, q."""
-    K, M = floats(body["inverse_inertia"]), floats(body["moment"])
+    K, M, free = floats(body["inverse_inertia"]), floats(body["moment"]), free_euler(body)
 
-    def rates(state: Vector) -> Vector:
+    def rates(t: float, state: Vector) -> Vector:
         H, q = state[:3], state[3:7]
-        w = apply(K, H)
-        return add(cross(H, w), M) + attitude_rate(q, w)
+        return add(free(H), M, load(t)) + attitude_rate(q, apply(K, H))
 
     return rates
 
 
-def kirchhoff(body: Any) -> Rates:
-    """x' = x x Omega + X, y' = y x Omega + x x U + L, c' = R U; the state is x, y, q, c."""
+def velocities(body: Any) -> Callable[[Vector], tuple[Vector, Vector]]:
+    """U and Omega of x and y."""
     A, B, C = floats(body["linear"]), floats(body["coupling"]), floats(body["angular"])
-    X, L, B_transposed = floats(body["force"]), floats(body["couple"]), transpose(B)
+    B_transposed = transpose(B)
 
-    def rates(state: Vector) -> Vector:
-        x, y, q = state[:3], state[3:6], state[6:10]
-        U = add(apply(A, x), apply(B, y))
-        w = add(apply(B_transposed, x), apply(C, y))
-        x_rate, y_rate = add(cross(x, w), X), add(cross(y, w), cross(x, U), L)
-        return x_rate + y_rate + attitude_rate(q, w) + to_space(q, U)
+    def found(impulses: Vector) -> tuple[Vector, Vector]:
+        x, y = impulses[:3], impulses[3:]
+        return add(apply(A, x), apply(B, y)), add(apply(B_transposed, x), apply(C, y))
+
+    return found
+
+
+def free_kirchhoff(body: Any) -> Callable[[Vector], Vector]:
+    """x x Omega, and y x Omega + x x U."""
+    velocity = velocities(body)
+
+    def free(impulses: Vector) -> Vector:
+        x, y = impulses[:3], impulses[3:]
+        U, w = velocity(impulses)
+        return cross(x, w) + add(cross(y, w), cross(x, U))
+
+    return free
+
+
+def kirchhoff(body: Any, load: Callable[[float], Vector]) -> Rates:
+    """x' = x x Omega + X, y' = y x Omega + x x U + L, c' = R U; the state is x, y, q, c."""
+    loads = floats(body["force"]) + floats(body["couple"])
+    free, velocity = free_kirchhoff(body), velocities(body)
+
+    def rates(t: float, state: Vector) -> Vector:
+        q = state[6:10]
+        U, w = velocity(state[:6])
+        return add(free(state[:6]), loads, load(t)) + attitude_rate(q, w) + to_space(q, U)
 
     return rates
 
 
-def step(rates: Rates, state: Vector, h: float) -> Vector:
+def loads_of(
+    motion: Any, start: Vector, free: Callable[[Vector], Vector]
+) -> Callable[[float], Vector]:
+    """z*' less the free rates at z*: M, or X and L; zero of a scene whose loads are constant."""
+    if motion is None:
+        return lambda t: [0.0] * len(start)
+    waves = [floats(motion[key]) for key in ("frequencies", "cosines", "sines")]
+
+    def load(t: float) -> Vector:
+        z, rate = start, [0.0] * len(start)
+        for nu, a, b in zip(*waves, strict=True):
+            c, s = math.cos(nu * t), math.sin(nu * t)
+            z = [v + p * (c - 1) + r * s for v, p, r in zip(z, a, b, strict=True)]
+            rate = [v + nu * (r * c - p * s) for v, p, r in zip(rate, a, b, strict=True)]
+        return [v - f for v, f in zip(rate, free(z), strict=True)]
+
+    return load
+
+
+def step(rates: Rates, t: float, state: Vector, h: float) -> Vector:
     """One step of the classical Runge-Kutta method."""
 
     def moved(k: Vector, by: float) -> Vector:
         return [s + by * r for s, r in zip(state, k, strict=True)]
 
-    k1 = rates(state)
-    k2 = rates(moved(k1, h / 2))
-    k3 = rates(moved(k2, h / 2))
-    k4 = rates(moved(k3, h))
+    k1 = rates(t, state)
+    k2 = rates(t + h / 2, moved(k1, h / 2))
+    k3 = rates(t + h / 2, moved(k2, h / 2))
+    k4 = rates(t + h, moved(k3, h))
     slopes = zip(state, k1, k2, k3, k4, strict=True)
     return [s + h / 6 * (a + 2 * b + 2 * c + d) for s, a, b, c, d in slopes]
 
@@ -122,20 +169,23 @@ def main() -> None:
     length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     q = [entry / length for entry in q]
     if scene["model"] == "euler":
-        rates, names = euler(body), ["w1", "w2", "w3", "q0", "q1", "q2", "q3"]
-        state = floats(initial["angular_momentum"]) + q
+        names = ["w1", "w2", "w3", "q0", "q1", "q2", "q3"]
+        start = floats(initial["angular_momentum"])
+        rates = euler(body, loads_of(scene.get("manufactured"), start, free_euler(body)))
+        state = start + q
     else:
-        rates = kirchhoff(body)
         names = ["x1", "x2", "x3", "y1", "y2", "y3", "q0", "q1", "q2", "q3", "c1", "c2", "c3"]
-        state = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
-        state += q + floats(initial["centre"])
+        start = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
+        rates = kirchhoff(body, loads_of(scene.get("manufactured"), start, free_kirchhoff(body)))
+        state = start + q + floats(initial["centre"])
 
     rows, steps, now = [], 0, 0.0
     for instant in floats(time["elapsed"]):
         # Whole steps of equal length from sample to sample, so that none is interpolated.
         count = math.ceil(abs(instant - now) / longest)
-        for _ in range(count):
-            state = step(rates, state, (instant - now) / count)
+        h = (instant - now) / count if count else 0.0
+        for k in range(count):
+            state = step(rates, now + k * h, state, h)
         steps, now = steps + count, instant
         if scene["model"] == "euler":
             rows.append(apply(floats(body["inverse_inertia"]), state[:3]) + state[3:])

@@ -12,12 +12,15 @@ import hashlib
 import os
 import platform
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import heyoka as hy
 from platformdirs import user_cache_path
 
 _SQLITE = b"SQLite format 3\0"
+# In bytes. The standard set fills a tenth of it; what a process pays to open it grows with its size.
+_LARGEST_CACHE = 2**30
 
 
 def use_own_cache() -> None:
@@ -30,11 +33,30 @@ def use_own_cache() -> None:
     base = os.environ.get("HEYOKA_CACHE_DIR")
     parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
     folder = parent / processor_key()
+    # Not said twice: heyoka reads the whole database whenever it is told where it lies.
+    if hy.llvm_state.get_diskcache_enabled() and hy.llvm_state.get_diskcache_path() == folder:
+        return
     if _is_writable(folder):
         _remove_if_broken(folder / "cache.db")
         hy.llvm_state.set_diskcache_path(str(folder))
+        hy.llvm_state.set_diskcache_limit(_LARGEST_CACHE)
     else:
         hy.llvm_state.set_diskcache_enabled(False)
+
+
+@contextlib.contextmanager
+def unstored() -> Iterator[None]:
+    """Inside, heyoka stores nothing.
+
+    For MPFR numbers: their compiled code is stored under a key that depends on where the process has
+    its memory, so that it is never found again, and the database would grow with every run.
+    """
+    enabled = hy.llvm_state.get_diskcache_enabled()
+    hy.llvm_state.set_diskcache_enabled(False)
+    try:
+        yield
+    finally:
+        hy.llvm_state.set_diskcache_enabled(enabled)
 
 
 def processor_key() -> str:

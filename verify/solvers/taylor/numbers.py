@@ -29,7 +29,8 @@ class Arithmetic:
     """One rung's numbers in heyoka: its fp_type, and conversions that round nothing.
 
     ``number`` makes one of a rational, ``scaled`` of a significand and an exponent of two; ``double``
-    rounds a double to nearest where the rung is the narrower. ``exact`` leads back.
+    rounds a double to nearest where the rung is the narrower. ``exact`` leads back. Code for it
+    that is stored on disk is found again by another process if ``is_found_again``.
     """
 
     fp_type: Any
@@ -38,6 +39,7 @@ class Arithmetic:
     compact: bool
     scaled: Callable[[int, int], Any]
     double: Callable[[float], Any]
+    is_found_again: bool = True
 
     def array(self, values: Iterable[Fraction]) -> np.ndarray[Any, Any]:
         return np.array([self.number(value) for value in values], dtype=self.fp_type)
@@ -91,6 +93,7 @@ def arithmetic(rung: Rung) -> Arithmetic:
         compact=True,
         scaled=lambda m, e: _scaled(m, e, bits),
         double=lambda v: hy.real(v, bits),
+        is_found_again=False,
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import signal
 import sqlite3
+import subprocess
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -81,6 +83,28 @@ def cache_key() -> str:
         finally:
             hy.llvm_state.set_diskcache_path(before)
             hy.llvm_state.set_diskcache_enabled(enabled)
+
+
+def stored_by(processes: int) -> int:
+    """How many pieces of code these processes leave on disk, each compiling one system in MPFR."""
+    with TemporaryDirectory() as folder:
+        for _ in range(processes):
+            subprocess.run([sys.executable, "-c", _IN_MPFR, folder], check=True)
+        connection = sqlite3.connect(Path(folder, "cache.db"))
+        try:
+            ((count,),) = connection.execute("SELECT count(*) FROM cache")
+        finally:
+            connection.close()
+    return int(count)
+
+
+_IN_MPFR = """
+import sys
+import heyoka as hy
+hy.llvm_state.set_diskcache_path(sys.argv[1])
+x, one = hy.make_vars("x"), hy.real(1, 237)
+hy.taylor_adaptive([(x, -x)], [one], time=0 * one, fp_type=hy.real, compact_mode=True)
+"""
 
 
 def stored_key(database: Path) -> str:
