@@ -13,6 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import libmp, mp
+from samples import CLEBSCH, TENSOR, vector
+from samples import LOADED as SOLID
 
 from verify.controls.traps.measured import free
 from verify.exact import gathering
@@ -22,6 +24,7 @@ from verify.exact.inputs import momentum
 from verify.exact.route import solution
 from verify.exact.taylor import TaylorSolution
 from verify.exact.variation import stepped
+from verify.judge import attainable
 from verify.judge.attainable import Floor, floor
 from verify.judge.errors import state_errors
 from verify.judge.judgement import judgement
@@ -30,12 +33,12 @@ from verify.judge.verdict import Status, Verdict
 from verify.models.problem import adopt
 from verify.run import run
 from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
 from verify.scenes.precision import power_of_two, rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from verify.scenes.tensors import Vector
 from verify.solvers.taylor.plain.body import Plain
 
 Array = np.ndarray[Any, Any]
@@ -44,19 +47,6 @@ U = 2.0**-53
 RATE = 3**-0.5
 
 
-def vector(*entries: float | str) -> Vector:
-    return tuple(Fraction(str(entry)) for entry in entries)
-
-
-TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
-GENERAL = ImmersedBody(
-    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
-    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
-    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
-    force=vector("0.1", "0.05", "-0.1"),
-    couple=vector("0.02", "-0.1", "0.05"),
-)
-CLEBSCH = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5")).body()
 IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), centre=vector(1, 2, 3))
 
 
@@ -69,7 +59,7 @@ def scene(
 
 
 RIGID = scene(RigidBody(TENSOR), Spin(vector("0.3", 1, "0.2")), 4, 5, "attitude")
-LOADED = scene(GENERAL, IMPULSE, 4, 5, "attitude", "centre")
+LOADED = scene(SOLID, IMPULSE, 4, 5, "attitude", "centre")
 REVOLVED = scene(CLEBSCH, IMPULSE, 4, 5, "attitude", "centre")
 
 
@@ -332,6 +322,39 @@ def test_floor_does_not_depend_on_where_the_samples_lie() -> None:
         # Roundings are gathered at other times, radian by radian: within a factor of two.
         assert 0.5 <= middle / found[161][80] <= 2
         assert 0.5 <= end / found[161][160] <= 2
+
+
+def in_step(samples: int) -> Scene:
+    """Moments a million apart and near the separatrix: samples at 7.504 periods see one phase of it."""
+    moments = (Fraction(1, 10**6), Fraction(19, 20), Fraction(1))
+    inertia = tuple(tuple(I * (i == j) for j in range(3)) for i, I in enumerate(moments))
+    spin = Spin((Fraction(0), Fraction(1), Fraction(1, 10)))
+    times = tuple(Fraction(20 * k, samples - 1) for k in range(samples))
+    plain = free("in step", (0.0, 1.0, 0.0), 20.0, 3)
+    return replace(plain, body=RigidBody(inertia), initial=spin, clock=Clock(Fraction(0), times))
+
+
+def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Samples that meet a motion in one phase find the floor that every radian has; alone, a tenth."""
+    asked = in_step(41)
+    found = _floor(asked, 14505)
+    monkeypatch.setattr(gathering, "_few", lambda elapsed: list(elapsed))
+    alone = _floor_again(asked, 14505)
+    monkeypatch.setattr(gathering, "_REGULAR", 0)
+    resolved = _floor_again(asked, 14505)
+    # A few dozen times stand for a thousand whose parts differ a hundredfold: within the gates' factor.
+    assert (found[1:] >= 0.2 * resolved[1:]).all()
+    assert (found[1:] <= 10 * resolved[1:]).all()
+    assert (alone[1:] <= 0.3 * resolved[1:]).all()
+
+
+def _floor_again(asked: Scene, steps: int) -> Array:
+    """The floor without what is remembered of the orbit, before and after."""
+    attainable._orbit.cache_clear()
+    try:
+        return _floor(asked, steps)
+    finally:
+        attainable._orbit.cache_clear()
 
 
 @pytest.mark.parametrize("samples", [3, 12, 41])

@@ -49,19 +49,8 @@ def test_every_place_of_a_cube_is_a_scene(family: Family, data: st.DataObject) -
     assert replace(family.scene(place), name=scene.name) == scene
 
 
-# Found by this search and not explained yet: with one moment a millionth of the others, omega is off by
-# up to forty times what is attainable, where ten are allowed.
-OPEN = pytest.mark.xfail(reason="moments 1e-6 apart: the driver or the floor is wrong by a factor")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "family",
-    [
-        pytest.param(f, id=f.name, marks=[OPEN] if f.name == "euler-ratios" else [])
-        for f in FAMILIES
-    ],
-)
+@EACH_FAMILY
 @given(st.data())
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 def test_searched_for_the_worst_the_sound_driver_passes(

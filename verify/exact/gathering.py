@@ -38,8 +38,11 @@ from verify.scenes.scene import Scene
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# On a regular orbit what is injected at any time grows alike, and so many times stand for all.
-_FEW: Final = 41
+# On a regular orbit what is injected at any time grows alike, and so many samples stand for all,
+_FEW: Final = 33
+# if there are so many times beside them that no period shares: samples may meet the orbit in one phase.
+_BETWEEN: Final = 20
+_GOLDEN: Final = Fraction(0.6180339887498949)
 # A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
 # motion: it matters then at which moments of it an error is made, and where it is looked at.
 _REGULAR: Final = 8.0
@@ -106,7 +109,8 @@ def path(scene: Scene) -> Path:
 def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
     exact = solution(scene)
     # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
-    if exact.route == "taylor" or scene.body.manufactured is not None:
+    is_recursive = exact.route == "taylor" or scene.body.manufactured is not None
+    if is_recursive or exact.by_quadrature:
         found = _stepped(scene, points)
         if found is not None:
             return found
@@ -140,9 +144,16 @@ def _sharp(scene: Scene, points: Sequence[Fraction], least: int = 0) -> _ByDiffe
 
 
 def _few(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Evenly chosen samples, and as many times that owe nothing to the samples."""
-    even = [elapsed[-1] * Fraction(k, _FEW - 1) for k in range(_FEW)]
-    return _sorted([*chosen(elapsed, _FEW), *(even if len(elapsed) < _FEW else even[:1])])
+    """Evenly chosen samples, and times that owe nothing to them: few samples leave more to these.
+
+    In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
+    which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.
+    """
+    samples = [Fraction(0), *chosen(elapsed, _FEW)]
+    parts = max(_BETWEEN, _FEW - len(elapsed))
+    between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
+    first = next(t for t in samples if t)
+    return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
 
 
 def _many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
