@@ -6,7 +6,7 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all bench reports tradeoff check-reports lint clean
+.PHONY: help verify verify-all test test-all docs site test-site bench reports tradeoff check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -27,14 +27,32 @@ test: lint  ## Check style and types, then run all but the slow tests
 test-all: lint  ## The same with the slow tests
 	@$(BIN)/python -m pytest -n 2
 
+docs: $(INSTALLED)  ## Build the pages of docs into docs/_build/html; a warning is an error
+	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo 'docs/_build/html/index.html'
+
+site: $(INSTALLED)  ## Make static pages of what is published, into reports/site
+	@$(BIN)/taylor-verify publish --site reports/site > /dev/null
+	@echo 'reports/site/index.html'
+
+# A test that could not be run is a test that failed: without a browser this ends in an error.
+test-site: site  ## Look at those pages in a browser without a window (Debian: installs chromium)
+	@command -v chromium > /dev/null && command -v chromedriver > /dev/null || \
+		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
+	@$(BIN)/python -m pytest -m browser tests/site
+
 bench: $(INSTALLED)  ## Time the exact solutions, in ratios within one run
 	@$(BIN)/python tests/bench.py
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish --controls > /dev/null
+	@$(BIN)/taylor-verify publish --extremes > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish --reference > /dev/null
+	@$(BIN)/taylor-verify publish --portraits > /dev/null
+	@$(BIN)/taylor-verify publish --gallery > /dev/null
 	@$(BIN)/taylor-verify publish --claims > /dev/null
+	@$(BIN)/taylor-verify publish --paper > /dev/null
 
 # Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
 tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)
@@ -50,7 +68,7 @@ lint: $(INSTALLED)  ## Check style and types only
 	@$(BIN)/mypy
 
 clean:  ## Remove the environment, the caches and the local reports
-	rm -rf .venv .hypothesis .mypy_cache .pytest_cache .ruff_cache dist reports/local reports/site
+	rm -rf .venv .hypothesis .mypy_cache .pytest_cache .ruff_cache dist docs/_build reports/local reports/site
 	find verify tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The stamp is written last: an environment that was only half made has none, and is made again.

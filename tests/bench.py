@@ -20,14 +20,17 @@ from importlib.metadata import version
 from pathlib import Path
 from unittest.mock import patch
 
+from mpmath import mpf
+
 from verify.exact.elements import elements
 from verify.exact.route import solution
 from verify.exact.sensitivity import sensitivity
-from verify.exact.solution import Solution
+from verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
 from verify.models.problem import pose
 from verify.scenes.instants import EquallySpaced
+from verify.scenes.library import EXTREMES, STANDARD_SET, WORST, names
 from verify.scenes.motion import Clock
-from verify.scenes.precision import rung
+from verify.scenes.precision import exact_value, rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.taylor import driver
@@ -37,6 +40,7 @@ ROUNDS = 5
 FEW_TIMES, FEW_DIGITS = 40, 50
 MANY_TIMES, MANY_DIGITS, MANY_ROUNDS = 10_000, 40, 3
 SENSITIVE_TIMES, SENSITIVE_DIGITS = 10, 15
+PERIODS, PERIOD_DIGITS = 10**9, 60
 # One of every elliptic regime, and a body beside its separatrix.
 ELLIPTIC = (
     "euler/with-attitude",
@@ -161,6 +165,33 @@ def derivatives(name: str) -> None:
     print(line(name, f"{every.best:.2f}", f"{every.median:.2f}", f"{every.best / once.best:.1f}"))
 
 
+def after_a_billion_periods(names_of: Sequence[str]) -> None:
+    """The widest proven radius and the longest computation of all scenes that have a closed form.
+
+    Each with all that it tracks; where nothing recurs, after as many units of time.
+    """
+    radii: list[tuple[mpf, str]] = []
+    seconds: list[tuple[float, str]] = []
+    undecided: list[str] = []
+    for name in names_of:
+        scene = load(name)
+        exact = solution(scene)
+        if exact.regime == NO_CLOSED_FORM:
+            continue
+        orbit = elements(scene, PERIOD_DIGITS)
+        period = exact_value(orbit["period"].value) if "period" in orbit else Fraction(1)
+        begin = time.process_time()
+        try:
+            radii.append((exact.motion([PERIODS * period], MANY_DIGITS).radius[0], name))
+        except Unsettled:
+            undecided.append(name)
+        seconds.append((time.process_time() - begin, name))
+    widest, slowest = max(radii), max(seconds)
+    print(f"{len(radii)} scenes proven, {len(undecided)} undecided {' '.join(undecided)}")
+    print(f"widest radius {float(widest[0]):.1e} ({widest[1]})")
+    print(f"longest computation {1e3 * slowest[0]:.0f} ms ({slowest[1]})")
+
+
 # The suite around the integrator.
 
 
@@ -239,6 +270,11 @@ def main() -> None:
     print(line("", "seconds", "median", "set-up, ms", "a time, ms"))
     for name in WHOLE:
         many_times(name)
+
+    print(
+        f"\nRadius relative to each vector after {PERIODS:.0e} periods, {MANY_DIGITS} digits asked for."
+    )
+    after_a_billion_periods(names(*STANDARD_SET, EXTREMES, WORST))
 
     print(f"\nWhat the suite adds to a propagation of {SAMPLES:,} samples, once compiled.")
     print(line("", "inside, ms", "added", "best", "steps", "exact, ms"))

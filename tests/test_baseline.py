@@ -321,7 +321,9 @@ def test_a_baseline_of_nothing_that_was_run_is_undecided(baseline: Path, capsys:
     for index in range(6):
         spoil(baseline, index, solver="process:./other")
     assert main(["run", "euler/generic", "--baseline", str(baseline)]) == 3
-    assert "nothing of the baseline was run again" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "nothing of the baseline was run again" in told
+    assert "its solver is `process:./other`, and this run's is `taylor`" in told
 
 
 def test_a_baseline_excuses_no_failure(

@@ -266,6 +266,33 @@ def test_numbers_cut_off_in_printing_are_told(tmp_path: Path) -> None:
     assert not any("digits" in note for note in sound.notes)
 
 
+def test_storing_as_float32_is_told(tmp_path: Path) -> None:
+    """A float64 run that was stored as float32 fails on f64, and the note says why; sound ones do not."""
+    columns = exact_columns(SCENE)
+    stored = {n: v if n == "t" else [float(np.float32(x)) for x in v] for n, v in columns.items()}
+    file = write_csv(tmp_path / "mine.csv", stored)
+    found = judged(file, SCENE)
+    assert rows(found)["omega"].verdict is Status.FAIL
+    assert any("every number is one of float32, where f64 has 53" in note for note in found.notes)
+    # One number of float64 is enough: then it is another fault.
+    stored["w2"][3] = math.nextafter(stored["w2"][3], 1.0)
+    other = checked(tmp_path, SCENE, stored)
+    assert rows(other)["omega"].verdict is Status.FAIL
+    assert not any("float32" in note for note in other.notes)
+
+
+def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
+    """What there is is judged, and the note says where the rest begins, also of a motion backwards."""
+    for scene in (SCENE, "euler/backward"):
+        whole = exact_columns(scene)
+        half = {name: values[: len(values) // 2] for name, values in whole.items()}
+        found = checked(tmp_path, scene, half)
+        assert all_pass(found)
+        said = f"the last row is at t = {half['t'][-1]:g}, and the scene ends at t = "
+        assert any(said in note for note in found.notes)
+        assert not any("last row" in note for note in checked(tmp_path, scene, whole).notes)
+
+
 def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
     """Numbers of float32 are no float64 answer; as f32 arithmetic they are sound."""
     scene = load("euler/generic")

@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import LISTED_INSTANTS
 
 from verify.cli import main
 from verify.judge.verdict import Status, Verdict, exit_status
@@ -34,16 +35,6 @@ SCHEMA = json.loads(
 )
 ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
 EXAMPLE = ROOT / ".github" / "workflows" / "example.yml"
-SHORT = """
-title = "A short motion"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, "0.4", "0.3"]
-[time]
-at = ["0.5", 1, 2]
-"""
 
 Captured = pytest.CaptureFixture[str]
 
@@ -474,7 +465,7 @@ def short(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A scene file that is judged in a moment, in the working folder."""
     monkeypatch.chdir(tmp_path)
     file = Path("short.toml")
-    file.write_text(SHORT, encoding="utf-8")
+    file.write_text(LISTED_INSTANTS, encoding="utf-8")
     return file
 
 
@@ -482,7 +473,7 @@ def test_the_document_of_run_is_of_the_published_schema(short: Path, capsys: Cap
     """With a baseline, on a rung that is there and on one that cannot hold the scene."""
     # Two instants that float32 cannot tell apart.
     close = Path("close.toml")
-    close.write_text(SHORT.replace('["0.5"', '["0.5", "0.50000000001"'), encoding="utf-8")
+    close.write_text(LISTED_INSTANTS.replace('["0.5"', '["0.5", "0.50000000001"'), encoding="utf-8")
     assert main(["run", str(short), "--json"]) == 0
     printed = capsys.readouterr().out
     assert violations(json.loads(printed), SCHEMA) == []

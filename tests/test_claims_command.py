@@ -106,8 +106,9 @@ def test_the_page_has_the_errata_in_front() -> None:
 
 
 def test_the_page_is_put_in_place(tmp_path: Path) -> None:
-    """One file, claims.md, in the folder given."""
-    assert write(tmp_path / "new", ROWS, CITED) == [tmp_path / "new" / "claims.md"]
+    """The rows, the page and its sheet, in the folder given."""
+    names = ("data/claims.json", "claims.md", "tables/claims.csv")
+    assert write(tmp_path / "new", ROWS, CITED) == [tmp_path / "new" / name for name in names]
 
 
 def test_a_ledger_that_lost_a_verdict_is_not_published(

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp
+from samples import LISTED_INSTANTS
 
 import verify
 from verify.cli import main, verbs
@@ -31,18 +32,8 @@ from verify.solvers import registry
 ROOT = Path(verify.__file__).resolve().parents[1]
 GENERIC = library.cases_directory() / "euler" / "generic.toml"
 REFUSED = sorted((library.cases_directory() / "refused").glob("*.toml"))
-SHORT = """
-title = "A short motion"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, "0.4", "0.3"]
-[time]
-at = ["0.5", 1, 2]
-"""
 # Two instants that no double tells apart.
-TOO_CLOSE = SHORT.replace('["0.5", 1, 2]', '[1, "1.000000000000000000000001"]')
+TOO_CLOSE = LISTED_INSTANTS.replace('["0.5", 1, 2]', '[1, "1.000000000000000000000001"]')
 
 Captured = pytest.CaptureFixture[str]
 
@@ -51,7 +42,7 @@ Captured = pytest.CaptureFixture[str]
 def short(tmp_path: Path) -> Path:
     """A scene file that is judged in a moment."""
     file = tmp_path / "short.toml"
-    file.write_text(SHORT)
+    file.write_text(LISTED_INSTANTS)
     return file
 
 
@@ -255,7 +246,7 @@ def test_names_are_shown_as_they_are(capsys: Captured, tmp_path: Path) -> None:
     folder = tmp_path / "a [bold]folder"
     folder.mkdir()
     file = folder / ":smile: x.toml"
-    file.write_text(SHORT)
+    file.write_text(LISTED_INSTANTS)
     for arguments in (["run"], ["exact", "--at", "1"], ["explain"]):
         assert main([arguments[0], str(file), *arguments[1:]]) == 0
         assert str(file) in capsys.readouterr().out

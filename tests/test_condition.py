@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import libmp, mp, mpf
+from samples import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
 
 from verify.exact import condition
 from verify.exact.condition import Derivatives, derivatives, transition
 from verify.exact.route import solution
 from verify.exact.taylor import TaylorSolution
 from verify.exact.variation import transition_table
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import (
@@ -32,24 +33,6 @@ from verify.scenes.tensors import (
 Array = np.ndarray[Any, Any]
 
 
-def vector(*entries: float | str) -> Vector:
-    """Exact numbers from their decimal text."""
-    return tuple(Fraction(str(entry)) for entry in entries)
-
-
-TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
-GENERAL = ImmersedBody(
-    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
-    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
-    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
-    force=vector("0.1", "0.05", "-0.1"),
-    couple=vector("0.02", "-0.1", "0.05"),
-)
-CLEBSCH = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5")).body()
-QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
-SPIN = Spin(vector("0.3", 1, "0.2"), QUATERNION)
-IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
-
 EULER_BLOCKS = ("momentum", "attitude")
 KIRCHHOFF_BLOCKS = ("linear_impulse", "angular_impulse", "attitude", "centre")
 
@@ -63,8 +46,8 @@ def scene(
     return Scene("test", "test", model, frozenset(track), body, initial, clock)
 
 
-LOADED_EULER = scene(RigidBody(TENSOR, vector("0.1", "-0.2", "0.05")), "attitude")
-LOADED_KIRCHHOFF = scene(GENERAL, "attitude", "centre")
+LOADED_EULER = scene(RigidBody(TENSOR, MOMENT), "attitude")
+LOADED_KIRCHHOFF = scene(LOADED, "attitude", "centre")
 
 
 def times(*entries: float | str) -> list[Fraction]:

@@ -234,6 +234,14 @@ def test_attitude_by_one_exponential_of_averaged_velocities_is_second_order(
     assert attitude.order == pytest.approx(2, abs=0.25)
 
 
+def test_printed_it_is_read_at_a_glance(averaged: Sweep) -> None:
+    """The orders in a line, and below a line for every quantity with its reason."""
+    first, *rest = str(averaged).splitlines()
+    assert first == averaged.reason
+    told = [(line.split()[0], line.split(maxsplit=1)[1]) for line in rest]
+    assert told == [(name, found.reason) for name, found in averaged.quantities.items()]
+
+
 def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
     """Of the conserved quantities those in body axes are of omega's order; H in space is not."""
     orders = {name: found.order for name, found in averaged.quantities.items()}

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from samples import THREE_INSTANTS
 
 from verify.models.problem import Problem, pose
 from verify.scenes.precision import rung
@@ -23,21 +24,9 @@ from verify.solvers.environment import Environment, NotMade, metadata
 from verify.solvers.registry import check_name, solver_named
 from verify.solvers.trajectory import Outcome
 
-SHORT = """
-title = "Three instants"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 2
-samples = 3
-"""
-
 
 def problem(on: str = "f64") -> Problem:
-    return pose(read(SHORT, "short"), rung(on))
+    return pose(read(THREE_INSTANTS, "short"), rung(on))
 
 
 # An environment, made for a script that needs nothing.

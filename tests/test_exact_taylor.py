@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import libmp, mp, mpf
+from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
 from verify.exact.route import solution
 from verify.exact.solution import SETTLING_STEP_DIGITS, Unsettled
@@ -20,24 +21,6 @@ from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
-
-
-def vector(*entries: float | str) -> Vector:
-    """Exact numbers from their decimal text."""
-    return tuple(Fraction(str(entry)) for entry in entries)
-
-
-TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
-MOMENT = vector("0.1", "-0.2", "0.05")
-FORCE, COUPLE = vector("0.1", "0.05", "-0.1"), vector("0.02", "-0.1", "0.05")
-GENERAL = ImmersedBody(
-    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
-    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
-    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
-)
-LOADED = replace(GENERAL, force=FORCE, couple=COUPLE)
-OMEGA = vector("0.3", 1, "0.2")
-QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
 
 
 def euler(body: RigidBody, *track: str, omega: Vector = OMEGA) -> Scene:

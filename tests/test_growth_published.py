@@ -140,7 +140,8 @@ def test_publish_writes_data_picture_and_page(
     assert all(file.stat().st_size for file in written)
     assert not list((tmp_path / "local" / "growth").glob("*.json"))
     page = (tmp_path / pages.PAGE).read_text(encoding="utf-8")
-    assert pages.pages(tmp_path) == {pages.PAGE: page}
+    sheet = (tmp_path / pages.SHEET).read_text(encoding="utf-8")
+    assert pages.pages(tmp_path) == {pages.PAGE: page, pages.SHEET: sheet}
     assert "euler/about-max-axis on f64, taylor" in page
     assert "](../figures/" in page
     # The long ensemble stands beside the others, and leaves them as they are.

@@ -10,34 +10,25 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import libmp, mp, mpf
+from samples import (
+    CLEBSCH,
+    COUPLE,
+    FORCE,
+    GENERAL,
+    IMPULSE,
+    MOMENT,
+    SPIN,
+    TENSOR,
+    vector,
+)
 
 from verify.exact.invariants import Invariant, invariants
 from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
 
 Array = np.ndarray[Any, Any]
-
-
-def vector(*entries: float | str) -> Vector:
-    """Exact numbers from their decimal text."""
-    return tuple(Fraction(str(entry)) for entry in entries)
-
-
-TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
-MOMENT = vector("0.1", "-0.2", "0.05")
-FORCE, COUPLE = vector("0.1", "0.05", "-0.1"), vector("0.02", "-0.1", "0.05")
-GENERAL = ImmersedBody(
-    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
-    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
-    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
-)
-CLEBSCH = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5")).body()
-QUATERNION = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
-SPIN = Spin(vector("0.3", 1, "0.2"), QUATERNION)
-IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
 
 
 def scene(

@@ -17,7 +17,7 @@ from verify.exact.rates import rates
 from verify.exact.route import solution
 from verify.exact.sensitivity import sensitivity
 from verify.exact.solution import NoClosedForm
-from verify.exact.taylor import TaylorSolution, arcs
+from verify.exact.taylor import TaylorSolution
 from verify.judge.verdict import Status
 from verify.models import euler
 from verify.models.algebra import add, apply, cross
@@ -25,7 +25,7 @@ from verify.models.euler import heinbockel_moment, momentum_rate
 from verify.models.form import Equations, Named, euler_equations, kirchhoff_equations, labelled
 from verify.models.kirchhoff import velocities
 from verify.models.manufactured import Loaded
-from verify.models.problem import NotRepresentable, Problem, adopt, pose
+from verify.models.problem import Problem, pose
 from verify.run import run
 from verify.scenes import library
 from verify.scenes.bodies import ImmersedBody, RigidBody
@@ -378,18 +378,13 @@ def test_there_are_four_scenes_of_each_model() -> None:
     assert all(all(entry for row in body.energy_matrix for entry in row) for body in immersed)
 
 
-@pytest.mark.parametrize("solver", ["process:true", "geometric:lie-rk4?step=0.1"])
+@pytest.mark.parametrize("solver", ["outside:cvode-bdf", "geometric:lie-rk4?step=0.1"])
 def test_who_is_not_told_of_the_loads_is_not_asked(solver: str) -> None:
     """A solver that would answer for another problem is unavailable, and not wrong."""
     assert run(EULER, solver_named(solver), "f64").verdicts[0].verdict is Status.UNAVAILABLE
 
 
 def test_what_knows_no_time_refuses_a_manufactured_motion() -> None:
-    """Arcs, sensitivities and files of others have no clock for the loads: each says so."""
-    scene = bare(EULER)
+    """Sensitivities have no clock for the loads, and say so."""
     with pytest.raises(ValueError, match="manufactured"):
-        arcs(scene, [scene.initial], [Fraction(1)], 20)
-    with pytest.raises(ValueError, match="manufactured"):
-        sensitivity(scene, [Fraction(1)])
-    with pytest.raises(NotRepresentable, match="manufactured"):
-        adopt(scene, rung("f64"), [Fraction(1)])
+        sensitivity(bare(EULER), [Fraction(1)])

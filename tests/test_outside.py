@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from samples import THREE_INSTANTS
 
 from verify.models.problem import Problem, pose
 from verify.scenes.precision import rung
@@ -26,17 +27,6 @@ from verify.solvers.trajectory import Outcome, Trajectory
 from verify.trade.accuracy import Truth
 
 CHECKOUT = Path(__file__).resolve().parents[1]
-SHORT = """
-title = "Three instants"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 2
-samples = 3
-"""
 # Both models, each of the five states, backwards, loads, and instants that leave out the start.
 SCENES = [
     *("euler/generic", "euler/with-attitude", "euler/backward", "euler/constant-moment"),
@@ -46,7 +36,7 @@ SCENES = [
 
 
 def problem(on: str = "f64") -> Problem:
-    return pose(read(SHORT, "short"), rung(on))
+    return pose(read(THREE_INSTANTS, "short"), rung(on))
 
 
 # Their names.

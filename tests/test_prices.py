@@ -115,10 +115,11 @@ def test_equal_error_is_read_between_two_tolerances() -> None:
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: dict[str, Any]) -> None:
     """Every row is on it, it is the same when made again, and without a measurement there is none."""
     assert page.pages(tmp_path) == {}
-    stored, *drawn, made = page.write(tmp_path, measured)
+    stored, *drawn, made, flat = page.write(tmp_path, measured)
     assert {file.suffix for file in drawn} == {".svg", ".pdf"}
     text = made.read_text(encoding="utf-8")
-    assert page.pages(tmp_path) == {page.PAGE: text}
+    sheet = flat.read_text(encoding="utf-8")
+    assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
     for row in measured["rows"]:
         assert f"| {row['variant']} " in text
     assert "attitude and centre" in text

@@ -22,6 +22,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import THREE_INSTANTS
 
 from verify.judge.verdict import Status
 from verify.models.problem import Problem, pose
@@ -53,21 +54,9 @@ ROUNDED_ONCE = {
 }
 ALSO_ROUNDED = {"inertia", "omega", "start", "times"}
 
-SHORT = """
-title = "Three instants"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 2
-samples = 3
-"""
-
 
 def problem(on: str = "f64", samples: int = 3) -> Problem:
-    text = SHORT.replace("samples = 3", f"samples = {samples}")
+    text = THREE_INSTANTS.replace("samples = 3", f"samples = {samples}")
     return pose(read(text, "short"), rung(on))
 
 
@@ -362,7 +351,7 @@ def test_a_program_that_is_not_there_is_told() -> None:
 
 def test_an_outcome_is_a_failed_verdict_without_an_error() -> None:
     """A program that does not answer fails, and no number stands in for its error."""
-    verdicts = run(read(SHORT, "short"), "process:false").verdicts
+    verdicts = run(read(THREE_INSTANTS, "short"), "process:false").verdicts
     assert [(v.verdict, v.max, v.outcome) for v in verdicts] == [
         (Status.FAIL, None, Outcome.CRASHED.value)
     ]

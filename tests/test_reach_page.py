@@ -106,10 +106,11 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path) -> None:
     """Made again it is the same; each answer is in its cell; without a measurement there is none."""
     assert page.pages(tmp_path) == {}
     paths = page.write(tmp_path, document())
-    assert {path.suffix for path in paths} == {".json", ".md", ".svg", ".pdf"}
+    assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
     assert all(path.exists() for path in paths)
     text = (tmp_path / page.PAGE).read_text(encoding="utf-8")
-    assert page.pages(tmp_path) == {page.PAGE: text}
+    sheet = (tmp_path / page.SHEET).read_text(encoding="utf-8")
+    assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()]
     assert ["f32", "1", "1e-2", "1e-1", NOTHING, "1e-2", "1e-1", NOTHING] in cells
     assert ["f64", "100", "1e-3 →", "1e-3 →", "1e-1", "1e-3 →", "1e-3 →", "1e-1"] in cells

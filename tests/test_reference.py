@@ -131,9 +131,12 @@ def test_the_question_is_that_of_the_scene(scene: str) -> None:
 
 
 def test_no_file_of_a_scene_that_is_gone() -> None:
-    """The folder holds two files for each shipped scene, the page and the example."""
+    """The folder holds two files for each shipped scene, the page and the examples."""
     expected = {file(scene, suffix).name for scene in names() for suffix in ("csv", "json")}
-    assert {path.name for path in FOLDER.iterdir()} == expected | {"README.md", "example.cpp"}
+    assert {path.name for path in FOLDER.iterdir()} == expected | {
+        "README.md",
+        *reference_files.EXAMPLES,
+    }
 
 
 @pytest.mark.parametrize("scene", names())
@@ -276,7 +279,8 @@ def test_remaking_gives_the_same_bytes(tmp_path: Path) -> None:
     """The files of a scene computed anew are those of the folder, byte by byte."""
     written = reference_files.write(tmp_path, [reference(load("euler/generic"))])
     assert {path.name for path in written} == {
-        *("euler-generic.csv", "euler-generic.json", "README.md", "example.cpp")
+        *("euler-generic.csv", "euler-generic.json", "README.md"),
+        *reference_files.EXAMPLES,
     }
     for path in written:
         if path.name != "README.md":
@@ -355,7 +359,8 @@ def test_the_page_names_every_file() -> None:
     assert "{{" not in text
     links = set(re.findall(r"\]\(([^)]+)\)", text))
     assert links == {path.name for path in FOLDER.iterdir()} - {"README.md"}
-    assert (FOLDER / "example.cpp").read_text(encoding="utf-8") in text.replace("\n```", "\n")
+    for name in reference_files.EXAMPLES:
+        assert (FOLDER / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from samples import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
 
 from verify.exact import sensitivity as module
 from verify.exact.condition import derivatives
@@ -19,19 +20,14 @@ from verify.exact.rotation import rotation_matrix
 from verify.exact.route import solution
 from verify.exact.sensitivity import Sensitivity, sensitivity
 from verify.exact.solution import Unsettled
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector, diagonal, scaled
+from verify.scenes.tensors import Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 Twin = Callable[[Sensitivity], Sensitivity]
-
-
-def vector(*entries: float | str) -> Vector:
-    """Exact numbers from their decimal text."""
-    return tuple(Fraction(str(entry)) for entry in entries)
 
 
 def scene(body: RigidBody | ImmersedBody, start: Spin | Impulse, *track: str) -> Scene:
@@ -40,28 +36,16 @@ def scene(body: RigidBody | ImmersedBody, start: Spin | Impulse, *track: str) ->
     return Scene("test", "test", model, frozenset(track), body, start, clock)
 
 
-TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
-TILTED = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
-SPIN = Spin(vector("0.3", 1, "0.2"), TILTED)
-IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), TILTED, vector(1, 2, 3))
-SIX = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5"))
-GENERAL = ImmersedBody(
-    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
-    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
-    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
-    force=vector("0.1", "0.05", "-0.1"),
-    couple=vector("0.02", "-0.1", "0.05"),
-)
 TUMBLING = scene(RigidBody(TENSOR), SPIN, "attitude")
 CLEBSCH = scene(SIX.body(), IMPULSE, "attitude", "centre")
 SCENES = {
     "tumbling": TUMBLING,
-    "moment": scene(RigidBody(TENSOR, vector("0.1", "-0.2", "0.05")), SPIN, "attitude"),
+    "moment": scene(RigidBody(TENSOR, MOMENT), SPIN, "attitude"),
     "axisymmetric": scene(
         RigidBody(diagonal(vector(1, 1, 2))), Spin(vector("0.6", "0.8", "0.5")), "attitude"
     ),
     "clebsch": CLEBSCH,
-    "general": scene(GENERAL, IMPULSE, "attitude", "centre"),
+    "general": scene(LOADED, IMPULSE, "attitude", "centre"),
 }
 
 

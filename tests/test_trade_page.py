@@ -12,9 +12,11 @@ from typing import Any
 
 import pytest
 
+from verify.publish.cells import NOTHING
+from verify.publish.pictures.wording import floors_of
 from verify.publish.report import publish_tradeoff
 from verify.publish.tradeoff import front, page
-from verify.publish.trades import NUMBERS, TIMINGS, load
+from verify.publish.trades import NUMBERS, TIMINGS, load, write
 
 
 def point(solver: str, error: float | None, **changed: Any) -> dict[str, Any]:
@@ -205,6 +207,24 @@ def test_a_wider_number_has_its_price(folder: Path) -> None:
     table = section(text_of(folder), "What a wider number costs")
     assert table.index("f64") < table.index("f128")
     assert "**40.0** [36.0, 48.0], 32.0 digits" in table
+
+
+@pytest.mark.parametrize("floors", [{"f64": 2e-16, "f128": None}, None])
+def test_what_rounding_alone_leaves_stands_beside_it(
+    floors: dict[str, float | None] | None, tmp_path: Path
+) -> None:
+    """A line of digits on each rung where the measurement has them, none where it does not."""
+    (scene,) = NUMBERS_MADE["scenes"]
+    known = {} if floors is None else {"attainable": floors}
+    write(tmp_path, {**NUMBERS_MADE, "scenes": [{**scene, **known}]}, TIMES_MADE)
+    found = load(tmp_path)
+    assert found is not None
+    table = section(page(found, tmp_path), "What a wider number costs")
+    if floors is None:
+        assert "| *attainable*" not in table
+        return
+    assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
+    assert floors_of(found.trades[0].document()) == {"f64": 2e-16}
 
 
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:

@@ -15,9 +15,11 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from mpmath import mp
+from samples import THREE_INSTANTS
 
 import verify
 from verify.cli import main
+from verify.cli.tradeoff_text import tradeoff_text
 from verify.models.problem import Problem, pose
 from verify.scenes.precision import Rung, rung
 from verify.scenes.reader import load
@@ -26,6 +28,7 @@ from verify.solvers.solver import Solver
 from verify.solvers.taylor.driver import Taylor, at_tolerance
 from verify.solvers.trajectory import Outcome, Trajectory
 from verify.trade.accuracy import Accuracy, Truth
+from verify.trade.attainability import least_error
 from verify.trade.front import dominates, front, front_sentences, request_sentences
 from verify.trade.point import Point, Standing, point
 from verify.trade.recommend import MARGIN, OutOfReach, recommend, recommended
@@ -175,6 +178,19 @@ def test_the_trade_is_the_same_again(scene: Scene) -> None:
     assert first == second
     # Faster is coarser here, so each of them is on the front, the fastest first.
     assert first["front"] == [f"s{k} f64" for k in range(5, 0, -1)]
+
+
+def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
+    """By rung the floor of the judge, one rounding a sample: finer on the wider rung, and in the text."""
+    asked = [
+        setting_of(Scripted("coarse", 1.0)),
+        replace(setting_of(Scripted("fine", 1.0)), rung=rung("f32")),
+    ]
+    document = trade_off(scene, asked, repeats=1).document()
+    floors = document["attainable"]
+    assert floors == {r.name: least_error(scene, r) for r in (F64, rung("f32"))}
+    assert floors["f64"] * 2**28 <= floors["f32"] <= floors["f64"] * 2**30
+    assert f"f64 {floors['f64']:.2g}" in " ".join(tradeoff_text([document]).split())
 
 
 def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
@@ -390,23 +406,10 @@ def test_no_sound_answer_is_said() -> None:
 # The command
 
 
-SHORT = """
-title = "A moment of a free body"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 1
-samples = 3
-"""
-
-
 @pytest.fixture
 def short(tmp_path: Path) -> str:
     path = tmp_path / "short.toml"
-    path.write_text(SHORT, encoding="utf-8")
+    path.write_text(THREE_INSTANTS, encoding="utf-8")
     return str(path)
 
 

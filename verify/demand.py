@@ -57,7 +57,9 @@ class Demand:
 def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None) -> list[Demand]:
     """Every verdict that is asked for, with what is demanded of it; never none.
 
-    A run that came to no truth is demanded whole: nothing of it can be left out. Raises ValueError
+    ``tolerance`` takes the place of the bound, one number or a number by quantity; ``only`` are the
+    quantities asked for, or ``conserved`` for all that are. A judgement of a run that came to no truth is
+    demanded whole: nothing of it can be left out. Raises ValueError
     for a quantity that is not there and for a tolerance that is no positive number.
     """
     verdicts = {verdict.quantity: verdict for verdict in judgement.verdicts}

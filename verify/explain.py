@@ -8,7 +8,10 @@ from typing import Any
 from mpmath import mp
 
 from verify.exact import ellipsoid
+from verify.exact.balls import midpoint
 from verify.exact.elements import Element, Elements, elements
+from verify.exact.kirchhoff.general import screws_beside
+from verify.exact.kirchhoff.screws import Screw
 from verify.exact.solution import Unsettled
 from verify.judge.carrying import Carrying, carrying
 from verify.judge.verdict import Verdict
@@ -29,10 +32,11 @@ _FROM_RECORD = (
 
 
 def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
-    """One run of the scene, told by its record: nothing here is an estimate.
+    """One run of the scene on that rung, told by its record: nothing here is an estimate.
 
-    What a run that came to no comparison has not found out is None. Raises scenes.faults.Refused
-    for a scene that cannot be read.
+    A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
+    orbit, its conditioning, and each gate with the terms of its bound. What a run that came to no
+    comparison has not found out is None. Raises scenes.faults.Refused for a scene that cannot be read.
     """
     scene = load(scene) if isinstance(scene, str) else scene
     found = run(scene, "taylor", rung)
@@ -58,6 +62,7 @@ def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
             "seconds": first.seconds,
         },
         **orbit,
+        "screws": [_screw(screw) for screw in screws_beside(scene)],
         "condition": _condition(scene, rung_named(rung), period) if found.record else None,
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in found.verdicts],
@@ -91,6 +96,44 @@ def _element(element: Element) -> dict[str, str]:
         "meaning": element.meaning,
         "source": element.source,
     }
+
+
+def _screw(screw: Screw) -> dict[str, Any]:
+    """A steady screw with the F and the turning of the start, as numbers that are written out.
+
+    ``axis`` (body axes, unit length), ``velocity`` of the origin along it, ``turning`` Omega about it in
+    radians/time, ``pitch`` the advance in one turn, velocity 2 pi/turning (null of a translation);
+    ``mu`` the eigenvalue that exact.kirchhoff.screws has; ``spectrum`` the exponents of a small
+    disturbance as [re, im], beside the two that are 0; ``stability`` what is proven of it.
+    """
+    # Balls of 128 bits and more: their midpoints have more digits than are written.
+    with mp.workdps(2 * _DIGITS):
+        axis = [midpoint(n) for n in screw.axis()]
+        turning = mp.convert(screw.turn) * mp.norm([midpoint(entry) for entry in screw.x])
+        velocity = midpoint(screw.speed)
+        c2, c0 = midpoint(screw.c2), midpoint(screw.c0)
+        root = mp.sqrt(mp.mpc(c2 * c2 - 4 * c0))
+        # The larger of the two s^2 has no cancellation, and the other is their product over it.
+        larger = max((-c2 - root) / 2, (-c2 + root) / 2, key=abs)
+        roots = [mp.sqrt(square) for square in (larger, c0 / larger if larger else larger)]
+        return {
+            "axis": [_written(n) for n in axis],
+            "velocity": _written(velocity),
+            "turning": _written(turning),
+            "pitch": _written(2 * mp.pi * velocity / turning) if turning else None,
+            "mu": _written(midpoint(screw.mu)),
+            "spectrum": [
+                [_written(part) for part in (sign * s.real, sign * s.imag)]
+                for s in roots
+                for sign in (1, -1)
+            ],
+            "stability": screw.stability.name.lower().replace("_", " "),
+            "sentence": screw.stability.value,
+        }
+
+
+def _written(value: Any) -> str:
+    return str(mp.nstr(value, _DIGITS))
 
 
 def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:

@@ -17,6 +17,7 @@ from time import monotonic
 from typing import Any, Final
 
 from verify.judge.gates import FACTOR
+from verify.judge.provenance import command, processor, versions
 from verify.judge.verdict import Status, Verdict
 from verify.run import run
 from verify.scenes.faults import Refused
@@ -139,6 +140,7 @@ def document(found: Iterable[Found], seconds: float, seed: int) -> dict[str, Any
         "rung": RUNG,
         "seconds": seconds,
         "seed": seed,
+        "provenance": {"versions": versions(), "processor": processor(), "command": command()},
         "families": [
             {
                 "name": one.family.name,

@@ -254,6 +254,18 @@ def _add_publish(found: Any) -> None:
         "32 digits, into DIR/reference",
     )
     made.add_argument(
+        "--portraits",
+        action="store_true",
+        help="instead gather all that a page shows of each shipped scene (equations, exact motion, "
+        "numbers of the orbit) into DIR/data/portraits (a minute, all cores)",
+    )
+    made.add_argument(
+        "--gallery",
+        action="store_true",
+        help="instead draw some motions and their errors from what DIR holds (matplotlib), into "
+        "DIR/figures",
+    )
+    made.add_argument(
         "--controls",
         action="store_true",
         help="instead run the solvers that are broken on purpose and the calls of heyoka that go "
@@ -275,6 +287,23 @@ def _add_publish(found: Any) -> None:
         action="store_true",
         help="instead measure speed against accuracy on four scenes, in fresh processes (minutes; a "
         "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
+    )
+    made.add_argument(
+        "--extremes",
+        action="store_true",
+        help="instead run the extremes on f64 and write what becomes of each, beside what was expected, "
+        "into DIR/data/extremes.json and DIR/tables/extremes.md (minutes, all cores)",
+    )
+    made.add_argument(
+        "--paper",
+        action="store_true",
+        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables",
+    )
+    made.add_argument(
+        "--site",
+        metavar="SITE",
+        help="instead make static pages of what DIR holds, into the folder SITE (jinja2, "
+        "markdown-it-py, latex2mathml, plotly)",
     )
     made.add_argument(
         "--worst",

@@ -92,6 +92,8 @@ def tell(
         held = hold(before, verdicts)
         document["baseline"] = _document(asked.baseline_file, held)
         messages += _messages(asked.baseline_file, held)
+        if not held.compared:
+            messages.append(_nothing_shared(asked.baseline, verdicts))
         remarks += _remarks(held, [*verdicts, *before])
         status = graver(status, held.status)
     shown = [v for v in verdicts if expected is None or expected.met(v) is None]
@@ -189,9 +191,15 @@ def _messages(file: str, held: baseline.Held) -> list[str]:
     told += [f"changed, no regression: {more} more, all in the document of --json"] * (more > 0)
     counts = f"{len(held.regressions)} regressions, {len(held.undecided)} not comparable"
     rows = f"{held.compared} rows compared with {file}: {counts}, {len(held.changes)} other changes"
-    if not held.compared:
-        rows += "; nothing of the baseline was run again, so nothing is shown"
     return [*told, rows]
+
+
+def _nothing_shared(before: Iterable[Verdict], now: Iterable[Verdict]) -> str:
+    """Why the baseline shows nothing; a program under another command line is another solver."""
+    solvers = [sorted({f"`{v.solver}`" for v in rows}) for rows in (before, now)]
+    was, made = (", ".join(names) or "none" for names in solvers)
+    why = "" if was == made else f": its solver is {was}, and this run's is {made}"
+    return f"nothing of the baseline was run again, so nothing is shown{why}"
 
 
 def _remarks(held: baseline.Held, rows: Iterable[Verdict]) -> list[Remark]:

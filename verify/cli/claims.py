@@ -33,13 +33,15 @@ def publish_claims(folder: Path) -> Answer:
     """The page of the whole ledger; one whose entries have left their verdicts is not written."""
     from verify.claims.ledger import claims as ledger
     from verify.claims.numbers import CITED
+    from verify.judge.provenance import command, processor, versions
     from verify.publish.claims import write
 
     rows = _examined(ledger())
     missed = _missed(rows)
     if missed:
         return Answer(FAIL, {"written": []}, lambda: "", missed)
-    return files_written(write(folder, rows, CITED))
+    provenance = {"versions": versions(), "processor": processor(), "command": command()}
+    return files_written(write(folder, rows, CITED, provenance))
 
 
 def _examined(asked: Sequence[Claim]) -> list[dict[str, Any]]:

@@ -8,6 +8,9 @@ from pathlib import Path
 from verify.cli.answer import Answer, WrongCall, files_written
 from verify.cli.streams import say
 
+# The rung on which the extremes are published, as `make verify` runs them.
+_ON = "f64"
+
 
 def references(folder: Path) -> Answer:
     """The exact trajectory of every shipped scene."""
@@ -18,6 +21,31 @@ def references(folder: Path) -> Answer:
     scenes = names()
     documents = references(scenes, _counting(len(scenes)))
     return files_written(reference_files.write(folder, documents))
+
+
+def portraits(folder: Path) -> Answer:
+    """What each shipped scene is and how it moves, for pages and pictures."""
+    from verify.portrait import portraits
+    from verify.publish import portraits as files
+    from verify.scenes.library import names
+
+    scenes = names()
+    return files_written(files.write(folder, portraits(scenes, _counting(len(scenes)))))
+
+
+def gallery(folder: Path) -> Answer:
+    """Pictures of some motions and of their errors, from what the folder holds already."""
+    from verify.publish import gallery as pictures
+
+    try:
+        return files_written(pictures.write(folder))
+    except FileNotFoundError as error:
+        raise WrongCall(
+            "expected what `run --out`, `publish --reference`, `--controls` and `--portraits` write, "
+            f"got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(str(error)) from error
 
 
 def controls(folder: Path) -> Answer:
@@ -58,6 +86,50 @@ def reach(folder: Path) -> Answer:
     return files_written(pages.write(folder, document(_counting(members()))))
 
 
+def extremes(folder: Path) -> Answer:
+    """What becomes of the extremes on float64; fails where an answer is not the one foreseen."""
+    from verify.cli.progress import advancing
+    from verify.expected import hold
+    from verify.publish import extremes as pages
+    from verify.scenes import library
+    from verify.scenes.expected import left_out
+    from verify.scenes.reader import load
+    from verify.solvers.registry import TAYLOR
+    from verify.standard import jobs, run_all
+
+    without = left_out([library.EXTREMES], [_ON])
+    scenes = [one for one in library.named(library.EXTREMES) if (one, _ON) not in without]
+    with advancing(len(scenes)) as finished:
+        results = run_all(jobs(scenes, TAYLOR, [_ON]), finished)
+    verdicts = [verdict for result in results for verdict in result.verdicts]
+    held = hold(verdicts)
+    document = pages.document(
+        verdicts,
+        expected={row: pages.Expected(e.verdict, e.why) for row, e in held.expected.items()},
+        mismatches=[str(mismatch) for mismatch in held.mismatches],
+        titles={scene: load(scene).title for scene in scenes},
+        left_out=[{"scene": s, "rung": r, "why": why} for (s, r), why in without.items()],
+    )
+    answer = files_written(pages.write(folder, document))
+    # What was not foreseen is published too, where it stands out.
+    status = held.exit_status(verdicts)
+    return answer._replace(status=status, messages=document["mismatches"])
+
+
+def paper(folder: Path) -> Answer:
+    """The pages that are there, as LaTeX and HTML."""
+    from verify.publish.paper import files
+
+    try:
+        return files_written(files.write(folder))
+    except ImportError as error:
+        raise WrongCall(
+            f"expected markdown-it-py and latex2mathml, got {error} (pip install them) @ --paper"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(f"{error} (--paper)") from error
+
+
 def worst(folder: Path, seconds: float, seed: int) -> Answer:
     """The worst error over attainable in each family; its scenes take the place of those kept."""
     from verify.hunt import FAMILIES, document, hunt
@@ -70,6 +142,27 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
     scenes = {one.family.name: one.scene_text for one in found}
     kept = pages.keep(cases_directory() / WORST, scenes)
     return files_written([*pages.write(folder, document(found, seconds, seed)), *kept])
+
+
+def site(folder: str, target: str) -> Answer:
+    """The pages that a browser shows, from what the folder holds already."""
+    from verify.publish import data
+
+    try:
+        from verify.publish.site.builder import build
+
+        return files_written(build(folder, target))
+    except ImportError as error:
+        raise WrongCall(
+            f"expected {error.name} (pip install it), got no such package @ --site"
+        ) from error
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected what `run --out {folder}` writes ({data.FOLDER}/{data.VERDICTS} first of all), "
+            f"got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(f"{error} @ --site") from error
 
 
 def _counting(total: int) -> Callable[[str], None]:

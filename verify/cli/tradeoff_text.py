@@ -44,6 +44,12 @@ def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
         "* is on the front. first: the whole first solve, with compiling and start-up.",
     )
     print_line(console, f"seconds: {timing['of']}.")
+    floors = [f"{rung} {least:.2g}" for rung, least in trade.get("attainable", {}).items() if least]
+    if floors:
+        told = (
+            f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
+        )
+        print_line(console, told)
     if any("cold" in row for row in trade["points"]):
         print_line(console)
         print_line(console, Text("In a process of its own, nothing compiled", "bold"))

@@ -248,11 +248,15 @@ def publish(options: argparse.Namespace) -> Answer:
 
     anew: dict[str, Callable[[Path], Answer]] = {
         "reference": publishing.references,
+        "portraits": publishing.portraits,
+        "gallery": publishing.gallery,
         "controls": publishing.controls,
         "claims": publish_claims,
         "prices": publishing.prices,
         "reach": publishing.reach,
         "tradeoff": partial(publishing.tradeoff, outside=options.outside),
+        "extremes": publishing.extremes,
+        "paper": publishing.paper,
         "worst": partial(publishing.worst, seconds=options.seconds, seed=options.seed),
         "growth": partial(publish_growth, periods=options.periods, long=options.long),
     }
@@ -261,6 +265,8 @@ def publish(options: argparse.Namespace) -> Answer:
             return write(writable(options.folder, "--from"))
     if options.periods is not None or options.long:
         raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
+    if options.site is not None:
+        return publishing.site(options.folder, str(writable(options.site, "--site")))
     if options.outside:
         raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
     try:

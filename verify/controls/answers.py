@@ -169,6 +169,7 @@ ANSWERS: Final = (
         why="a chord runs inside the arc by h^2/8 of its curvature: one sample in a hundred is "
         "wrong, in everything",
         spoil=_last_interpolated,
+        told=True,
     ),
     Defect(
         "conjugate-quaternion",

@@ -235,6 +235,7 @@ EQUATIONS: Final = (
         "that; the impulse, which has the fluid in it, is no longer a momentum",
         recast=_without_added_acceleration,
         twin=InGeneralForm(),
+        told=True,
     ),
     Defect(
         "uneven-coefficient",

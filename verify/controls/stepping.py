@@ -209,6 +209,7 @@ STEPPING: Final = (
         frozenset(),
         "the gyroscopic term taken at the new state (implicit)",
         "the mirror image: every step ends inside the sphere, |H| and T fall",
+        told=True,
     ),
     _stepping(
         "energy-restored",
@@ -236,6 +237,7 @@ STEPPING: Final = (
         frozenset(),
         "the state kept in float32 between steps",
         "each step rounds to 24 bits, half a billion times as coarsely as to 53",
+        told=True,
     ),
     Defect(
         "unbounded-step",

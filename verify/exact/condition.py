@@ -63,7 +63,7 @@ class Transition:
 
 
 def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
-    """The transition norms between these times, which are sorted away from the start.
+    """The transition norms between these times, ``elapsed`` since the start and sorted away from it.
 
     With D, A, C the derivatives of momentum, attitude and centre by the initial momentum, and c the
     centre, the derivatives by the initial state are
@@ -86,7 +86,8 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
     """
     exact = solution(scene)
     # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
-    if exact.route == "taylor" or scene.body.manufactured is not None:
+    is_recursive = exact.route == "taylor" or scene.body.manufactured is not None
+    if is_recursive or exact.by_quadrature:
         table = transition_table(scene, exact, _units(scene), elapsed)
         if table is not None:
             return Transition(tuple(elapsed), table)

@@ -152,7 +152,7 @@ def _few(elapsed: Sequence[Fraction]) -> list[Fraction]:
     samples = [Fraction(0), *chosen(elapsed, _FEW)]
     parts = max(_BETWEEN, _FEW - len(elapsed))
     between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
-    first = next(t for t in samples if t)
+    first = next((t for t in samples if t), Fraction(0))
     return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
 
 

@@ -15,13 +15,13 @@ CLOSED_ROUTES: Final = ("arb", "mpmath")
 _CLOSED_FORMS: Final[Mapping[tuple[str, str], str]] = {
     ("euler", "arb"): "verify.exact.euler.theta:enclosed",
     ("euler", "mpmath"): "verify.exact.euler.jacobi:closed_form",
-    ("kirchhoff", "arb"): "verify.exact.kirchhoff.planar:enclosed",
-    ("kirchhoff", "mpmath"): "verify.exact.kirchhoff.planar:closed_form",
+    ("kirchhoff", "arb"): "verify.exact.kirchhoff.weber.enclosure:enclosed",
+    ("kirchhoff", "mpmath"): "verify.exact.kirchhoff.weber.sums:closed_form",
 }
 # The same for a rigid body under a constant moment.
 _LOADED: Final[Mapping[str, str]] = {
-    "arb": "verify.exact.euler.moments.erf:enclosed",
-    "mpmath": "verify.exact.euler.moments.fresnel:closed_form",
+    "arb": "verify.exact.euler.moments.closed:enclosed",
+    "mpmath": "verify.exact.euler.moments.closed:closed_form",
 }
 # The same for a body with a manufactured motion, of either model.
 _MANUFACTURED: Final[Mapping[str, str]] = {

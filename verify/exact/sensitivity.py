@@ -82,13 +82,13 @@ class Sensitivity:
 def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 15) -> Sensitivity:
     """The derivatives of every tracked quantity by the initial state and the body.
 
-    Times count from the start, in any order and of either sign. The estimated error of each column
-    is at most 10^-digits of the column, or of the quantity's size (1 for an attitude, the distance
-    from the start for a centre) per size of the input where that is larger.
+    The times ``times_elapsed`` count from the start, in any order and of either sign. The estimated
+    error of each column is at most 10^-digits of the column, or of the quantity's size (1 for an
+    attitude, the distance from the start for a centre) per size of the input where that is larger.
 
     Raises exact.solution.Unsettled where that cannot be had, ValueError for no times and for a
-    manufactured motion. Costs three
-    motions per component of the initial omega or impulses and of the body; by Taylor that is slow.
+    manufactured motion. Costs three motions per component of the initial omega or impulses and of the
+    body; by Taylor that is slow.
     """
     if scene.body.manufactured is not None:
         raise ValueError(

@@ -48,10 +48,13 @@ class Solution(ABC):
 
     ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
     ``route`` is the arithmetic: ``arb`` or ``mpmath`` (closed forms), or ``taylor``.
+    ``by_quadrature`` says that every instant costs an integral: what needs a motion at hundreds of
+    digits, or many of them, has a cheaper way than differences of this one.
     """
 
     regime: str
     route: str
+    by_quadrature: bool = False
 
     @abstractmethod
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:

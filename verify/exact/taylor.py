@@ -38,6 +38,8 @@ from verify.scenes.tensors import Matrix, Vector
 Triple = tuple[int, int, int]
 
 _MORE_ORDERS = 4
+# A clock is so much sharper than the arc that it drives that its rounding is none of the arc's.
+_CLOCK_DIGITS = 10
 # What a division by the impulse may cost the centre.
 _MOST_LOST_BITS = 20
 
@@ -90,26 +92,35 @@ class TaylorSolution(Settled):
         return _guided_problem(self.scene) if self._is_guided else posed(self.scene)
 
 
-def arcs(scene: Scene, starts: Sequence[State], spans: Sequence[Fraction], digits: int) -> Motion:
+def arcs(
+    scene: Scene,
+    starts: Sequence[State],
+    spans: Sequence[Fraction],
+    digits: int,
+    begins: Sequence[Fraction] = (),
+) -> Motion:
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
     Settled to ``digits`` by the agreement of two evaluations, as Solution.motion is, and raises
-    Unsettled likewise. The loads must not change with time, for no arc knows when it begins.
+    Unsettled likewise. The loads of a manufactured motion change with time: there each arc has to say
+    when it begins, ``begins`` since the start of the scene. Elsewhere that changes nothing.
     """
-    if scene.body.manufactured is not None:
+    if scene.body.manufactured is not None and len(begins) != len(starts):
         raise ValueError(
-            f"expected loads that are constant, got a manufactured motion @ {scene.name}"
+            f"expected the times at which {len(starts)} arcs under loads that change with time begin, "
+            f"got {len(begins)} @ {scene.name}"
         )
-    return _Arcs(scene, tuple(starts)).motion(spans, digits)
+    return _Arcs(scene, tuple(starts), tuple(begins)).motion(spans, digits)
 
 
 @final
 @dataclass(frozen=True)
 class _Arcs(Settled):
-    """Many short motions of one body, each from a state of its own."""
+    """Many short motions of one body, each from a state of its own, and by the clock from its time."""
 
     scene: Scene
     starts: tuple[State, ...]
+    begins: tuple[Fraction, ...]
 
     route = "taylor"
     regime = NO_CLOSED_FORM
@@ -117,17 +128,32 @@ class _Arcs(Settled):
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         ends: list[list[Any]] = []
         cut: int | None = None
-        for arc, span in zip(self._problems, elapsed, strict=True):
-            grid = replace(arc.grid(digits), cut=cut)
+        for posed_arc, clock, span in zip(
+            self._problems, self._clocks(digits), elapsed, strict=True
+        ):
+            grid = replace(posed_arc.grid(digits), cut=cut)
+            # The clock, in units of one, comes last.
+            arc = (
+                replace(posed_arc, start=posed_arc.start[: -len(clock)] + clock)
+                if clock
+                else posed_arc
+            )
             end, order = leap(arc, span, grid)
             # The arcs follow each other, so that the next one needs about as many orders.
             cut = order + order // 8 + _MORE_ORDERS
             ends.append(arc.reals(end, grid))
         return _quantities(self.scene, ends)
 
+    def _clocks(self, digits: int) -> list[Vector]:
+        """The clock of a manufactured motion where each arc begins, to more digits than the arc has."""
+        motion = self.scene.body.manufactured
+        if motion is None:
+            return [()] * len(self.starts)
+        return [clocks.at(motion, begin, digits + _CLOCK_DIGITS) for begin in self.begins]
+
     @cached_property
     def _problems(self) -> list[Problem]:
-        """One for every start, all in the units of the scene's own."""
+        """One for every start, all in the units of the scene's own, the clock as at the start."""
         whole = posed(self.scene)
         return [whole.begun(_start(replace(self.scene, initial=start))) for start in self.starts]
 

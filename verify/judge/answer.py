@@ -34,6 +34,9 @@ Array = np.ndarray[Any, Any]
 
 # What is not dyadic in a file, and a correction, is rounded so far below the rung.
 _SPARE_BITS: Final = 128
+_FLOAT32_BITS: Final = 24
+# Numbers as narrow as this are small integers and simple fractions in any precision.
+_TELLING_BITS: Final = 18
 # How far a Taylor recursion is sent for a file.
 _MOST_SPANS: Final = 100
 _MODELS: Final = {
@@ -94,7 +97,12 @@ class FileJudgement(Judgement):
 def judge_file(
     file: TrajectoryFile, scene: Scene, rung: Rung, accept_conventions: bool = False
 ) -> FileJudgement:
-    """Judge a file as arithmetic of the rung. Raises Refused if it has nothing to compare."""
+    """Judge a file as arithmetic of the rung.
+
+    What its columns are is that of solvers.file; its times are absolute, in the scene's unit, and each
+    row is compared at its own time. With ``accept_conventions`` what was found out about it is corrected
+    before it is judged. Raises Refused if it has nothing to compare.
+    """
     groups = _comparable(file, scene)
     notes = tuple(_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
@@ -105,13 +113,13 @@ def judge_file(
         findings = found.findings
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found)
-        notes += tuple(_no_start(answer.scene, answer.times))
+        notes += (*_no_start(answer.scene, answer.times), *_no_end(answer.scene, answer.times))
     except NotRepresentable as reason:
         judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt))
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
-        notes += tuple(_cut_off(file, rung))
+        notes += (*_cut_off(file, rung), *_single_precision(file, rung))
     return FileJudgement(judged.verdicts, judged.record, file, findings, accept_conventions, notes)
 
 
@@ -200,6 +208,38 @@ def _no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
         yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
 
 
+def _no_end(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
+    """Whether the file stops before the scene does."""
+    start, end = scene.clock.start, scene.clock.instants[-1]
+    last = max(times) if end > start else min(times)
+    if abs(float(last - start)) < abs(float(end - start)) and (last - start) * (end - start) >= 0:
+        yield (
+            f"the last row is at t = {float(last):g}, and the scene ends at t = {float(end):g}: "
+            "the rest was not judged"
+        )
+
+
+def _single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
+    """Whether every number of a wider rung is one of float32, and not by chance."""
+    if rung.bits <= _FLOAT32_BITS:
+        return
+    values = [v for rows in file.groups.values() for row in rows for v in row]
+    doubles = np.array([float(v) for v in values if isinstance(v, Fraction)])
+    with np.errstate(over="ignore"):
+        is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
+    if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):
+        yield (
+            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
+            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
+        )
+
+
+def _width(double: float) -> int:
+    """The bits of a number from its first to its last one."""
+    numerator = Fraction(double).numerator
+    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0
+
+
 def _cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
     """Whether the file was printed with too few digits to be right."""
     needed = ceil(rung.bits * log10(2)) + 1
@@ -286,7 +326,7 @@ def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
     judged = partial_judgement(problem, Recorded(answer.quantities, setting=name))
     if judged.record is None:
         return _Side(judged, [])
-    inputs = input_rounding(problem.given, rung)
+    inputs = input_rounding(problem.given, rung, problem.scene)
     return _Side(judged, graded(judged, inputs, float(rung.unit_roundoff)))
 
 

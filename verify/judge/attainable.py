@@ -154,6 +154,12 @@ def _orbit(scene: Scene) -> Path:
     return path(scene)
 
 
+def looked_at(scene: Scene) -> list[int]:
+    """The samples at which the floor looks at the orbit: all or many where passages are short."""
+    points = set(_orbit(scene).elapsed)
+    return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
+
+
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Transition:
     """How errors travel along the scene's own orbit, between evenly chosen samples."""

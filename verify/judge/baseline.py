@@ -70,7 +70,11 @@ class Held:
 
 
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Hold every row made against the row of the baseline; rungs that a machine lacks are left out."""
+    """Hold every row made against the row of the baseline; rungs that a machine lacks are left out.
+
+    A row that is gone, a verdict that is worse and an error beyond ten times the larger of what it was
+    and half of what is attainable are regressions: below that, roundings drawn anew may explain it.
+    """
     rows = paired(baseline, made)
     regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
     undecided: list[Departure] = []

@@ -78,7 +78,8 @@ def convergence(
     """The order seen in errors over steps, given in any order of their own.
 
     ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is what
-    perfect rounding would leave, for all steps or for each. Raises ValueError for unlike lengths and
+    perfect rounding would leave, for all steps or for each, and ``expected`` the order that the method
+    ought to have. Raises ValueError for unlike lengths and
     for steps that are not positive or not distinct.
     """
     points = _points(steps, errors, roundoff_floor)
@@ -263,6 +264,12 @@ class Sweep:
         told += [f"{name} has none" for name, order in orders.items() if order is None]
         return ", ".join(told)
 
+    def __str__(self) -> str:
+        """That line, and under it the reason of every quantity."""
+        wide = max(map(len, self.quantities), default=0)
+        rows = [f"  {name:{wide}}  {found.reason}" for name, found in self.quantities.items()]
+        return "\n".join([self.reason, *rows])
+
 
 def sweep(
     scene: Scene | str,
@@ -273,8 +280,9 @@ def sweep(
 ) -> Sweep:
     """Judge ``solve_with_step(problem, step) -> states`` at every step, in the scene's unit of time.
 
-    ``states`` are as verify.check has them. A run that raises, or answers what is no number, has no
-    error at its step. Raises ValueError where the rung cannot hold the scene.
+    ``states`` are as verify.check has them; ``expected`` is the order that the method ought to
+    have. A run that raises, or answers what is no number, has no error at its step. Raises
+    ValueError where the rung cannot hold the scene.
     """
     scene = load(scene) if isinstance(scene, str) else scene
     rung = rung_named(rung) if isinstance(rung, str) else rung

@@ -8,9 +8,9 @@ two samples,
 Without loads Q(flow(state)) = Q(state) and the sum telescopes to Q(state_n) - Q(start). With loads
 Q(flow(state)) - Q(state) is the work, or impulse, done along the arc, and the sum is the balance.
 
-Of a manufactured motion there is neither. Its loads come from a clock that the solver integrates with the
-rest; what rounding does to that clock does work, which adds up from step to step, and is no fault of the
-equations. The state, which a soundly rounded clock leaves where it was, is what is judged.
+Of a manufactured motion it is likewise, and each arc takes up the loads of the time at which it begins.
+A solver integrates the clock of these loads with the rest; what rounding does to it does work, which adds
+up from step to step, and which the bound of the balance has to hold (judge.balances).
 """
 
 from __future__ import annotations
@@ -49,10 +49,8 @@ def drifts(
 
     ``start`` is the exact initial state as a Motion of one row; ``held`` are the answer's own exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
-    answer that is not finite drifts by NaN. Empty for a manufactured motion.
+    answer that is not finite drifts by NaN.
     """
-    if scene.body.manufactured is not None:
-        return []
     found, quick = invariants(scene), in_mpfr(answer)
     if scene.body.is_free:
         begin = in_mpfr(start)
@@ -100,8 +98,9 @@ def _sizes(values: Column) -> Column:
 def _arc_ends(scene: Scene, held: Mapping[str, Column], digits: int) -> Motion:
     """Where the exact motion leads from each sample (the first from the start) to the next one."""
     elapsed = scene.clock.elapsed
-    spans = [b - a for a, b in zip((Fraction(0), *elapsed), elapsed, strict=False)]
-    return arcs(scene, [scene.initial, *_states(scene, held)[:-1]], spans, digits)
+    begins = (Fraction(0), *elapsed[:-1])
+    spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
+    return arcs(scene, [scene.initial, *_states(scene, held)[:-1]], spans, digits, begins)
 
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:

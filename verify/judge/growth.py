@@ -43,7 +43,11 @@ _LEAST_INSTANTS: Final = _LATE + 2
 
 
 class Law(StrEnum):
-    """What independent roundings make of a quantity: the null hypothesis of its gate."""
+    """What independent roundings make of a quantity: the null hypothesis of its gate.
+
+    WALK is a conserved quantity, whose error grows with the half power of time; INTEGRATED a phase, the
+    integral of such an error, which grows with the power 3/2 (D. Brouwer, 1937).
+    """
 
     WALK = "a random walk"
     INTEGRATED = "the integral of a random walk"
@@ -119,8 +123,10 @@ class Growth:
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
     """The growth of errors of shape (lanes, instants); NaN stands for what a lane did not reach.
 
-    ``roundoff`` is the size of one rounding in the unit of the errors. Raises ValueError for fewer
-    than two lanes or four instants, and for instants that do not increase.
+    ``times`` (instants) are since the start and increase. ``law`` is what the errors are held
+    against, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the
+    errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do
+    not increase.
     """
     times, errors = _checked(times, errors)
     with np.errstate(all="ignore"):
@@ -157,9 +163,11 @@ def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
 def exponent(
     times: Floats, errors: Floats, law: Law, roundoff: float, level: float = LEVEL
 ) -> Exponent:
-    """Student's interval of the mean of the lanes' slopes.
+    """Student's interval of the mean of the lanes' slopes, of log |error| over log time.
 
-    An error of exactly zero, which has no logarithm, counts as one rounding.
+    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; ``level`` is the
+    probability that the interval holds the mean, ``law`` what chooses the word for it. An error of
+    exactly zero, which has no logarithm, counts as one rounding.
     """
     whole = errors[np.isfinite(errors).all(axis=1)]
     count = len(whole)
@@ -210,8 +218,9 @@ def gate(
     P(L_i/E_i > r) = (1 + r)^(-m/2), whatever the size of the lane's roundings; and of n independent
     lanes -2 sum log P_i = m sum log(1 + L_i/E_i) is chi-square with 2n degrees of freedom.
 
-    Errors that are bounded, or smaller early than one rounding, make E_i larger than the law does: the
-    gate then fails less often. An error that is not finite fails.
+    The gate fails where that chance is below ``false_alarm``. Errors that are bounded, or smaller
+    early than one rounding (``roundoff``), make E_i larger than the law does: the gate then fails
+    less often. An error that is not finite fails.
     """
     early, late = early_and_late(times, errors, law, roundoff)
     lanes, m = len(errors), len(times) - _LATE

@@ -9,6 +9,9 @@ every gate:
 
 Where there are many inputs all of them are moved at once, up or down at random: the mean square over
 some such draws has the same sum for its expectation.
+
+A manufactured motion has its coefficients and frequencies for inputs too, and the start apart from them:
+the motion moved is that from the moved start, under the loads of the moved motion and body.
 """
 
 from __future__ import annotations
@@ -27,8 +30,10 @@ from verify.exact.invariants import invariants
 from verify.exact.route import solution
 from verify.exact.solution import Quantities, Unsettled
 from verify.exact.taylor import TaylorSolution
+from verify.judge.attainable import looked_at
 from verify.judge.errors import norms, state_errors
 from verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from verify.scenes.manufactured import Manufactured, Wave
 from verify.scenes.motion import Clock, Impulse, Motion, Spin, State
 from verify.scenes.precision import Rung
 from verify.scenes.scene import Scene
@@ -36,8 +41,6 @@ from verify.scenes.tensors import Matrix
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# Between so few samples the response is as smooth as two digits need.
-_MOST_NODES: Final = 25
 # Up to this many inputs one at a time; of more, this many draws give the sum to a third.
 _MOST_DRAWS: Final = 8
 _MORE_DIGITS: Final = 6
@@ -56,14 +59,15 @@ class InputRounding:
     at_samples: Mapping[str, Floats]
 
 
-def input_rounding(given: Scene, rung: Rung) -> InputRounding:
+def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> InputRounding:
     """The response to a rounding of each number of the body and of the start that is not zero.
 
-    Where the rung does not hold every time, as it holds no 0.1, the times are moved likewise.
+    Where the rung does not hold every time, as it holds no 0.1, the times are moved likewise. The response
+    is found where the floor looks at the orbit, of the scene as ``asked``: a body beside its unstable
+    axis answers in the short times of its passages, and those may lie between samples chosen evenly.
     """
     samples = len(given.clock.instants)
-    count = min(samples, _MOST_NODES)
-    nodes = sorted({round(k * (samples - 1) / max(count - 1, 1)) for k in range(count)})
+    nodes = looked_at(given if asked is None else asked)
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
     digits = ceil(rung.bits * log10(2)) + _MORE_DIGITS
@@ -71,7 +75,8 @@ def input_rounding(given: Scene, rung: Rung) -> InputRounding:
         here = _motion(scene, digits)
         moved = [_Response.of(scene, here, _motion(s, digits)) for s in _moved(scene, rung)]
         total = _mean_square(moved, len(_numbers(scene)))
-        words = f"each of the {len(_numbers(scene))} numbers of body and start that are not zero"
+        what = "body and start" if scene.body.manufactured is None else "body, motion and start"
+        words = f"each of the {len(_numbers(scene))} numbers of {what} that are not zero"
         if not all(rung.holds(t) for t in instants):
             late = _Response.of(scene, here, _motion(_late(scene, rung.unit_roundoff), digits))
             total = {name: total.get(name, 0.0) + late.squares[name] for name in late.squares}
@@ -176,7 +181,21 @@ def _numbers(scene: Scene) -> list[Place]:
         places += _row("linear", start.linear) + _row("angular", start.angular)
         if "centre" in scene.track:
             places += _row("centre", start.centre)
+    places += _of_motion(body.manufactured)
     return places + (_row("attitude", start.attitude) if scene.track else [])
+
+
+def _of_motion(motion: Manufactured | None) -> list[Place]:
+    """The coefficients and frequencies of a manufactured motion."""
+    if motion is None:
+        return []
+    waves = [
+        place
+        for k, wave in enumerate(motion.waves)
+        for place in (*_row(f"cosine{k}", wave.cosine), *_row(f"sine{k}", wave.sine))
+    ]
+    frequencies = [("frequency", k, k) for k in range(len(motion.waves))]
+    return [*_row("constant", motion.constant), *waves, *frequencies]
 
 
 def _coefficients(body: ImmersedBody) -> list[Place]:
@@ -215,13 +234,26 @@ def _with_factors(scene: Scene, factors: Mapping[Place, Fraction]) -> Scene:
             tuple(e * factor(i, k) for k, e in enumerate(line)) for i, line in enumerate(entries)
         )
 
+    def waves(motion: Manufactured | None) -> Manufactured | None:
+        if motion is None:
+            return None
+        frequencies = row("frequency", [wave.frequency for wave in motion.waves])
+        return Manufactured(
+            row("constant", motion.constant),
+            tuple(
+                Wave(nu, row(f"cosine{k}", wave.cosine), row(f"sine{k}", wave.sine))
+                for k, (nu, wave) in enumerate(zip(frequencies, motion.waves, strict=True))
+            ),
+        )
+
     body, start = scene.body, scene.initial
+    motion = waves(body.manufactured)
     moved_body: Body
     moved_start: State
     q0, q1, q2, q3 = row("attitude", start.attitude)
     if isinstance(body, RigidBody):
         assert isinstance(start, Spin)
-        moved_body = RigidBody(matrix("inertia", body.inertia), row("moment", body.moment))
+        moved_body = RigidBody(matrix("inertia", body.inertia), row("moment", body.moment), motion)
         moved_start = Spin(row("omega", start.omega), (q0, q1, q2, q3))
     else:
         assert isinstance(start, Impulse)
@@ -232,6 +264,7 @@ def _with_factors(scene: Scene, factors: Mapping[Place, Fraction]) -> Scene:
             matrix("angular_", body.angular, revolved),
             row("force", body.force),
             row("couple", body.couple),
+            manufactured=motion,
         )
         linear, angular = row("linear", start.linear), row("angular", start.angular)
         moved_start = Impulse(linear, angular, (q0, q1, q2, q3), row("centre", start.centre))

@@ -8,11 +8,13 @@ from fractions import Fraction
 from math import ceil, log10
 from typing import Any
 
+import numpy as np
 from mpmath import mp
 
 from verify.exact.route import solution
 from verify.exact.solution import Solution, Unsettled
 from verify.judge.attainable import Floats, Floor, floor
+from verify.judge.balances import BECAUSE, ClockWork, clock_work
 from verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
 from verify.judge.drifts import drifts
 from verify.judge.errors import Errors, state_errors
@@ -36,7 +38,10 @@ _SPARE_BITS = 96
 
 @dataclass(frozen=True)
 class Judgement:
-    """The verdicts of one run and the record they rest on (None if the run never came to a truth)."""
+    """The verdicts of one run and the record they rest on (None if the run never came to a truth).
+
+    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
+    """
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
@@ -71,7 +76,10 @@ class _Run:
 
 
 def judgement(problem: Problem, solver: Solver, trajectory: Trajectory) -> Judgement:
-    """Compare a trajectory with the exact solution of the same rounded data, and judge it."""
+    """Compare a trajectory with the exact solution of the same rounded data, and judge it.
+
+    A trajectory that is not finished, and a truth that cannot be had, are verdicts and raise nothing.
+    """
     run = _Run(problem, solver, trajectory)
     main = main_quantity(problem.scene)
     if trajectory.outcome is not Outcome.FINISHED:
@@ -108,8 +116,15 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 for errors, shift in zip(states, shifts, strict=True)
             ]
         with costs.of(CONSERVED):
+            work = clock_work(problem.scene)
             gated += [
-                _conserved(run, base, base.of_invariant(invariant, truth, _scale(errors)), errors)
+                _conserved(
+                    run,
+                    base,
+                    base.of_invariant(invariant, truth, _scale(errors)),
+                    errors,
+                    work.get(invariant.name),
+                )
                 for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
             ]
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
@@ -141,8 +156,16 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
     return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
 
 
-def _conserved(run: _Run, base: Floor, attainable: Floats, errors: Errors) -> Gated:
-    finding = judge(errors, attainable, _reason(base, errors, attainable, "gradient"))
+def _conserved(
+    run: _Run, base: Floor, attainable: Floats, errors: Errors, work: ClockWork | None
+) -> Gated:
+    """``attainable`` is what rounding the momenta leaves; under a clock its roundings do ``work`` too."""
+    if work is not None:
+        steps = max(run.trajectory.steps, len(base.times))
+        roundoff = run.problem.rung.unit_roundoff
+        attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
+    reason = _reason(base, errors, attainable, "gradient") + (f", {BECAUSE}" if work else "")
+    finding = judge(errors, attainable, reason)
     return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
 
 

@@ -77,8 +77,8 @@ def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:
 def exit_status(verdicts: Iterable[Verdict]) -> int:
     """0 if nothing failed, 1 if a gate failed, 3 if nothing failed but something is undecided.
 
-    A scene that the arithmetic had to refuse, or whose gate is vacuous, is no pass either unless it
-    was expected; until the list of expectations exists both count as undecided.
+    A scene that the arithmetic had to refuse, or whose gate is vacuous, is no pass either: here both
+    count as undecided. Where such verdicts are expected, `verify.expected` knows of it.
     """
     found = {verdict.verdict for verdict in verdicts}
     if Status.FAIL in found:

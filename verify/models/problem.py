@@ -21,7 +21,7 @@ from verify.models.units import Units, natural_units
 from verify.scenes import tensors
 from verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from verify.scenes.instants import Instants
-from verify.scenes.manufactured import Wave
+from verify.scenes.manufactured import Manufactured, Wave
 from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from verify.scenes.scene import Scene
@@ -65,6 +65,7 @@ class Problem:
 
     @property
     def state(self) -> Mapping[str, Fraction]:
+        """The initial state by name, in the units of the problem."""
         return dict(zip(self.form.states, self.initial, strict=True))
 
     def with_equations(self, equations: Equations) -> Problem:
@@ -119,15 +120,11 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     """The problem that somebody else's answer solves, at the times it has rows for.
 
     Others store I and omega0, and whatever they make of I^-1 is theirs: so I and omega0 are rounded
-    to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. The instants are exact. The
-    rest is as `pose` would have it. Raises NotRepresentable where the rounded data are no body, and for a
-    manufactured motion: what others make of its loads, and which of its numbers they round, is theirs.
+    to the rung, the 21 coefficients and x, y likewise, and I^-1 is exact. Of a manufactured motion they
+    store what the scene writes, the frequencies and coefficients of omega, or of x and y; it begins where
+    the rounded ones say, and the loads are those of the rounded body. The instants are exact. The rest is
+    as `pose` would have it. Raises NotRepresentable where the rounded data are no body.
     """
-    if scene.body.manufactured is not None:
-        raise NotRepresentable(
-            "expected loads that are constant, got a manufactured motion, whose loads everybody rounds in "
-            f"a way of his own: hand a solver to `run` instead of a file to `check` @ {scene.name}"
-        )
     posed, clock = pose(scene, rung), Clock(scene.clock.start, instants)
     body, initial = _stored(scene, _Rounding(rung))
     return replace(
@@ -141,6 +138,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
     """Body and initial state, each number of the scene rounded once where it stands."""
     one, body, start = Fraction(1), scene.body, scene.initial
+    motion = _stored_motion(scene, rounded)
     attitude = _rounded_quaternion(start.attitude, rounded)
     if isinstance(body, RigidBody):
         assert isinstance(start, Spin)
@@ -149,8 +147,9 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
             raise NotRepresentable(
                 f"rounded to {rounded.rung.name}, the inertia tensor is not positive definite"
             )
-        solid = RigidBody(inertia, rounded.vector(body.moment, one))
-        return solid, Spin(rounded.vector(start.omega, one), attitude)
+        solid = RigidBody(inertia, rounded.vector(body.moment, one), motion)
+        omega = rounded.vector(start.omega, one) if motion is None else motion.start
+        return solid, Spin(omega, attitude)
     assert isinstance(start, Impulse)
     immersed = ImmersedBody(
         rounded.matrix(body.linear, one),
@@ -158,11 +157,28 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
         rounded.matrix(body.angular, one),
         rounded.vector(body.force, one),
         rounded.vector(body.couple, one),
+        manufactured=motion,
     )
     if not tensors.is_positive_definite(immersed.energy_matrix):
         raise NotRepresentable(f"rounded to {rounded.rung.name}, T is not positive definite")
     linear, angular = rounded.vector(start.linear, one), rounded.vector(start.angular, one)
+    if motion is not None:
+        linear, angular = motion.start[:3], motion.start[3:]
     return immersed, Impulse(linear, angular, attitude, rounded.vector(start.centre, one))
+
+
+def _stored_motion(scene: Scene, rounded: _Rounding) -> Manufactured | None:
+    """The manufactured motion, each of its numbers rounded once where it stands."""
+    motion, one = scene.body.manufactured, Fraction(1)
+    if motion is None:
+        return None
+    return Manufactured(
+        rounded.vector(motion.constant, one),
+        tuple(
+            Wave(rounded(w.frequency), rounded.vector(w.cosine, one), rounded.vector(w.sine, one))
+            for w in motion.waves
+        ),
+    )
 
 
 @dataclass(frozen=True)

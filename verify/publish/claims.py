@@ -1,6 +1,7 @@
 """The page of the ledger: first what a reader of the two texts must correct, then every entry.
 
-It is made from the rows of `claims --json` alone.
+It is made from the rows of `claims --json` alone, and holds nothing that another machine would change: what
+made the rows stands beside them, in data/claims.json.
 """
 
 from __future__ import annotations
@@ -9,11 +10,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from verify.publish import data, measured
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import replace_files
 
 PAGE: Final = "claims.md"
+SHEET: Final = "tables/claims.csv"
+CLAIMS: Final = f"{data.FOLDER}/claims.json"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --claims; do not edit"}
 
 Row = Mapping[str, Any]
 
@@ -38,7 +44,8 @@ _HOW: Final = (
 _REMAKE: Final = (
     "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "
     '`taylor-verify claims "hydromechanics 49 (17)"` shows one in full, and `--json` the same as data. '
-    "`taylor-verify publish --claims` rewrites this page."
+    f"`taylor-verify publish --claims` rewrites this page, its [CSV]({SHEET}) and [claims.json]({CLAIMS}), "
+    "which also names the versions, the processor and the command."
 )
 
 
@@ -67,9 +74,20 @@ def page(rows: Sequence[Row], cited: Mapping[str, str]) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def write(folder: Path, rows: Sequence[Row], cited: Mapping[str, str]) -> list[Path]:
-    """Put the page in place. Raises OSError for a folder that cannot be written."""
-    return list(replace_files(folder, {PAGE: page(rows, cited)}))
+def write(
+    folder: Path, rows: Sequence[Row], cited: Mapping[str, str], provenance: Row | None = None
+) -> list[Path]:
+    """Store the rows, and put page and sheet in place; ``provenance`` is what made them.
+
+    Raises OSError for a folder that cannot be written.
+    """
+    stored = {**_MADE_BY, "provenance": dict(provenance or {}), "cited": dict(cited)}
+    texts = {
+        CLAIMS: data.laid_out({**stored, "claims": list(rows)}),
+        PAGE: page(rows, cited),
+        SHEET: measured.claims(rows),
+    }
+    return list(replace_files(folder, texts))
 
 
 def _of(rows: Sequence[Row], *verdicts: str) -> list[Row]:

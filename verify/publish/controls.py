@@ -12,7 +12,7 @@ from verify.judge.verdict import Status
 from verify.publish.cells import NOTHING, figure
 from verify.publish.data import versions
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
-from verify.publish.page import MADE_BY
+from verify.publish.page import MADE_BY, traced
 from verify.publish.proof import MAIN, constant_shift, or_infinite, proven, times_bound, title
 from verify.publish.runs import STATE_QUANTITIES
 from verify.publish.sights import CONTROLS, Sight
@@ -79,14 +79,16 @@ def page(sights: Sequence[Sight]) -> str:
         "## To remake this",
         f"`taylor-verify publish --controls` runs every defect and its twin, and writes "
         f"[controls.json](../{CONTROLS}); this page, its [CSV](controls.csv) and the table in the "
-        f"README of the project are made from that alone. Made with {_versions(sights)}.",
+        f"README of the project are made from that alone. {_traced(sights)}",
     ]
     return "\n\n".join(block for block in blocks if block) + "\n"
 
 
-def _versions(sights: Iterable[Sight]) -> str:
-    found = versions(v for sight in sights for v in sight.verdicts.values())
-    return ", ".join(f"{package} {version}" for package, version in found.items()) or "unknown"
+def _traced(sights: Iterable[Sight]) -> str:
+    """All of them are of one run."""
+    verdicts = [v for sight in sights for v in sight.verdicts.values()]
+    given = verdicts[0].provenance if verdicts else {}
+    return traced({**given, "versions": versions(verdicts)})
 
 
 # The tables.
@@ -200,7 +202,7 @@ def _twins(sights: Sequence[Sight]) -> str:
 
 
 def short(sights: Sequence[Sight]) -> str:
-    """Some ten rows and four columns, between the marks BEGIN and END."""
+    """Some fifteen rows and four columns, between the marks BEGIN and END."""
     told = [sight for sight in _blindest_first(sights) if sight.told and sight.is_finished]
     columns = [
         Column("what was broken"),

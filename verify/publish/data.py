@@ -19,6 +19,7 @@ from typing import Any, Final
 
 from verify.judge.record import Record
 from verify.judge.verdict import Status, Verdict
+from verify.publish import file_names
 from verify.publish.replacement import first_line, replace_files
 from verify.publish.runs import Run, runs
 
@@ -45,7 +46,7 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     # The verdicts come last: once they are in place, what they speak of is there.
     texts = _record_texts(records)
     texts[TIMINGS] = laid_out({**_MADE_BY, **_timings(found)})
-    rows = [_row(verdict) for run in found for verdict in run.verdicts]
+    rows = [row(verdict) for run in found for verdict in run.verdicts]
     same = versions(verdict for run in found for verdict in run.verdicts)
     texts[VERDICTS] = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
     return replace_files(data, texts, stale=_own_records(data))
@@ -62,7 +63,7 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     timed = _timed(folder / FOLDER / TIMINGS)
     with expecting("verdicts", file):
         same = stored["versions"]
-        return tuple(_verdict(row, same, timed.get(_key(row), {})) for row in stored["verdicts"])
+        return tuple(verdict(each, same, timed.get(_key(each), {})) for each in stored["verdicts"])
 
 
 def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
@@ -81,16 +82,17 @@ def _numerical(found: Mapping[str, str]) -> dict[str, str]:
 # Writing.
 
 
-def _row(verdict: Verdict) -> dict[str, Any]:
-    row = verdict.row()
-    del row["seconds"]
+def row(verdict: Verdict) -> dict[str, Any]:
+    """A verdict as it is stored: without what is another number every time, or on every machine."""
+    stored = verdict.row()
+    del stored["seconds"]
     if verdict.verdict is not Status.FAIL:
         # Which way roundings push the time is another draw on every machine.
         for name in _SHIFT:
-            del row[name]
+            del stored[name]
     apart = ("versions", *_MACHINE)
-    row["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
-    return row
+    stored["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
+    return stored
 
 
 def _timings(found: Iterable[Run]) -> dict[str, Any]:
@@ -99,16 +101,17 @@ def _timings(found: Iterable[Run]) -> dict[str, Any]:
     timings = []
     for run in found:
         verdict = run.verdicts[0]
-        machine = _machine(verdict)
-        if machine not in machines:
-            machines.append(machine)
+        own = machine(verdict)
+        if own not in machines:
+            machines.append(own)
         key = {name: getattr(run, name) for name in _RUN}
-        place = machines.index(machine)
+        place = machines.index(own)
         timings.append({**key, "seconds": verdict.seconds, "machine": place})
     return {"machines": machines, "timings": timings}
 
 
-def _machine(verdict: Verdict) -> dict[str, Any]:
+def machine(verdict: Verdict) -> dict[str, Any]:
+    """Where a verdict was made, as far as it says so: Python, processor and command."""
     given = verdict.provenance
     python = given.get("versions", {}).get("python")
     known = {"python": python} if python else {}
@@ -118,7 +121,8 @@ def _machine(verdict: Verdict) -> dict[str, Any]:
 def _record_texts(records: Iterable[Record]) -> dict[str, str]:
     texts: dict[str, str] = {}
     for record in records:
-        name = f"{record.scene.replace('/', '-')}.{record.solver}.{record.rung}.json"
+        stem = f"{file_names.of_scene(record.scene)}.{file_names.of_solver(record.solver)}"
+        name = f"{stem}.{record.rung}.json"
         text = laid_out({**_MADE_BY, **record.document()})
         if texts.setdefault(f"{RECORDS}/{name}", text) != text:
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
@@ -188,13 +192,16 @@ def _key(row: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(row[name] for name in _RUN)
 
 
-def _verdict(row: dict[str, Any], same: dict[str, str], timing: dict[str, Any]) -> Verdict:
-    machine = dict(timing.get("machine", {}))
-    python = {"python": machine.pop("python")} if "python" in machine else {}
+def verdict(
+    stored: Mapping[str, Any], same: Mapping[str, str], timing: Mapping[str, Any]
+) -> Verdict:
+    """A stored row as it was, made with the versions ``same``; seconds and machine as timed."""
+    own = dict(timing.get("machine", {}))
+    python = {"python": own.pop("python")} if "python" in own else {}
     found = {**python, **same}
-    provenance = {"versions": found} if found else {}
-    provenance |= {**machine, **row["provenance"]}
-    given = {**row, "verdict": Status(row["verdict"]), "provenance": provenance}
+    provenance: dict[str, Any] = {"versions": found} if found else {}
+    provenance |= {**own, **stored["provenance"]}
+    given = {**stored, "verdict": Status(stored["verdict"]), "provenance": provenance}
     return Verdict(**given, seconds=timing.get("seconds"))
 
 

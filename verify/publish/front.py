@@ -34,6 +34,10 @@ _READING = (
 _CONTENTS = (
     ("[tables](tables/README.md)", "every number, and how a cell is read"),
     ("[tables/accuracy.md](tables/accuracy.md)", "the error of each scene on each rung"),
+    (
+        "[tables/attainable.md](tables/attainable.md)",
+        "what was attainable, beside what was reached",
+    ),
     ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
     ("[tables/gates.md](tables/gates.md)", "every verdict, its bound and the reason of the bound"),
     ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),

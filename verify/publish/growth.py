@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from verify.judge.verdict import Status
-from verify.publish import data, figures
+from verify.publish import data, figures, measured
 from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
 from verify.publish.pictures import growth as diagram
@@ -21,6 +21,7 @@ from verify.publish.replacement import replace_files
 GROWTH: Final = f"{data.FOLDER}/growth.json"
 LONG: Final = f"{data.FOLDER}/growth-long.json"
 PAGE: Final = "tables/growth.md"
+SHEET: Final = "tables/growth.csv"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --growth; do not edit"}
 _MAKER: Final = "<!-- made by taylor-verify publish --growth; do not edit -->"
@@ -83,7 +84,7 @@ def pages(folder: Path) -> dict[str, str]:
     if not found["runs"]:
         return {}
     with data.expecting("ensembles", folder / GROWTH):
-        return {PAGE: page(found, _shown(folder, found))}
+        return {PAGE: page(found, _shown(folder, found)), SHEET: measured.growth(found["runs"])}
 
 
 def load(folder: Path) -> dict[str, Any]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
-from typing import Final
+from typing import Any, Final
 
 from verify.judge.verdict import Status, Verdict, summary
 from verify.publish.cells import figure, instant, judged, reason
@@ -76,6 +76,15 @@ def unscored(runs: Iterable[Run]) -> str:
         if verdict.max is None
     ]
     return f"Without a number:\n\n{bullets(rows)}" if rows else ""
+
+
+def traced(provenance: Mapping[str, Any]) -> str:
+    """What made the numbers, in a sentence or two: versions, and processor and command where known."""
+    packages = (f"{name} {found}" for name, found in provenance.get("versions", {}).items())
+    told = f"Made with {', '.join(packages) or 'unknown versions'}."
+    if "processor" not in provenance or "command" not in provenance:
+        return told
+    return f"{told} Machine: {prose(provenance['processor'])}. By {code(provenance['command'])}."
 
 
 def _remake(verdicts: Sequence[Verdict]) -> str:

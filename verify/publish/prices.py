@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from verify.publish import data, figures
+from verify.publish import data, figures, measured
 from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import Column, bullets, code, prose, table
 from verify.publish.page import MADE_BY
@@ -14,6 +14,7 @@ from verify.publish.replacement import replace_files
 
 PRICES: Final = f"{data.FOLDER}/prices.json"
 PAGE: Final = "tables/prices.md"
+SHEET: Final = "tables/prices.csv"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --prices; do not edit"}
 _ROOTS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
@@ -57,7 +58,8 @@ def pages(folder: Path) -> dict[str, str]:
         return {}
     stored = data.read_document(file)
     with data.expecting("measured prices", file):
-        return {PAGE: page(stored, folder)}
+        sheet = measured.prices(stored["rows"], stored["equal"])
+        return {PAGE: page(stored, folder), SHEET: sheet}
 
 
 def page(found: Mapping[str, Any], folder: Path) -> str:

@@ -7,7 +7,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, Final
 
-from verify.publish import data, figures
+from verify.publish import data, figures, measured
 from verify.publish.cells import NOTHING, figure
 from verify.publish.markdown import Column, bullets, code, prose, table
 from verify.publish.page import MADE_BY
@@ -17,6 +17,7 @@ from verify.publish.replacement import replace_files
 
 REACH: Final = f"{data.FOLDER}/reach.json"
 PAGE: Final = "tables/reach.md"
+SHEET: Final = "tables/reach.csv"
 DIGITS: Final = (3, 6, 12)
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --reach; do not edit"}
@@ -71,7 +72,7 @@ def pages(folder: Path) -> dict[str, str]:
         return {}
     stored = data.read_document(file)
     with data.expecting("a measured reach", file):
-        return {PAGE: page(stored, folder)}
+        return {PAGE: page(stored, folder), SHEET: measured.reach(stored["rows"])}
 
 
 def pictures(document: Document) -> list[Picture]:

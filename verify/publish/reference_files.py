@@ -4,6 +4,7 @@ NAME.csv      a heading line and a row for every sample time, in decimal text
 NAME.json     the same columns as arrays of strings, and the question they answer
 README.md     columns, conventions, tolerances
 example.cpp   a program that compares a trajectory with a reference
+example.rs    a program that integrates a body and compares itself with a reference
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from verify.publish import file_names
 from verify.publish.markdown import Column, code, table
 from verify.publish.page import MADE_BY
 from verify.publish.replacement import first_line, replace_files
@@ -20,6 +22,7 @@ from verify.publish.replacement import first_line, replace_files
 FOLDER: Final = "reference"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --reference; do not edit"}
+EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
 _ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
 
@@ -37,16 +40,15 @@ def write(folder: Path | str, documents: Sequence[Document]) -> list[Path]:
     for document in documents:
         texts[f"{_stem(document)}.csv"] = _sheet(document["columns"])
         texts[f"{_stem(document)}.json"] = _laid_out(document)
-    # The program is the same as in the page, and written once.
-    example = (_TEMPLATES / "example.cpp").read_text(encoding="utf-8")
-    texts["example.cpp"] = example
-    texts["README.md"] = _readme(documents, example)
+    examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
+    texts |= examples
+    texts["README.md"] = _readme(documents, examples)
     target = Path(folder) / FOLDER
     return list(replace_files(target, texts, stale=_own_files(target)))
 
 
 def _stem(document: Document) -> str:
-    return str(document["scene"]).replace("/", "-")
+    return file_names.of_scene(str(document["scene"]))
 
 
 def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
@@ -63,12 +65,15 @@ def _laid_out(document: Document) -> str:
     return "{" + ",\n ".join(lines) + "}\n"
 
 
-def _readme(documents: Iterable[Document], example: str) -> str:
+def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
     headings = ("scene", "regime", "route", "columns", "rows", "files")
     columns = [Column(heading, heading == "rows") for heading in headings]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
     filled = text.replace("{{scenes}}", table(columns, [_row(found) for found in documents]))
-    return f"{MADE_BY}\n{filled.replace('{{example}}', example.rstrip())}"
+    for name, program in examples.items():
+        # A program is the same as in its file, and written once.
+        filled = filled.replace(f"{{{{{name}}}}}", program.rstrip())
+    return f"{MADE_BY}\n{filled}"
 
 
 def _row(document: Document) -> list[str]:

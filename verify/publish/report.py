@@ -9,8 +9,10 @@ from typing import Any
 from verify.judge.record import Record
 from verify.judge.verdict import Verdict
 from verify.publish import (
+    attainable,
     controls,
     data,
+    extremes,
     figures,
     growth,
     prices,
@@ -20,6 +22,7 @@ from verify.publish import (
     tables,
     tradeoff,
     trades,
+    traps,
     worst,
 )
 from verify.publish.contents import others
@@ -55,7 +58,13 @@ def publish(folder: Path | str) -> list[Path]:
     verdicts = load(place)
     measured = (
         *(_controls(place), tradeoff.pages(place), prices.pages(place)),
-        *(growth.pages(place), worst.pages(place), reach.pages(place)),
+        *(
+            growth.pages(place),
+            worst.pages(place),
+            reach.pages(place),
+            traps.pages(place),
+            extremes.pages(place),
+        ),
     )
     texts = {name: text for pages in measured for name, text in pages.items()}
     besides = others(place, texts)
@@ -63,6 +72,8 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/README.md": tables.readme(verdicts, besides),
         f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
         f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
+        f"{TABLES}/attainable.md": attainable.attainable(verdicts),
+        f"{TABLES}/attainable.csv": sheets.attainable(verdicts),
         f"{TABLES}/conserved.md": tables.conserved(verdicts),
         f"{TABLES}/conserved.csv": sheets.conserved(verdicts),
         f"{TABLES}/gates.md": tables.gates(verdicts),

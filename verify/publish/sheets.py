@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 from verify.judge.verdict import Verdict
@@ -25,6 +25,11 @@ _ACCURACY: Final = (
     *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
     *("bound", "steps", "verdict", "outcome"),
 )
+_ATTAINABLE: Final = (
+    *_RUN,
+    *("quantity", "max", "at", "attainable", "ratio", "ratio_at", "unit", "max_u", "attainable_u"),
+    *("roundoff", "verdict", "outcome"),
+)
 _GATES: Final = (
     *_RUN,
     *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
@@ -36,7 +41,12 @@ _CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
 
 def accuracy(verdicts: Iterable[Verdict]) -> str:
     """A row for every state quantity of every run."""
-    return _sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
+    return sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
+
+
+def attainable(verdicts: Iterable[Verdict]) -> str:
+    """A row for every state quantity of every run, with what was attainable."""
+    return sheet(_ATTAINABLE, (_fields(v) for run in runs(verdicts) for v in run.state))
 
 
 def conserved(verdicts: Iterable[Verdict]) -> str:
@@ -45,12 +55,17 @@ def conserved(verdicts: Iterable[Verdict]) -> str:
     quantities = conserved_quantities(found)
     names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
     rows = [_conserved_row(run, quantities_of_scene(run, found)) for run in found]
-    return _sheet([*_RUN, "verdict", *names], rows)
+    return sheet([*_RUN, "verdict", *names], rows)
 
 
-def gates(verdicts: Iterable[Verdict]) -> str:
-    """A row for every verdict."""
-    return _sheet(_GATES, (_fields(v) for run in runs(verdicts) for v in run.verdicts))
+def gates(
+    verdicts: Iterable[Verdict], more: Callable[[Verdict], dict[str, Any]] | None = None
+) -> str:
+    """A row for every verdict; ``more`` has further columns of each, the same ones for all."""
+    found = [v for run in runs(verdicts) for v in run.verdicts]
+    further = [more(v) if more else {} for v in found]
+    names = [*_GATES, *(further[0] if further else ())]
+    return sheet(names, (_fields(v) | own for v, own in zip(found, further, strict=True)))
 
 
 def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
@@ -67,6 +82,7 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
     """The verdict's own fields, and the errors in u; a word in place of a maximum that is none."""
     row = verdict.row() | {
         "mean_u": in_roundoffs(verdict, verdict.mean),
+        "attainable_u": in_roundoffs(verdict, verdict.attainable),
         "scene_sha256": verdict.provenance.get("scene"),
     }
     if verdict.max is None:
@@ -75,7 +91,8 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
     return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
 
 
-def _sheet(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
+def sheet(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
+    """A line for every row: the columns of these names, empty where a row has none."""
     text = io.StringIO()
     writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()

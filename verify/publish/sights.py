@@ -93,6 +93,7 @@ def write(folder: Path, document: Mapping[str, Any]) -> Path:
         {
             **_MADE_BY,
             "versions": data.versions(verdicts),
+            "machine": data.machine(verdicts[0]) if verdicts else {},
             "factor": document["factor"],
             "defects": document["defects"],
             "verdicts": [_row(verdict) for verdict in verdicts],
@@ -112,8 +113,8 @@ def load(folder: Path) -> tuple[Sight, ...]:
         return ()
     stored = data.read_document(file)
     with data.expecting("the rows of a controls run", file):
-        versions = {"versions": stored["versions"]}
-        verdicts = [_verdict(row, versions) for row in stored["verdicts"]]
+        provenance = {"versions": stored["versions"], **stored.get("machine", {})}
+        verdicts = [_verdict(row, provenance) for row in stored["verdicts"]]
         return tuple(_sight(row, verdicts, stored["factor"]) for row in stored["defects"])
 
 

@@ -44,8 +44,20 @@ _RATIO = (
 )
 _CONTENTS = (
     ("[State errors](accuracy.md)", "[csv](accuracy.csv)", "the error of what each scene tracks"),
+    (
+        "[Attainable and reached](attainable.md)",
+        "[csv](attainable.csv)",
+        "the same beside what perfect rounding would leave, a column a rung",
+    ),
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
     ("[Gates](gates.md)", "[csv](gates.csv)", "every verdict, its bound and why that bound"),
+)
+_RENDERED = (
+    "`taylor-verify publish --paper` renders these pages, and the ledger of claims, from their Markdown "
+    "and from nothing else: each as NAME.tex, which pdflatex compiles as it is (three times, for the "
+    "columns to stand right), and as NAME.html, which is one file without a script; all of them "
+    "together as paper.tex. The gates are left to their CSV: a line for every verdict with its reason "
+    "is for searching and not for reading."
 )
 _RUN = (Column("scene"), Column("rung"))
 
@@ -218,14 +230,17 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
         "## How to read a cell",
         bullets(how),
         table([Column("verdict"), Column("meaning")], meanings),
+        "## In LaTeX and HTML",
+        _RENDERED,
         "## Scenes",
         table([Column("scene"), Column("rungs"), Column("SHA-256")], _scenes(verdicts)),
     )
 
 
 def _besides(others: Iterable[Page]) -> str:
-    rows = [other.row("tables") for other in others]
-    return table([Column("besides"), Column("what it has")], rows) if rows else ""
+    rows = [other.row_with_sheet() for other in others]
+    columns = [Column("besides"), Column("every digit"), Column("what it has")]
+    return table(columns, rows) if rows else ""
 
 
 def _scenes(verdicts: Sequence[Verdict]) -> list[list[str]]:

@@ -48,7 +48,8 @@ def page(found: Trades, folder: Path) -> str:
         "tolerances overlap, which of them is the cheapest is chance.",
         _by_digits(found),
         "## What a wider number costs",
-        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left.",
+        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
+        "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
         _by_rung(found),
         figures.shown(folder, figures.of_rungs(found.trades)),
         "## Asked for and achieved",
@@ -170,7 +171,14 @@ def _by_rung(found: Trades) -> str:
         own = {row["rung"]: row for row in trade.sound if _is_own_tolerance(row)}
         cells = [_rung_cell(own[rung]) if rung in own else NOTHING for rung in ladder]
         rows.append([code(trade.scene), *cells])
+        if trade.attainable:
+            rows.append(["*attainable*", *(_floor_cell(trade.attainable.get(r)) for r in ladder)])
     return table(columns, rows)
+
+
+def _floor_cell(least: float | None) -> str:
+    """The digits that one rounding a sample leaves."""
+    return f"{-log10(least):.1f} digits" if least and least < 1 else NOTHING
 
 
 def _is_own_tolerance(row: Row) -> bool:

@@ -11,7 +11,7 @@ interval besides.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,13 +29,17 @@ Row = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Trade:
-    """One scene: a row for every setting, the coarsest of a family first."""
+    """One scene: a row for every setting, the coarsest of a family first.
+
+    ``attainable`` is what rounding alone leaves on each rung; empty in measurements without it.
+    """
 
     scene: str
     title: str
     track: tuple[str, ...]
     rows: tuple[Row, ...]
     requests: tuple[str, ...]
+    attainable: Mapping[str, float | None] = field(default_factory=dict)
 
     @property
     def sound(self) -> tuple[Row, ...]:
@@ -44,7 +48,12 @@ class Trade:
 
     def document(self) -> dict[str, Any]:
         """As `tradeoff --json` has it for one scene, as far as it is stored."""
-        return {"scene": self.scene, "track": list(self.track), "points": list(self.rows)}
+        return {
+            "scene": self.scene,
+            "track": list(self.track),
+            "points": list(self.rows),
+            "attainable": dict(self.attainable),
+        }
 
 
 @dataclass(frozen=True)
@@ -101,7 +110,8 @@ def _trade(
             times = {name: own.get(name) for name in _OF_A_ROW}
             rows.append({**row, **times, "spread": _spread(times)})
     track, requests = tuple(scene["track"]), tuple(scene["requests"])
-    return Trade(scene["scene"], scene["title"], track, tuple(rows), requests)
+    floors = scene.get("attainable") or {}
+    return Trade(scene["scene"], scene["title"], track, tuple(rows), requests, floors)
 
 
 def _spread(times: Mapping[str, Any]) -> float | None:

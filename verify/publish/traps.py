@@ -7,17 +7,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from verify.publish import data
+from verify.publish import data, measured
 from verify.publish.cells import INFINITE, NOTHING, figure
 from verify.publish.markdown import Column, bold, bullets, prose, table
+from verify.publish.page import traced
 from verify.publish.replacement import replace_files
 
 TRAPS: Final = f"{data.FOLDER}/traps.json"
 PAGE: Final = "tables/traps.md"
+SHEET: Final = "tables/traps.csv"
 SCRIPTS: Final = "upstream"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
@@ -89,10 +91,11 @@ class Trap:
 
 @dataclass(frozen=True)
 class Stored:
-    """All entries, and the versions that they were measured with."""
+    """All entries, the versions that they were measured with, and the machine where it is known."""
 
     versions: Mapping[str, str]
     traps: tuple[Trap, ...]
+    machine: Mapping[str, str] = field(default_factory=dict)
 
 
 # The files.
@@ -105,7 +108,19 @@ def publish(folder: Path, document: Mapping[str, Any]) -> list[Path]:
     """
     text = data.laid_out({**_MADE_BY, **document})
     stored = replace_files(folder, {TRAPS: text})
-    return [*stored, *replace_files(folder, {PAGE: page(load(folder))})]
+    return [*stored, *replace_files(folder, pages(folder))]
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """The page and its sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError and ValueError as `load` does.
+    """
+    if not (folder / TRAPS).exists():
+        return {}
+    found = load(folder)
+    sheet = measured.traps(asdict(trap) for trap in found.traps)
+    return {PAGE: page(found), SHEET: sheet}
 
 
 def load(folder: Path) -> Stored:
@@ -116,7 +131,8 @@ def load(folder: Path) -> Stored:
     file = folder / TRAPS
     stored = data.read_document(file)
     with data.expecting("the rows of a run of the traps", file):
-        return Stored(stored["versions"], tuple(_trap(row) for row in stored["traps"]))
+        traps = tuple(_trap(row) for row in stored["traps"])
+        return Stored(stored["versions"], traps, stored.get("machine", {}))
 
 
 def _trap(row: Mapping[str, Any]) -> Trap:
@@ -133,7 +149,6 @@ def _case(row: Mapping[str, Any]) -> Case:
 def page(stored: Stored) -> str:
     """What it proves, every trap in one line, every trap in numbers, and what the gates see."""
     traps = stored.traps
-    made_with = ", ".join(f"{package} {version}" for package, version in stored.versions.items())
     blocks = [
         f"{_MAKER}\n# A plain heyoka call against this suite's driver",
         _WHAT,
@@ -149,7 +164,8 @@ def page(stored: Stored) -> str:
         *_entries(traps),
         "## To remake this",
         f"`taylor-verify publish --controls` makes all of these calls again and writes "
-        f"[traps.json](../{TRAPS}), from which this page is made. Made with {made_with}.",
+        f"[traps.json](../{TRAPS}), from which this page and its [CSV](traps.csv) are made. "
+        f"{traced({'versions': stored.versions, **stored.machine})}",
     ]
     return "\n\n".join(blocks) + "\n"
 

@@ -6,14 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from verify.publish import data
+from verify.publish import data, measured
 from verify.publish.cells import figure
 from verify.publish.markdown import Column, code, prose, table
-from verify.publish.page import MADE_BY
+from verify.publish.page import MADE_BY, traced
 from verify.publish.replacement import replace_files
 
 WORST: Final = f"{data.FOLDER}/worst.json"
 PAGE: Final = "tables/worst.md"
+SHEET: Final = "tables/worst.csv"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --worst; do not edit"}
 
@@ -55,7 +56,7 @@ def pages(folder: Path) -> dict[str, str]:
         return {}
     stored = data.read_document(file)
     with data.expecting("the worst of every family", file):
-        return {PAGE: page(stored)}
+        return {PAGE: page(stored), SHEET: measured.worst(stored)}
 
 
 def page(stored: Mapping[str, Any]) -> str:
@@ -73,7 +74,9 @@ def page(stored: Mapping[str, Any]) -> str:
         "## To remake this",
         f"`taylor-verify publish --worst --seconds {stored['seconds']:g} --seed {stored['seed']}` hunts "
         "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
-        "find worse ones: the scenes that were found are the fact, and not that there are no others.",
+        "find worse ones: the scenes that were found are the fact, and not that there are no others. "
+        f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST}).",
+        traced(stored.get("provenance", {})),
     ]
     return "\n\n".join(blocks) + "\n"
 

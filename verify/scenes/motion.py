@@ -31,7 +31,11 @@ class Spin:
 
 @dataclass(frozen=True)
 class Impulse:
-    """The initial state of a solid in a fluid: x and y in body axes, the origin in space axes."""
+    """The initial state of a solid in a fluid.
+
+    ``linear`` x and ``angular`` y, about the body's origin, are the impulses of body and fluid together,
+    in body axes; ``attitude`` is a quaternion as in Spin; ``centre`` is the body's origin, in space axes.
+    """
 
     linear: Vector
     angular: Vector

@@ -50,7 +50,8 @@ class Model(NamedTuple):
 def load(scene: str | Path) -> Scene:
     """The scene at a path, or the shipped scene of that name (``euler/generic``).
 
-    Raises Refused with every fault of the file.
+    Every number becomes the rational that its text writes. Raises Refused with every fault of the file
+    at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
     file = library.find(str(scene))
     try:

@@ -246,6 +246,7 @@ def _numbers(trade: TradeOff) -> dict[str, Any]:
         "title": trade.scene.title,
         "track": found["track"],
         "sha256": trade.scene.digest,
+        "attainable": found["attainable"],
         "points": points,
         "requests": found["requests"],
     }

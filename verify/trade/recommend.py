@@ -53,6 +53,7 @@ class Recommendation:
     left_out: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
+        """As ``tradeoff --target --json`` prints it."""
         return {
             "solver": self.solver.name,
             "setting": self.solver.setting,
@@ -76,6 +77,7 @@ class Recommendation:
 
     @property
     def sentence(self) -> str:
+        """The same for a person, with what was not measured and why."""
         return (
             f"To stay below {self.target:.3g}: {label(self.solver, self.rung)}, "
             f"{self.seconds:.3g} s per solve. Its largest error over {self.starts} starts "
@@ -92,7 +94,10 @@ def recommend(
 ) -> Recommendation:
     """The fastest setting measured here whose error stays below ``error`` on the scene and nearby.
 
-    The error is the largest of all tracked quantities, in the judge's units. Raises OutOfReach where
+    The error is the largest of all tracked quantities, in the judge's units (relative to the largest
+    omega or impulse, radians, arc length). ``asked`` are the settings to choose from, all that there are
+    unless given; ``seed`` is that of the starts nearby and of the order of timing. It takes from seconds
+    to minutes, because it measures. Raises OutOfReach where
     nothing reaches it, ValueError for what is no positive number, and scenes.faults.Refused for a
     scene that cannot be read. Rungs on which rounding alone leaves far more are not measured.
     """
@@ -122,7 +127,10 @@ def check_target(error: float) -> None:
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:
-    """The same from a trade that is measured already. Raises OutOfReach."""
+    """The same from a trade that is measured already.
+
+    ``error`` is as in `recommend`. Raises OutOfReach where nothing reaches it.
+    """
     scenes = nearby(trade.scene, trade.seed)
     truths = Truths()
     hopeful = [p for p in sound_points(trade.points) if MARGIN * p.error <= error]

@@ -59,6 +59,7 @@ class Setting:
 
     @property
     def label(self) -> str:
+        """Solver, setting and rung in one line."""
         return label(self.solver, self.rung)
 
     @property
@@ -106,9 +107,10 @@ def outside(
     only: Iterable[str] | None = None,
     tolerances: Iterable[str] = LIBRARY_TOLERANCES,
 ) -> tuple[Setting, ...]:
-    """The integrators of other libraries, or ``only`` those of these names; on f64, which all have.
+    """The integrators of other libraries, or ``only`` those of these names, at each of the ``tolerances``.
 
-    One that cannot be had says so when it is asked to run.
+    They are on f64, which all have: none where the ``rungs`` are without it. One that cannot be had
+    says so when it is asked to run.
     """
     from verify.solvers.entrant import entrants
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from time import perf_counter
 from typing import Any
 
@@ -14,6 +15,7 @@ from verify.scenes.precision import Rung
 from verify.scenes.scene import Scene
 from verify.solvers.trajectory import Outcome, Trajectory
 from verify.trade.accuracy import Accuracy, Truth
+from verify.trade.attainability import least_error
 from verify.trade.front import front, front_sentences, request_sentences
 from verify.trade.point import Point, point
 from verify.trade.setting import Setting, settings
@@ -31,14 +33,16 @@ class TradeOff:
 
     @property
     def front(self) -> list[Point]:
+        """The sound points that no other beats in both time and error, the fastest first."""
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """``sentences`` tell the front in words, ``integrators`` that of integrators alone."""
+        """As JSON holds it: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
             "points": [p.row() for p in self.points],
+            "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
             "integrators": self._front_of_integrators(),
@@ -53,11 +57,21 @@ class TradeOff:
             "provenance": provenance(self.scene.digest),
         }
 
+    @property
+    def attainable(self) -> dict[str, float | None]:
+        """By rung, the least that rounding leaves there; None where it is not known or no number."""
+        rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
+        return {rung.name: _finite(least_error(self.scene, rung)) for rung in rungs}
+
     def _front_of_integrators(self) -> list[str]:
         """The front in words without what needs no steps; empty where that is not on the front."""
         if all(p.timed.setting.is_integrator for p in self.front):
             return []
         return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
+
+
+def _finite(error: float | None) -> float | None:
+    return error if error is not None and isfinite(error) else None
 
 
 def trade_off(
@@ -68,7 +82,12 @@ def trade_off(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> TradeOff:
-    """Measure these settings on the scene, or all there are; see `timing.timed`."""
+    """Measure the settings ``asked``, or all there are: errors, and the best of ``repeats`` solves.
+
+    Rounds are shuffled by ``seed`` anew each time; ``clock`` tells seconds, and a setting that has had
+    ``patience`` seconds is timed no further (see `timing.timed`). A setting that cannot run is a point
+    that says why, not an error.
+    """
     asked = settings(scene) if asked is None else asked
     posed, refused = _posed(scene, asked)
     measured = {one.setting: one for one in timed(posed, repeats, seed, clock, patience)}

@@ -83,6 +83,8 @@ def elements(scene: Scene, digits: int) -> Elements:
 def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
     try:
+        if FreeSpin(body.inertia, omega).discriminant:
+            return _washboard(body, omega, digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
         story = (
@@ -92,6 +94,14 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
         return Elements(NO_CLOSED_FORM, (), (story, _WORK))
     found = settled(lambda _: _circle(spin), digits)
     return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
+
+
+def _washboard(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
+    """Three different moments; raises NoClosedForm where M is along none of their axes."""
+    from verify.exact.euler.moments import washboard, washboard_elements
+
+    board = washboard.Washboard(body.inertia, body.moment, omega)
+    return washboard_elements.elements(board, digits)
 
 
 def _circle(spin: LoadedSpin) -> list[Element]:
@@ -223,6 +233,13 @@ def _triaxial(spin: FreeSpin) -> list[Element]:
             "time",
             "from one turn-over to the next: omega's middle component is zero this often",
             "2K/lam",
+        ),
+        Element(
+            "nutation_frequency",
+            4 * mp.pi / orbit.period,
+            "radians/time",
+            "frequency at which the encircled axis nods to H, in space axes",
+            "pi lam/K",
         ),
     ]
     if m_prime * _NEAR.denominator <= _NEAR.numerator:

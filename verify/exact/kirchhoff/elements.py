@@ -191,6 +191,11 @@ def _recurring(alone: Scene, working: int) -> list[Element]:
     for name, (unit, meaning) in words.items():
         if name in known:
             found.append(Element(name, known[name], unit, meaning, _SOURCE))
+        if name == "period" and "period" in known:
+            frequency, meaning = 2 * mp.pi / known["period"], "frequency of nutation"
+            found.append(
+                Element("nutation_frequency", frequency, "radians/time", meaning, "2 pi/period")
+            )
         if name == "rate" and "m" in known:
             meaning = "modulus of the elliptic functions"
             found.append(Element("k", mp.sqrt(known["m"]), "", meaning, _SOURCE))

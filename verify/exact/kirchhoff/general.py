@@ -1,8 +1,8 @@
 """What is told of the orbit of a free solid without an axis of symmetry.
 
 Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; a
-period where the motion stays in a plane of the body; and of the steady screws beside it, which of
-them are stable.
+period where the motion stays in a plane of the body, two rates in Weber's case; and of the steady
+screws beside it, which of them are stable.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from verify.exact.kirchhoff.conserved import conserved
 from verify.exact.kirchhoff.integrable import fourth_integral
 from verify.exact.kirchhoff.pendulum import Pendulum
 from verify.exact.kirchhoff.plane import Plane, plane, regime
-from verify.exact.solution import NO_CLOSED_FORM
+from verify.exact.kirchhoff.weber.curve import REGIME as WEBER
+from verify.exact.kirchhoff.weber.curve import Curve, curve
+from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from verify.exact.kirchhoff.screws import Screw
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
+_CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
 _THREE: Final = (
     "Conserved: the kinetic energy T, F^2 = x.x and FG = x.y; in space axes the linear impulse and "
     "the moment of the impulses."
@@ -54,6 +57,10 @@ _STORY: Final[Mapping[str, str]] = {
         "The body turns over once in a plane, from end on to end on (heteroclinic); there is no "
         "period."
     ),
+    WEBER: (
+        "x and y are functions of two angles that grow evenly, by theta functions of two variables "
+        "(Weber's case): there is no period."
+    ),
 }
 
 
@@ -63,13 +70,20 @@ def elements_of(scene: Scene, digits: int) -> Elements:
     assert isinstance(body, ImmersedBody)
     assert isinstance(start, Impulse)
     found = plane(scene)
-    kind = NO_CLOSED_FORM if found is None else regime(found)
     alone = replace(scene, track=frozenset())
+    kind, weber = NO_CLOSED_FORM if found is None else regime(found), _of_genus_two(alone)
+    if weber is not None and not scene.track:
+        kind = WEBER
     numbers = settled(
-        lambda working: [*_of_plane(found, alone, working), *conserved(body, start)], digits
+        lambda working: [
+            *_of_plane(found, alone, working),
+            *_of_curve(weber, working),
+            *conserved(body, start),
+        ],
+        digits,
     )
     fourth = fourth_integral(scene)
-    if found is not None:
+    if kind in _STORY:
         story = _STORY[kind]
     elif fourth is not None:
         story = "The energy is not of Clebsch's form about a body axis: no closed form is built."
@@ -105,6 +119,28 @@ def _of_plane(found: Plane | None, alone: Scene, working: int) -> list[Element]:
         Element(name, values[name], unit, meaning, _PENDULUM)
         for name, (unit, meaning) in words.items()
         if name in values
+    ]
+
+
+def _of_genus_two(alone: Scene) -> Curve | None:
+    """Weber's curve of the motion of x and y, where it has one that is not degenerate."""
+    try:
+        return curve(alone)
+    except NoClosedForm:
+        return None
+
+
+def _of_curve(found: Curve | None, working: int) -> list[Element]:
+    """The rates of the two angles."""
+    if found is None:
+        return []
+    from verify.exact.kirchhoff.weber.enclosure import rates
+
+    meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
+    words = ("first_rate", "second_rate"), ("first", "second")
+    return [
+        Element(name, rate, "radians/time", meaning.format(which), _CURVE)
+        for name, which, rate in zip(*words, rates(found, working), strict=True)
     ]
 
 

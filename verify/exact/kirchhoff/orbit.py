@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import final
+from typing import Final, final
 
 from mpmath import mp, mpc, mpf
 
@@ -25,6 +25,9 @@ from verify.exact.kirchhoff.quartic import Nutation
 from verify.exact.kirchhoff.regime import TurningPoints, turning_points
 from verify.exact.kirchhoff.wave import CosineWave, Place, SquareWave, Swing, Wave
 from verify.scenes.motion import Impulse
+
+# Of a root that goes from -1 to 1 or so: whatever the precision, beyond this its sign is no rounding.
+_NEAR_POLE: Final = 2.0**-3
 
 Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes
 
@@ -249,8 +252,17 @@ class Orbit:
         return Shape(up, down, z, mpc(radial, slope * up_slope * down_slope / self._r))
 
     def _first_turn(self, start: Impulse) -> mpc:
-        """e^{i chi} at the start, from x, or from y where x lies in the axis."""
-        shape = self._shape(self._wave.swing(self._wave.place(self._wave.start)))
+        """e^{i chi} at the start: from x, or from y near a pole that the orbit passes.
+
+        There the sign of A is that of a number that vanishes on the way, and y does not vanish.
+        """
+        swing = self._wave.swing(self._wave.place(self._wave.start))
+        shape = self._shape(swing)
         x = transverse(start.linear)
-        turn = x * mp.sign(shape.amplitude) if x != 0 else transverse(start.angular) / shape.partner
+        vanishing = zip(self._poles, (swing.root_b, swing.root_a), strict=True)
+        is_near = any(pole.reached and abs(root) < _NEAR_POLE for pole, root in vanishing)
+        if x == 0 or is_near:
+            turn = transverse(start.angular) / shape.partner
+        else:
+            turn = x * mp.sign(shape.amplitude)
         return turn / abs(turn)

@@ -1,0 +1,58 @@
+"""Bodies, states and short scenes that many tests ask about: none is special, and all numbers are exact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from verify.scenes.bodies import Clebsch, ImmersedBody
+from verify.scenes.motion import Impulse, Quaternion, Spin
+from verify.scenes.tensors import Matrix, Vector
+
+
+def vector(*entries: float | str) -> Vector:
+    """Exact numbers from their decimal text."""
+    return tuple(Fraction(str(entry)) for entry in entries)
+
+
+# A rigid body with all products of inertia, and the moment on it where there is one.
+TENSOR: Matrix = (vector(1, "0.1", "0.2"), vector("0.1", 2, "0.3"), vector("0.2", "0.3", "2.5"))
+MOMENT = vector("0.1", "-0.2", "0.05")
+# A solid of 21 coefficients, the same under loads, and one of revolution.
+FORCE, COUPLE = vector("0.1", "0.05", "-0.1"), vector("0.02", "-0.1", "0.05")
+GENERAL = ImmersedBody(
+    linear=(vector(2, "0.1", "0.2"), vector("0.1", "1.5", "0.3"), vector("0.2", "0.3", 1)),
+    coupling=(vector("0.1", "0.2", 0), vector("0.05", "0.3", "0.1"), vector(0, "0.2", "0.1")),
+    angular=(vector(1, "0.2", "0.1"), vector("0.2", "1.5", "0.1"), vector("0.1", "0.1", "0.8")),
+)
+LOADED = replace(GENERAL, force=FORCE, couple=COUPLE)
+SIX = Clebsch(*vector(1, 2, "0.1", "0.3", 1, "0.5"))
+CLEBSCH = SIX.body()
+# States, in a frame that is turned and away from the origin.
+QUATERNION: Quaternion = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
+OMEGA = vector("0.3", 1, "0.2")
+SPIN = Spin(OMEGA, QUATERNION)
+IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
+
+# Scenes that are judged in a moment: three instants, the start among them, and three without it.
+THREE_INSTANTS = """
+title = "Three instants"
+model = "euler"
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [1, 0.4, 0.3]
+[time]
+end = 2
+samples = 3
+"""
+LISTED_INSTANTS = """
+title = "A short motion"
+model = "euler"
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [1, "0.4", "0.3"]
+[time]
+at = ["0.5", 1, 2]
+"""

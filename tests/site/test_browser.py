@@ -1,0 +1,369 @@
+"""What a reader gets of the built site, in a real browser: light and dark, wide and on a phone."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+WIDE, PHONE = (1280, 900), (390, 844)
+LIGHT, DARK = "light", "dark"
+# One of each kind; the whole site is walked through once, in `test_every_page_loads`.
+KINDS = (
+    "index.html",
+    "scenes.html",
+    "scenes/euler-with-attitude.html",
+    "scenes/kirchhoff-whole-motion.html",
+    "solvers.html",
+    "extremes.html",
+    "controls.html",
+    "errata.html",
+    "method.html",
+    "claims.html",
+    "tables/index.html",
+    "tables/tradeoff.html",
+    "tables/traps.html",
+    "reference/index.html",
+)
+# What Chromium says of its own drawing of 3D by software; no fault of a page.
+OF_THE_DRIVER = ("GL Driver Message", "Canvas2D", "GPU stall", "swiftshader", "WebGL fallback")
+# A picture of a few hundred points takes a second by software; a machine that is busy, many.
+PATIENCE = 60.0
+CONTRAST = """
+const seen = [];
+function channel(v) { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }
+function luminance(c) { return 0.2126 * channel(c[0]) + 0.7152 * channel(c[1]) + 0.0722 * channel(c[2]); }
+function parsed(text) { return text.match(/[\\d.]+/g).map(Number); }
+function ground(element) {
+  for (let one = element; one; one = one.parentElement) {
+    const colour = parsed(getComputedStyle(one).backgroundColor);
+    if (colour.length === 3 || colour[3] === 1) return colour;
+  }
+  return [255, 255, 255];
+}
+for (const element of document.querySelectorAll("body *:not(svg *):not(script):not(style)")) {
+  const own = Array.from(element.childNodes).some(n => n.nodeType === 3 && n.textContent.trim());
+  if (!own || element.closest(".plot") || element.closest("noscript")) continue;
+  if (!element.getClientRects().length) continue;
+  const one = luminance(parsed(getComputedStyle(element).color)), other = luminance(ground(element));
+  const ratio = (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
+  seen.push([ratio, element.tagName + "." + element.className + ": " + element.textContent.slice(0, 40)]);
+}
+return seen;
+"""
+
+
+class Reader:
+    """Opens pages in one browser, with a width and a theme that the system asks for."""
+
+    def __init__(self, driver: Any, site: Path) -> None:
+        self.driver, self.site = driver, site
+
+    def set(self, size: tuple[int, int] = WIDE, theme: str = LIGHT) -> None:
+        width, height = size
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        # Without motion: what is scrolled to is there at once.
+        features = [
+            {"name": "prefers-color-scheme", "value": theme},
+            {"name": "prefers-reduced-motion", "value": "reduce"},
+        ]
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+
+    def open(self, page: str) -> None:
+        self.driver.get_log("browser")
+        self.driver.get((self.site / page).as_uri())
+
+    def complaints(self) -> list[str]:
+        """What the console has had since the page was opened, but for the driver's own remarks."""
+        found = [entry["message"] for entry in self.driver.get_log("browser")]
+        return [text for text in found if not any(word in text for word in OF_THE_DRIVER)]
+
+    def run(self, script: str, *given: Any) -> Any:
+        return self.driver.execute_script(script, *given)
+
+    def until(self, holds: Callable[[], Any], what: str) -> Any:
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            if found := holds():
+                return found
+            time.sleep(0.1)
+        pytest.fail(f"expected {what} within {PATIENCE:g} s, got none @ {self.driver.current_url}")
+
+    def draw(self) -> list[dict[str, Any]]:
+        """Scroll every picture into view, wait until it is drawn, and say what is in each."""
+        pictures = self.run("return document.querySelectorAll('.plot').length")
+        found = []
+        for i in range(pictures):
+            one = f"document.querySelectorAll('.plot')[{i}]"
+            self.run(f"{one}.scrollIntoView({{behavior: 'instant', block: 'center'}})")
+            self.until(
+                lambda one=one: self.run(f"return {one}.dataset.drawn !== undefined"),
+                f"picture {i} drawn",
+            )
+            found.append(
+                self.run(
+                    f"""const plot = {one};
+                    return {{
+                      title: plot.closest("figure").querySelector("h3").textContent,
+                      points: (plot.data || []).reduce((n, t) => n + ((t.x || t.z || []).length), 0),
+                      marks: plot.querySelectorAll("path, image, canvas").length,
+                      height: plot.getBoundingClientRect().height,
+                      space: plot.querySelectorAll("canvas").length > 0,
+                    }}"""
+                )
+            )
+        return found
+
+
+@pytest.fixture
+def reader(browser: Any, site: Path) -> Iterator[Reader]:
+    found = Reader(browser, site)
+    found.set()
+    yield found
+    found.open("index.html")
+    found.run("try { localStorage.clear(); } catch (none) {}")
+
+
+def pages(site: Path) -> list[str]:
+    return sorted(file.relative_to(site).as_posix() for file in site.rglob("*.html"))
+
+
+def test_every_page_loads(reader: Reader, site: Path) -> None:
+    """No page of the whole site has an error, a missing file or a warning in its console."""
+    faults = {}
+    for page in pages(site):
+        reader.open(page)
+        if found := reader.complaints():
+            faults[page] = found
+    assert faults == {}
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+@pytest.mark.parametrize("page", KINDS)
+def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -> None:
+    """At 390 pixels a page is no wider than the screen, pictures drawn; its tables scroll within."""
+    reader.set(PHONE, theme)
+    reader.open(page)
+    reader.draw()
+    assert reader.run("return document.documentElement.scrollWidth") <= PHONE[0]
+    assert reader.complaints() == []
+
+
+@pytest.mark.parametrize("size", [WIDE, PHONE], ids=["wide", "phone"])
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+@pytest.mark.parametrize("page", KINDS)
+def test_text_can_be_read(reader: Reader, page: str, theme: str, size: tuple[int, int]) -> None:
+    """All text has the contrast of 4.5 that WCAG 2.1 asks for (1.4.3), against what is behind it."""
+    reader.set(size, theme)
+    reader.open(page)
+    found = reader.run(CONTRAST)
+    assert len(found) > 10
+    assert [text for ratio, text in found if not ratio >= 4.5] == []
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in KINDS if page.startswith(("index", "scenes/", "solvers", "extremes"))]
+)
+def test_pictures_are_drawn(reader: Reader, page: str) -> None:
+    """Every picture comes to have marks of its data when it is scrolled to."""
+    reader.open(page)
+    found = reader.draw()
+    assert found
+    for picture in found:
+        assert picture["points"] > 0, picture
+        assert picture["marks"] > 0, picture
+        assert picture["height"] > 200, picture
+    assert reader.complaints() == []
+
+
+def test_bodies_in_space_show_something(reader: Reader) -> None:
+    """The picture of the path has pixels of more than one colour: WebGL has drawn a curve."""
+    reader.open("scenes/kirchhoff-whole-motion.html")
+    assert sum(picture["space"] for picture in reader.draw()) >= 3
+    colours = reader.run(
+        """const plot = document.querySelector("#path .plot");
+        plot.scrollIntoView({behavior: "instant", block: "center"});
+        return window.Plotly.toImage(plot, {format: "png", width: 400, height: 300}).then(url =>
+          new Promise(done => {
+            const image = new Image();
+            image.onload = () => {
+              const canvas = document.createElement("canvas");
+              canvas.width = 400; canvas.height = 300;
+              const pen = canvas.getContext("2d");
+              pen.drawImage(image, 0, 0);
+              const found = new Set();
+              const data = pen.getImageData(0, 0, 300, 300).data;
+              for (let i = 0; i < data.length; i += 4) {
+                if (data[i + 3] > 200 && Math.abs(data[i] - data[i + 2]) > 60) {
+                  found.add([data[i] >> 4, data[i + 1] >> 4, data[i + 2] >> 4].join());
+                }
+              }
+              done(found.size);
+            };
+            image.src = url;
+          }));"""
+    )
+    # The curve runs through many hues; axes and letters are grey.
+    assert colours > 5
+
+
+def test_a_choice_changes_the_picture(reader: Reader) -> None:
+    """Another quantity, by mouse or by arrow key, is another set of points; so is the unit."""
+    from selenium.webdriver.common.keys import Keys
+
+    reader.open("scenes/kirchhoff-whole-motion.html")
+    reader.draw()
+    shown = "return JSON.stringify(document.querySelector('#error .plot').data[1].y.slice(1, 9))"
+    first = reader.run(shown)
+    inputs = reader.driver.find_elements("css selector", "#error .choices input")
+    inputs[0].send_keys(Keys.ARROW_RIGHT)
+    second = reader.until(lambda: (now := reader.run(shown)) != first and now, "another quantity")
+    reader.run("document.querySelector('#error .units input').click()")
+    reader.until(lambda: reader.run(shown) != second, "other units")
+
+
+def column(reader: Reader, table: str, index: int) -> list[str]:
+    rows: list[str] = reader.run(
+        "return Array.from(document.querySelectorAll(arguments[0] + ' tbody tr'))"
+        ".filter(row => !row.hidden).map(row => row.cells[arguments[1]].textContent.trim())",
+        table,
+        index,
+    )
+    return rows
+
+
+def test_tables_sort_numbers_as_numbers(reader: Reader) -> None:
+    """A click sorts 1e-5 above 2e-15, a second one turns it round, and aria-sort says which."""
+    reader.open("scenes.html")
+    headings = [
+        one.text.partition(" ")[0]
+        for one in reader.driver.find_elements("css selector", "#table-1 thead th button")
+    ]
+    at = headings.index("f64")
+    before = column(reader, "#table-1", at)
+    button = reader.driver.find_elements("css selector", "#table-1 thead th button")[at]
+    button.click()
+    upwards = [float(text.split()[0]) for text in column(reader, "#table-1", at)]
+    assert upwards == sorted(float(text.split()[0]) for text in before)
+    assert upwards != [float(text.split()[0]) for text in before]
+    heading = reader.driver.find_elements("css selector", "#table-1 thead th")[at]
+    assert heading.get_attribute("aria-sort") == "ascending"
+    button.click()
+    downwards = [float(text.split()[0]) for text in column(reader, "#table-1", at)]
+    assert downwards == upwards[::-1]
+    assert heading.get_attribute("aria-sort") == "descending"
+    names = column(reader, "#table-1", 0)
+    reader.driver.find_elements("css selector", "#table-1 thead th button")[0].click()
+    assert column(reader, "#table-1", 0) == sorted(names)
+
+
+def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
+    """On a page with two large tables a filter hides rows of its own table alone."""
+    reader.open("scenes/kirchhoff-whole-motion.html")
+    boxes = reader.driver.find_elements("css selector", "input[data-filter]")
+    assert len(boxes) == 2
+    tables = [f"#{box.get_attribute('data-filter')}" for box in boxes]
+    before = [column(reader, table, 0) for table in tables]
+    boxes[1].send_keys("centre")
+    assert column(reader, tables[0], 0) == before[0]
+    assert set(column(reader, tables[1], 0)) == {"centre"}
+
+
+def test_the_big_table_can_be_searched(reader: Reader) -> None:
+    """The filter leaves the rows that have every word, says how many, and gives all back."""
+    reader.open("tables/gates.html")
+    every = column(reader, "#table-1", 0)
+    box = reader.driver.find_element("css selector", "input[data-filter=table-1]")
+    box.send_keys("kirchhoff f80")
+    found = column(reader, "#table-1", 0)
+    assert found
+    assert len(found) < len(every)
+    assert all("kirchhoff" in name for name in found)
+    assert set(column(reader, "#table-1", 1)) == {"f80"}
+    said = reader.driver.find_element("css selector", "[data-count=table-1]").text
+    assert said == f"{len(found)} of {len(every)} rows"
+    box.clear()
+    box.send_keys(" ")
+    assert column(reader, "#table-1", 0) == every
+
+
+def test_the_keyboard_reaches_everything(reader: Reader) -> None:
+    """Tab leads to the skip link first, then to the navigation, the theme and a table's headings."""
+    from selenium.webdriver.common.keys import Keys
+
+    reader.open("scenes.html")
+    body = reader.driver.find_element("css selector", "body")
+    reached = []
+    for _ in range(24):
+        body.send_keys(
+            Keys.TAB
+        ) if not reached else reader.driver.switch_to.active_element.send_keys(Keys.TAB)
+        reached.append(
+            reader.run(
+                """const one = document.activeElement, style = getComputedStyle(one);
+                return [one.className || one.id || one.tagName, one.closest("th") !== null,
+                        style.outlineStyle !== "none"]"""
+            )
+        )
+    assert reached[0][0] == "skip"
+    assert any(name == "theme" for name, *_ in reached)
+    assert sum(heading for _, heading, _ in reached) >= 3
+    assert all(outlined for *_, outlined in reached)
+    reader.driver.switch_to.active_element.send_keys(Keys.ENTER)
+
+
+def test_the_theme_is_kept(reader: Reader) -> None:
+    """The button turns the page dark, pictures too, and the next page is dark with it."""
+    reader.open("index.html")
+    reader.draw()
+    paper = "return getComputedStyle(document.body).backgroundColor"
+    ink = "return document.querySelector('.plot .xtick text').style.fill"
+    light, drawn = reader.run(paper), reader.run(ink)
+    reader.driver.find_element("css selector", "#theme").click()
+    assert reader.run(paper) != light
+    reader.until(lambda: reader.run(ink) != drawn, "the picture in other colours")
+    reader.open("method.html")
+    assert reader.run(paper) != light
+
+
+def test_formulas_are_set(reader: Reader) -> None:
+    """Every formula of a scene takes room, and letters of another alphabet are no empty boxes."""
+    reader.open("scenes/kirchhoff-whole-motion.html")
+    sizes = reader.run(
+        "return Array.from(document.querySelectorAll('math'))"
+        ".map(m => [m.getBoundingClientRect().width, m.getBoundingClientRect().height])"
+    )
+    assert sizes
+    assert all(width > 20 and height > 10 for width, height in sizes)
+
+
+def test_exact_values_can_be_copied(reader: Reader) -> None:
+    """The button puts the values into the clipboard, or asks to select them; they are plain text."""
+    reader.open("scenes/euler-with-attitude.html")
+    button = reader.driver.find_element("css selector", ".copy:has(+ #exact) button")
+    reader.run("arguments[0].scrollIntoView({behavior: 'instant', block: 'center'})", button)
+    button.click()
+    reader.until(lambda: button.text in ("Copied", "Select and copy"), "an answer of the button")
+    text = reader.driver.find_element("css selector", "#exact").text
+    assert text.split()[0].startswith("t,")
+
+
+def test_without_a_script_the_words_are_there(reader: Reader) -> None:
+    """With scripts switched off a scene still has its tables, its values, and each picture in words
+    or as a drawing."""
+    reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
+    try:
+        reader.open("scenes/kirchhoff-whole-motion.html")
+        told = reader.driver.find_elements("css selector", "noscript > *")
+        assert len(told) >= 4
+        assert all(one.is_displayed() for one in told)
+        assert reader.driver.find_element("css selector", "#exact").text.split()[0] == "t,"
+        assert reader.driver.find_elements("css selector", "table tbody tr")
+    finally:
+        reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})

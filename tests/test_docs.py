@@ -1,0 +1,307 @@
+"""The pages of docs: built without a warning, complete, and true where they tell numbers or names."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import json
+import pkgutil
+import re
+import shlex
+import subprocess
+import sys
+from enum import StrEnum
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from worked import DOCS, ROOT, blocks, work
+
+import verify
+from verify import exact
+from verify.cli import answer
+from verify.cli.arguments import parse
+from verify.exact.solution import NO_CLOSED_FORM
+from verify.judge.verdict import Status, Verdict
+from verify.scenes.library import names
+from verify.scenes.precision import LADDER
+from verify.solvers.registry import NAMES
+from verify.solvers.trajectory import Outcome
+
+PAGES = sorted(page for page in DOCS.rglob("*.md") if "_build" not in page.parts)
+PUBLIC = [
+    (kind, name)
+    for page in sorted((DOCS / "reference").glob("*.md"))
+    for kind, name in re.findall(
+        r"^\.\. auto(\w+):: ([\w.]+)", page.read_text(encoding="utf-8"), re.MULTILINE
+    )
+]
+# What is told by its type: nothing is to be said of it.
+EVIDENT = {"scene", "name", "rung", "problem", "solver", "trajectory", "verdicts", "law"}
+
+
+def text_of(page: str) -> str:
+    return (DOCS / page).read_text(encoding="utf-8")
+
+
+def configuration() -> ModuleType:
+    """docs/conf.py, as Sphinx reads it."""
+    spec = importlib.util.spec_from_file_location("conf", DOCS / "conf.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def table_rows(page: str) -> list[list[str]]:
+    """The cells of every line of a table, heads and rules included."""
+    lines = [line for line in text_of(page).splitlines() if line.startswith("| ")]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+# The pages.
+
+
+@pytest.mark.slow
+def test_the_pages_are_built_without_a_warning(tmp_path: Path) -> None:
+    """Sphinx, told that warnings are errors, makes every page, as `make docs` does."""
+    command = ["sphinx", "-W", "--keep-going", "-q", "-b", "html", str(DOCS), str(tmp_path)]
+    done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    made = [tmp_path / page.relative_to(DOCS).with_suffix(".html") for page in PAGES]
+    assert [page for page in made if not page.exists()] == []
+
+
+def test_every_page_is_found_from_the_first() -> None:
+    """index.md names all pages, and none that is not there."""
+    told = re.findall(r"^(?:tutorials/|reference/)?[a-z-]+$", text_of("index.md"), re.MULTILINE)
+    pages = {page.relative_to(DOCS).with_suffix("").as_posix() for page in PAGES}
+    assert set(told) == pages - {"index"}
+
+
+@pytest.mark.parametrize(
+    "page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.relative_to(ROOT).as_posix()
+)
+def test_every_file_that_is_linked_exists(page: Path) -> None:
+    """No link of a page leads nowhere in the checkout."""
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text(encoding="utf-8"))
+    included = re.findall(r"^```\{include\} (\S+)", page.read_text(encoding="utf-8"), re.MULTILINE)
+    links += included
+    assert [link for link in links if not (page.parent / link).exists()] == []
+
+
+@pytest.mark.parametrize(
+    "page",
+    [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "README.md"],
+    ids=lambda page: page.relative_to(ROOT).as_posix(),
+)
+def test_every_path_that_is_named_exists(page: Path) -> None:
+    """What is marked as a file or folder of the checkout is one; a capital NAME stands for any."""
+    marked = re.findall(
+        r"`((?:verify|tests|cases|reports|docs)/[\w./-]+)`", page.read_text(encoding="utf-8")
+    )
+    made = ("reports/local", "reports/site", "docs/_build")
+    paths = [path for path in marked if "NAME" not in path and not path.startswith(made)]
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("page", ["command-line.md", "errors.md"])
+def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
+    """The blocks that a page executes print what it shows."""
+    assert any(block.language in {"console", "python"} for block in blocks(text_of(page)))
+    work(DOCS / page, tmp_path)
+
+
+# What the pages tell.
+
+
+def results() -> list[list[str]]:
+    return [row for row in table_rows("results.md") if row[0].startswith("`")]
+
+
+@pytest.mark.parametrize("row", results(), ids=lambda row: " ".join(row[:2]))
+def test_table_is_that_of_the_committed_reports(row: list[str]) -> None:
+    """Each cell is max/u (ratio) of the verdict in reports/data, to the digits printed."""
+    file = ROOT / "reports" / "data" / "verdicts.json"
+    published = json.loads(file.read_text(encoding="utf-8"))["verdicts"]
+    scene, quantity, *cells = row
+    expected = [
+        f"{v['max'] / v['roundoff']:.3g} u ({v['ratio']:.2g})"
+        for rung in LADDER
+        for v in published
+        if (f"`{v['scene']}`", v["quantity"], v["rung"]) == (scene, quantity, rung)
+    ]
+    assert cells == expected
+
+
+def test_the_table_of_results_has_both_models_and_every_state() -> None:
+    """Rows of both models, and of each kind of state there is."""
+    rows = results()
+    assert {row[0].strip("`").split("/")[0] for row in rows} == {"euler", "kirchhoff"}
+    assert {row[1] for row in rows} == {"omega", "impulse", "attitude", "centre"}
+
+
+def regimes() -> set[str]:
+    """Every word that a module of verify.exact has for a regime: in an enumeration, or alone."""
+    found: set[str] = set()
+    for module in pkgutil.walk_packages(exact.__path__, "verify.exact."):
+        for name, value in vars(importlib.import_module(module.name)).items():
+            if inspect.isclass(value) and issubclass(value, StrEnum) and name.endswith("Regime"):
+                found |= {regime.value for regime in value}
+            elif name == "REGIME":
+                found.add(value)
+    return found
+
+
+def test_every_regime_is_documented() -> None:
+    """The words that `regime` can be are listed where a reader looks for them."""
+    kirchhoff = (
+        *("rest", "steady", "four-roots", "two-roots", "cubic", "hyperbolic"),
+        *("trigonometric", "algebraic", "heteroclinic", "euler-top"),
+        *("planar-swing", "planar-turn", "planar-front", "planar-uniform", "planar-steady"),
+    )
+    euler = regimes()
+    assert {"max-axis", "separatrix", "oblique-moment"} <= euler
+    told = set(re.findall(r"`([\w -]+)`", text_of("regimes.md")))
+    assert {*euler, *kirchhoff, "manufactured", NO_CLOSED_FORM} <= told
+
+
+def test_every_verdict_is_documented() -> None:
+    """The table of verdicts has each status, in its order, and no other."""
+    told = [row[0] for row in table_rows("verdicts.md")]
+    assert told[1 : 1 + len(Status)] == [status.value for status in Status]
+
+
+def test_every_field_of_a_row_is_documented() -> None:
+    """Each field of a verdict stands in the list of fields."""
+    defined = " ".join(re.findall(r"^`([\w ]+)`\n:", text_of("verdicts.md"), re.MULTILINE))
+    assert set(Verdict.__dataclass_fields__) == set(defined.split())
+
+
+def test_every_outcome_is_documented() -> None:
+    """The sentences of errors.md are those of Outcome, in its order."""
+    told = re.findall(r"^- (.*)$", text_of("errors.md"), re.MULTILINE)
+    assert told == [outcome.value for outcome in Outcome]
+
+
+def test_every_exit_status_is_documented() -> None:
+    """The table of exit statuses has each that a verb can end with."""
+    told = [int(row[0]) for row in table_rows("errors.md") if row[0].isdigit()]
+    statuses = {answer.PASS, answer.FAIL, answer.WRONG_CALL, answer.UNDECIDED, answer.INTERRUPTED}
+    assert told == sorted(statuses)
+
+
+def test_every_exception_told_of_exists() -> None:
+    """The exceptions that errors.md names are classes of exceptions."""
+    told = re.findall(r"^\| `(verify[\w.]+)`", text_of("errors.md"), re.MULTILINE)
+    assert len(told) >= 5
+    for name in told:
+        module, _, kind = name.rpartition(".")
+        assert issubclass(getattr(importlib.import_module(module), kind), Exception)
+
+
+def test_every_kind_of_solver_is_documented() -> None:
+    """Each method that the command line knows by name is named, those of other libraries by theirs."""
+    page = text_of("command-line.md")
+    for name in NAMES:
+        method = name.partition("?")[0].rpartition(":")[2]
+        library = {"cvode": "CVODE", "cyrk": "CyRK", "rebound": "REBOUND"}
+        told = method.partition("-")[0] if name.startswith("outside:") else method
+        assert library.get(told, told) in page
+
+
+COMMANDS = [
+    line for line in text_of("command-line.md").splitlines() if line.startswith("taylor-verify ")
+]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_can_be_typed(command: str) -> None:
+    """Verb, options and shipped scenes are those there are."""
+    arguments = shlex.split(command, comments=True)[1:]
+    assert callable(parse(arguments).act)
+    scenes = [word for word in arguments if word.startswith(("euler/", "kirchhoff/"))]
+    assert [scene for scene in scenes if scene not in names()] == []
+
+
+VERBS = ("list", "run", "exact", "check", "explain", "tradeoff", "claims", "publish")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_option_is_documented(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The page of the command line names the verb and each option of it."""
+    with pytest.raises(SystemExit):
+        parse([verb, "--help"])
+    options = set(re.findall(r"--[a-z-]+", capsys.readouterr().out))
+    assert "--json" in options
+    page = text_of("command-line.md")
+    assert f"taylor-verify {verb}" in page
+    assert {option for option in options if option not in page} == set()
+
+
+# The reference.
+
+
+def named(name: str) -> Any:
+    module, _, last = name.rpartition(".")
+    found = getattr(importlib.import_module(module), last)
+    return getattr(found, last) if inspect.ismodule(found) else found
+
+
+@pytest.mark.parametrize(("kind", "name"), PUBLIC)
+def test_what_the_reference_names_has_a_docstring(kind: str, name: str) -> None:
+    """The object is there, is of the kind that is told, and says what it is in words of its own."""
+    found = named(name)
+    assert inspect.isclass(found) == (kind in {"class", "exception"})
+    docstring = inspect.getdoc(found) or ""
+    # A dataclass without one is given its signature.
+    assert " " in docstring.removeprefix(f"{name.rpartition('.')[2]}(")
+    assert docstring.partition("\n")[0].rstrip().endswith((".", ",", ":", ";"))
+
+
+FUNCTIONS = [name for kind, name in PUBLIC if kind == "function"]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_docstring_tells_of_every_argument(name: str) -> None:
+    """Each argument occurs in the docstring, but for those whose type says all."""
+    function = named(name)
+    docstring = (function.__doc__ or "").lower()
+    arguments = [a for a in inspect.signature(function).parameters if a not in EVIDENT]
+    untold = [a for a in arguments if not all(w.rstrip("s") in docstring for w in a.split("_"))]
+    assert untold == []
+
+
+def test_every_call_is_in_the_reference() -> None:
+    """The names of `import verify` are documented under those names."""
+    assert {f"verify.{name}" for name in verify.__all__} <= {name for _, name in PUBLIC}
+
+
+# Docstrings are plain text.
+
+
+def test_marks_of_a_docstring_are_text_and_literals_literal() -> None:
+    """Bars, stars and underscores stay what they are; what is marked as literal is not touched."""
+    plain = configuration().plain
+    assert list(plain(["|x| of x_ and z*, not ``a_*|b|`` nor `load`."])) == [
+        r"\|x\| of x\_ and z\*, not ``a_*|b|`` nor ``load``."
+    ]
+
+
+def test_an_indented_block_of_a_docstring_is_verbatim() -> None:
+    """A formula on lines of its own stays on them, and the text goes on behind it."""
+    told = list(configuration().plain(["With", "", "    |x|  y", "", "    z", "", "and |x|."]))
+    assert told == ["With", "", "::", "", "    |x|  y", "", "    z", "", r"and \|x\|."]
+
+
+def test_a_callable_module_is_told_of_as_its_function() -> None:
+    """`verify.exact` has the arguments and the docstring of the function that it is called as."""
+    module = configuration()
+    found = module.signed(None, "function", "verify.exact", verify.exact, None, "", "")
+    assert found[0].startswith("(scene: Scene | str, times:")
+    lines = ["something else"]
+    module.told(None, "function", "verify.exact", verify.exact, None, lines)
+    assert lines[0].startswith("The exact motion at absolute times")

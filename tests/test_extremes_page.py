@@ -1,0 +1,180 @@
+"""The page of the extremes: what came, what was expected, and every mismatch in sight."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from test_publish import NAN, PROVENANCE, VERSIONS, passed
+
+from verify.cli import main
+from verify.judge.verdict import Status, Verdict
+from verify.publish import data, extremes
+from verify.publish.extremes import Expected
+from verify.publish.page import MADE_BY
+from verify.publish.report import publish, write
+
+WHY = "one roundoff grows to the size of the motion"
+VACUOUS = passed("extremes/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0)
+SOUND = passed("extremes/near", "f64", "omega")
+DRIFT = passed("extremes/near", "f64", "T", ratio=0.75)
+LOST = passed("extremes/vast", "f64", "impulse", verdict=Status.FAIL, **dict.fromkeys(NAN))
+ALL = (VACUOUS, SOUND, DRIFT, LOST)
+FORESEEN = {
+    ("extremes/long", "f64", "omega"): Expected("vacuous", WHY),
+    ("extremes/near", "f64", "omega"): Expected("pass", ""),
+    ("extremes/near", "f64", "T"): Expected("pass", ""),
+    ("extremes/vast", "f64", "impulse"): Expected("refused", "out of range"),
+}
+MISMATCH = "expected refused (out of range), got fail @ extremes/vast f64 impulse"
+
+
+def document(
+    verdicts: tuple[Verdict, ...] = ALL, mismatches: tuple[str, ...] = (MISMATCH,)
+) -> dict[str, Any]:
+    titles = {verdict.scene: f"Title of {verdict.scene}" for verdict in verdicts}
+    left_out = [{"scene": "extremes/endless", "rung": "mp237", "why": "it takes a week"}]
+    return extremes.document(verdicts, FORESEEN, mismatches, titles, left_out)
+
+
+def lines(text: str, *words: str) -> list[str]:
+    return [
+        line for line in text.splitlines() if line.startswith("|") and all(w in line for w in words)
+    ]
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> str:
+    extremes.write(tmp_path, document())
+    return (tmp_path / extremes.PAGE).read_text(encoding="utf-8")
+
+
+def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+    """Verdicts without their seconds, expectations, titles and what made them are the same again."""
+    extremes.write(tmp_path, document())
+    found = extremes.load(tmp_path)
+    assert found.verdicts == tuple(replace(v, seconds=None) for v in ALL)
+    assert found.expected == FORESEEN
+    assert found.mismatches == (MISMATCH,)
+    assert found.titles["extremes/long"] == "Title of extremes/long"
+    assert found.provenance["processor"] == PROVENANCE["processor"]
+    known = {name: version for name, version in VERSIONS.items() if name != "python"}
+    assert found.provenance["versions"] == known
+
+
+def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
+    """Title, max and mean with the time, the largest ratio of all quantities, how many were foreseen."""
+    (line,) = lines(page, "`near`")
+    for part in ("Title of extremes/near", "3.00, 2.00 @ 7", "0.750 (`T`)", "| pass", "2 of 2"):
+        assert part in line
+
+
+def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
+    """The verdict stands out in its cell, and below with what was expected and why."""
+    row, reason = lines(page, "`long`")
+    assert "3.00, 2.00 @ 7 **vacuous**" in row
+    assert "1 of 1" in row
+    assert "| **vacuous** | vacuous" in reason
+    assert WHY in reason
+    assert "3.00" in reason
+
+
+def test_a_mismatch_stands_out(page: str) -> None:
+    """The failure is printed in the cell, its count is bold, and the sentence is in front."""
+    row, reason = lines(page, "`vast`")
+    assert "**fail**" in row
+    assert "**0 of 1**" in row
+    assert "**refused**" in reason
+    assert "1 of 2 answers other than pass came as expected. **1 mismatches**:" in page
+    assert MISMATCH in page
+
+
+def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
+    """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
+    lucky = replace(VACUOUS, verdict=Status.PASS)
+    extremes.write(tmp_path, document((lucky,), ("a mismatch",)))
+    (_, reason) = lines((tmp_path / extremes.PAGE).read_text(encoding="utf-8"), "`long`")
+    assert "| pass" in reason
+    assert "**vacuous**" in reason
+
+
+def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
+    """A run that is left out has its reason; versions, processor and command end the page."""
+    assert "`extremes/endless`, mp237: it takes a week" in page
+    end = page.rpartition("## ")[2]
+    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "--extremes"):
+        assert part in end
+    assert page.splitlines()[0] == MADE_BY
+
+
+def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
+    """A row for each verdict with every digit, what was expected and whether it came."""
+    extremes.write(tmp_path, document())
+    text = (tmp_path / extremes.SHEET).read_text(encoding="utf-8")
+    found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    assert set(found) == {(v.scene, v.quantity) for v in ALL}
+    assert float(found["extremes/near", "T"]["max"]) == DRIFT.max
+    told = found["extremes/vast", "impulse"]
+    assert (told["max"], told["expected"], told["as_expected"]) == ("fail", "refused", "no")
+    assert found["extremes/long", "omega"]["why_expected"] == WHY
+
+
+def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
+    """With the tables of a run beside it, and linked from both pages; without data there is none."""
+    write(tmp_path, [passed("euler/a", "f64", "omega")], [])
+    publish(tmp_path)
+    assert not (tmp_path / extremes.PAGE).exists()
+    paths = extremes.write(tmp_path, document())
+    before = {path: path.read_bytes() for path in paths}
+    for path in paths[1:]:
+        path.unlink()
+    publish(tmp_path)
+    assert {path: path.read_bytes() for path in paths} == before
+    assert "](tables/extremes.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
+    index = (tmp_path / "tables" / "README.md").read_text(encoding="utf-8")
+    assert "[extremes.md](extremes.md)" in index
+    assert "[csv](extremes.csv)" in index
+
+
+def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
+    """A file with something else in it is a ValueError that names the file."""
+    file = tmp_path / extremes.EXTREMES
+    file.parent.mkdir()
+    file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a run of the extremes.*extremes\.json"):
+        extremes.pages(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "status"), [(Status.PASS, 0), (Status.VACUOUS, 1), (Status.FAIL, 1)]
+)
+def test_the_command_fails_at_a_mismatch(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    verdict: Status,
+    status: int,
+) -> None:
+    """All extremes of float64 are asked for; what was not foreseen is written too, and is status 1."""
+    scene = "extremes/euler-needle"
+    asked: list[str] = []
+
+    def answered(jobs: list[Any], finished: Any) -> list[Any]:
+        asked.extend(job.scene for job in jobs)
+        found = passed(scene, "f64", "omega", verdict=verdict)
+        return [SimpleNamespace(verdicts=(found,))]
+
+    monkeypatch.setattr("verify.standard.run_all", answered)
+    call = ["publish", "--extremes", "--from", str(tmp_path), "--json"]
+    assert main(call) == status
+    captured = capsys.readouterr()
+    assert len(json.loads(captured.out)["written"]) == 3
+    assert {scene, "extremes/worst/euler-gaps"} < set(asked)
+    stored = data.read_document(tmp_path / extremes.EXTREMES)
+    assert len(stored["mismatches"]) == status
+    assert (f"got {verdict.value} @ {scene} f64 omega" in captured.err) == bool(status)

@@ -1,0 +1,44 @@
+"""Names of the files of scenes and solvers: what was published keeps its name, and none is shared."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import PurePath
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from verify.publish.file_names import of_scene, of_solver
+from verify.scenes import library
+
+NEAR = ("a/b", "a-b", "a/b/c", "a-b/c", "a/b-c", "a/worst/b", "a/worst-b", "a-worst-b", "a/worst")
+NAMES = st.text(alphabet="ab-_/.%", min_size=1, max_size=6)
+
+
+@pytest.mark.parametrize(
+    "name", library.names(*library.STANDARD_SET, library.EXTREMES, library.WORST)
+)
+def test_a_shipped_scene_keeps_its_name(name: str) -> None:
+    """The stroke is a hyphen, as in every file that was published so far."""
+    assert of_scene(name) == name.replace("/", "-")
+
+
+@given(NAMES, NAMES)
+def test_no_two_scenes_share_a_name(one: str, other: str) -> None:
+    """Two names lead to one file only if they are the same name."""
+    assert (of_scene(one) == of_scene(other)) == (one == other)
+
+
+def test_hyphens_and_strokes_are_told_apart() -> None:
+    """Scenes whose names are alike but for strokes have a name each, and none has a folder."""
+    found = sorted(of_scene(name) for name in NEAR)
+    assert all(one != other for one, other in pairwise(found))
+    assert all(PurePath(name).name == name for name in found)
+
+
+@given(NAMES, NAMES, NAMES, NAMES)
+def test_scene_and_solver_are_told_apart(a: str, b: str, c: str, d: str) -> None:
+    """The dot between them is the last but one of a record's name, wherever other dots stand."""
+    one, other = (f"{of_scene(s)}.{of_solver(t)}.f64.json" for s, t in ((a, b), (c, d)))
+    assert (one == other) == ((a, b) == (c, d))

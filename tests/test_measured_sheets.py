@@ -1,0 +1,140 @@
+"""The sheets of what was measured have every row of the data, and every digit."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
+
+REPORTS = Path(__file__).resolve().parents[1] / "reports"
+
+
+def stored(name: str) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads((REPORTS / name).read_text(encoding="utf-8"))
+    return document
+
+
+def read(text: str) -> list[dict[str, str]]:
+    """The rows, each with as many cells as there are headings, of which no two are alike."""
+    lines = list(csv.reader(text.splitlines()))
+    assert len(set(lines[0])) == len(lines[0])
+    assert {len(line) for line in lines} == {len(lines[0])}
+    return list(csv.DictReader(text.splitlines()))
+
+
+def number(cell: str) -> float | None:
+    return float(cell) if cell else None
+
+
+def test_growth_has_a_row_for_every_exponent() -> None:
+    """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
+    runs = stored(growth.GROWTH)["runs"]
+    found = read(measured.growth(runs))
+    asked = [(run, row) for run in runs for row in run["quantities"]]
+    assert len(found) == len(asked)
+    for cells, (run, row) in zip(found, asked, strict=True):
+        assert (cells["scene"], cells["rung"], cells["quantity"]) == (
+            *(run["scene"], run["rung"], row["quantity"]),
+        )
+        kept = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
+        assert kept == [row["exponent"], row["low"], row["high"], row["rms"][-1]]
+        assert [number(cells[f"late{end}"]) for end in ("", "_low", "_high")] == row["late"]
+        assert cells["gate"] == (row["gate"]["verdict"] if row["gate"] else "")
+
+
+def test_reach_has_a_row_for_every_number_of_periods() -> None:
+    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
+    rows = stored(reach.REACH)["rows"]
+    found = read(measured.reach(rows))
+    assert len(found) == sum(len(row["periods"]) if row["errors"] else 1 for row in rows)
+    made = [cells for cells in found if cells["periods"]]
+    assert {cells["lost"] for cells in made} == {"yes", "no"}
+    assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
+    assert all(cells["why"] for cells in found if not cells["periods"])
+    first = rows[0]
+    kept = [number(cells["error"]) for cells in found[: len(first["periods"])]]
+    assert kept == first["errors"]
+
+
+def test_prices_have_a_row_for_every_variant_and_rung() -> None:
+    """With both intervals; the price at equal error stands in the rows of f64 alone."""
+    document = stored(prices.PRICES)
+    found = read(measured.prices(document["rows"], document["equal"]))
+    assert len(found) == len(document["rows"])
+    for cells, row in zip(found, document["rows"], strict=True):
+        assert [number(cells[f"step_{end}"]) for end in ("ratio", "low", "high")] == row[
+            "step_ratio"
+        ]
+    equal = {row["variant"]: row["ratio"] for row in document["equal"]}
+    told = {c["variant"]: number(c["ratio_at_equal_error"]) for c in found if c["rung"] == "f64"}
+    assert {name: told[name] for name in equal} == equal
+    assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}
+
+
+def test_traps_have_a_row_for_every_case() -> None:
+    """What heyoka reported, how wrong it was, and each gate's verdict."""
+    rows = stored(traps.TRAPS)["traps"]
+    found = read(measured.traps(rows))
+    cases = [(row, case) for row in rows for case in row["cases"]]
+    assert len(found) == len(cases)
+    for cells, (row, case) in zip(found, cases, strict=True):
+        assert (cells["trap"], cells["reports"]) == (row["key"], " ".join(case["said"].split()))
+        assert number(cells["error"]) == case["error"]
+        for name, gate in case["gates"].items():
+            assert cells[f"{name}_verdict"] == gate["verdict"]
+            assert number(cells[f"{name}_over_bound"]) == gate["over_bound"]
+
+
+def test_worst_has_a_row_for_every_family() -> None:
+    """With its scene and its ratio."""
+    document = stored(worst.WORST)
+    found = read(measured.worst(document))
+    assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
+        (row["name"], row["ratio"], row["scene"]) for row in document["families"]
+    ]
+
+
+def test_claims_have_a_row_for_every_entry() -> None:
+    """Statement, verdict and both residuals; text over several lines is on one."""
+    row: dict[str, Any] = {
+        **dict.fromkeys(("correction", "condition", "counterexample", "lost", "open", "void")),
+        "id": "hydromechanics 49 (17)",
+        "verdict": "false as transcribed",
+        "statement": "a,\n b",
+        "residual": {"statement": 0.0, "transcribed": 4.3},
+        "mutations": ["one", "two"],
+        "bound": 1e-35,
+        "because": "it is",
+        "domain": "all",
+        "method": "expansion",
+        "remark": None,
+    }
+    (found,) = read(measured.claims([row]))
+    assert (found["id"], found["statement"]) == (row["id"], "a, b")
+    assert (found["residual"], found["residual_transcribed"]) == ("0.0", "4.3")
+    assert found["mutations"] == "one; two"
+
+
+@pytest.mark.parametrize("module", [growth, prices, reach, traps, worst])
+def test_what_is_remade_is_page_and_sheet(module: Any) -> None:
+    """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
+    found = module.pages(REPORTS)
+    assert set(found) == {module.PAGE, module.SHEET}
+    end = "".join(found[module.PAGE].split("\n## ")[-2:])
+    assert "heyoka 7." in end or "Made with unknown versions" in end
+    assert "`taylor-verify publish" in end
+
+
+def test_the_index_links_to_the_sheets_that_are_there(tmp_path: Path) -> None:
+    """A page with a sheet has a link to it, one without has none."""
+    made = {"tables/growth.md", "tables/growth.csv", "claims.md", "tables/claims.csv"}
+    besides = contents.others(tmp_path, {*made, "tables/worst.md"})
+    text = tables.readme([], besides)
+    assert "| [growth.md](growth.md)       | [csv](growth.csv) |" in text
+    assert "| [../claims.md](../claims.md) | [csv](claims.csv) |" in text
+    assert "[csv](worst.csv)" not in text

@@ -1,0 +1,102 @@
+"""The tutorials: what a reader types works, and what the pages show is what is printed."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from worked import DOCS, Numbers, Untrue, blocks, compare, work
+
+TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
+CHECK, CHOOSE, GATE = (page.stem for page in TUTORIALS)
+
+
+@pytest.fixture(autouse=True)
+def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder of one's own, and no CI behind it: pytest and GitHub's runner add lines of theirs."""
+    for name in ("CI", "BUILD_NUMBER", "GITHUB_STEP_SUMMARY", "PYTEST_ADDOPTS"):
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+def test_a_tutorial_is_true(page: Path, tmp_path: Path) -> None:
+    """Worked from top to bottom in an empty folder, every block does what the page says."""
+    if "$ cc " in page.read_text(encoding="utf-8") and shutil.which("cc") is None:
+        pytest.skip("no C compiler")
+    assert work(page, tmp_path) >= 9
+
+
+def test_the_three_uses_have_a_tutorial() -> None:
+    """Check my simulator, choose my precision, gate my CI."""
+    assert (CHECK, CHOOSE, GATE) == ("check-my-simulator", "choose-my-precision", "gate-my-ci")
+
+
+def test_every_command_of_a_tutorial_is_run() -> None:
+    """No block of commands or of Python is in a form that the reading of pages passes over."""
+    for page in TUTORIALS:
+        text = page.read_text(encoding="utf-8")
+        assert text.count("```") == 2 * sum(block.language != "given" for block in blocks(text))
+        assert "~~~" not in text
+
+
+# What must be found untrue.
+
+
+@pytest.mark.parametrize(
+    ("shown", "found"),
+    [
+        ("pass", "fail"),
+        ("late by 0.005, constant", "late by -0.005, constant"),
+        ("late by 0.005, constant", "late by 0.0053, constant"),
+        ("101 rows", "102 rows"),
+        ("3 fail", "3 fail\n1 pass"),
+        ("3 fail ... and more", "3 fail"),
+        ("error 1e-7", "error nan"),
+        ("", "a warning"),
+    ],
+)
+def test_another_output_is_found_out(shown: str, found: str) -> None:
+    """A word, a sign, a digit that counts, a line more or less: each makes the page untrue."""
+    with pytest.raises(Untrue):
+        compare(shown, found)
+
+
+@pytest.mark.parametrize(
+    ("shown", "found", "numbers"),
+    [
+        ("omega   fail\n1.04", "omega fail 1.0423", Numbers.AS_PRINTED),
+        ("first ... last", "first 1 2 last but not last", Numbers.AS_PRINTED),
+        ("... 3 fail", "1 pass, 3 fail", Numbers.AS_PRINTED),
+        ("error 7.6e-14 at t = 95", "error 3.1e-14 at t = 52", Numbers.ROUNDING_CLASS),
+        ("0.0026 s", "1.7 s", Numbers.MEASURED),
+    ],
+)
+def test_the_same_output_is_let_pass(shown: str, found: str, numbers: Numbers) -> None:
+    """Blanks are free, `...` stands for anything, a number may differ by what it is."""
+    compare(shown, found, numbers)
+
+
+@pytest.mark.parametrize("found", ["error 7.6e-16", "error 0", "error nan", "an error of 7.6e-14"])
+def test_a_rounding_class_is_left_by_a_factor_of_ten(found: str) -> None:
+    """Another size of error is another result, and so are a NaN and other words."""
+    with pytest.raises(Untrue):
+        compare("error 7.6e-14", found, Numbers.ROUNDING_CLASS)
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        "```python\nprint(1)\n```\n\n```text\n2\n```\n",
+        "```python\nprint(1)\n```\n",
+        "```console\n$ false\n$ echo $?\n0\n```\n",
+        "```console\n$ taylor-verify exact euler/generic --at never\n$ echo $?\n0\n```\n",
+        "```python\n# a.py\nx = 1\n```\n\n```diff\n--- a.py\n+++ a.py\n@@\n-x = 2\n+x = 3\n```\n",
+    ],
+)
+def test_an_untrue_page_fails(page: str, tmp_path: Path) -> None:
+    """Another output, one that is not shown, another exit status, a change that fits nowhere."""
+    file = tmp_path / "page.md"
+    file.write_text(page, encoding="utf-8")
+    with pytest.raises(Untrue, match=r"page\.md|not show"):
+        work(file, tmp_path)

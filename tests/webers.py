@@ -1,0 +1,66 @@
+"""Motions of Weber's kind, and nearly: bodies of both families, and starts by what is special in them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+
+from verify.exact.kirchhoff.weber.curve import CYCLIC, Curve, curve
+from verify.scenes import tensors
+from verify.scenes.bodies import ImmersedBody
+from verify.scenes.motion import Clock, Impulse
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import Vector
+
+CLEBSCH = ("1", "3/2", "1/2")
+ALIKE = ("3/4", "3/4", "3/4")
+
+
+def exact(*texts: str | int) -> Vector:
+    return tuple(Fraction(text) for text in texts)
+
+
+def built(
+    x: Vector,
+    y: Vector,
+    r: Vector,
+    p: Vector,
+    coupling: Fraction = Fraction(1, 8),
+) -> Scene:
+    """A scene whose T is sum (p_i x_i^2 + r_i y_i^2)/2 and a multiple of x.y, which is nothing here."""
+    body = ImmersedBody(tensors.diagonal(p), tensors.diagonal((coupling,) * 3), tensors.diagonal(r))
+    clock = Clock(Fraction(0), (Fraction(1),))
+    return Scene("built", "built", "kirchhoff", frozenset(), body, Impulse(x, y), clock)
+
+
+def second(r: Vector, theta: Fraction, shared: Fraction = Fraction(4)) -> Vector:
+    """The p of Clebsch's second case."""
+    return tuple(shared + theta * r[j] * r[k] for _, j, k in CYCLIC)
+
+
+# Starts, by what is special about them; y is across x in all.
+STARTS: dict[str, tuple[Vector, Vector]] = {
+    "plain": (exact("3/4", "-1/2", "1"), exact("1/2", "-1/4", "-1/2")),
+    "x_1 = 0": (exact("0", "-1/2", "1"), exact("1/2", "1", "1/2")),
+    "x along axis 2": (exact("0", "3/4", "0"), exact("1/2", "0", "-1/3")),
+    "x along axis 3": (exact("0", "0", "-1"), exact("1/2", "1/3", "0")),
+    "y = 0": (exact("3/4", "-1/2", "1"), exact("0", "0", "0")),
+    "y_3 = 0": (exact("3/4", "-1/2", "1"), exact("1/2", "3/4", "0")),
+    "fast": (exact("1/4", "1/2", "-1/3"), exact("2", "-1", "0")),
+}
+BODIES: dict[str, tuple[Vector, Vector]] = {
+    "r alike": (exact(*ALIKE), exact("1", "7/4", "1/2")),
+    "theta > 0": (exact(*CLEBSCH), second(exact(*CLEBSCH), Fraction(1, 2))),
+    "theta < 0": (exact("1/2", "1", "5/4"), second(exact("1/2", "1", "5/4"), Fraction(-3, 4))),
+}
+
+
+@cache
+def case(start: str, body: str) -> Scene:
+    return built(*STARTS[start], *BODIES[body])
+
+
+def curve_of(scene: Scene) -> Curve:
+    found = curve(scene)
+    assert found is not None
+    return found

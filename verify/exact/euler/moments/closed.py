@@ -1,0 +1,58 @@
+"""Which closed form answers a rigid body under a constant moment: chosen in exact rationals."""
+
+from __future__ import annotations
+
+from verify.exact.euler.moments.washboard import Washboard, is_triaxial, washboard
+from verify.exact.solution import NoClosedForm, Solution
+from verify.scenes.motion import Quaternion
+from verify.scenes.scene import Scene
+
+
+def enclosed(scene: Scene) -> Solution:
+    """The motion in balls; raises NoClosedForm where anything tracked has none."""
+    if not is_triaxial(scene):
+        from verify.exact.euler.moments import erf
+
+        return erf.enclosed(scene)
+    board = washboard(scene)
+    if _keeps_axis(board):
+        from verify.exact.euler.moments.fixed_axis import FixedAxisBalls
+
+        return FixedAxisBalls(board, _attitude(scene))
+    _without_attitude(scene)
+    from verify.exact.euler.moments.washboard_balls import WashboardBalls
+
+    return WashboardBalls(board)
+
+
+def closed_form(scene: Scene) -> Solution:
+    """The motion in mpmath; raises NoClosedForm likewise."""
+    if not is_triaxial(scene):
+        from verify.exact.euler.moments import fresnel
+
+        return fresnel.closed_form(scene)
+    board = washboard(scene)
+    if _keeps_axis(board):
+        from verify.exact.euler.moments.fixed_axis import FixedAxis
+
+        return FixedAxis(board, _attitude(scene))
+    _without_attitude(scene)
+    from verify.exact.euler.moments.washboard_chebyshev import WashboardMotion
+
+    return WashboardMotion(board)
+
+
+def _keeps_axis(board: Washboard) -> bool:
+    return board.is_steady or board.is_straight
+
+
+def _attitude(scene: Scene) -> Quaternion | None:
+    """The attitude at the start where it is tracked."""
+    return scene.initial.attitude if "attitude" in scene.track else None
+
+
+def _without_attitude(scene: Scene) -> None:
+    if "attitude" in scene.track:
+        raise NoClosedForm(
+            "the attitude of a body with three different moments of inertia under a moment"
+        )

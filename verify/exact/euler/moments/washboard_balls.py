@@ -1,0 +1,232 @@
+"""The bead on the washboard in balls: the time as a certified integral, and its inverse.
+
+Legend as in washboard and turnings. Near an end e of the interval, side = +1 at the lower and -1 at the
+upper one, put sigma = e + side y^2. Then F = y^2 g with an entire g, the quotient of washboard_speed times
+side: g(0) = |F'(e)|, and g > 0 up to the other end. So
+
+    t = int_0^y 2 dy/g^(1/2),    y' = g^(1/2)/2,    nu = side y g^(1/2),
+
+where t counts from the turn and y from minus to plus through it: nu changes its sign with y, and there is
+no branch of a root to be chosen. A swing goes from one end to the other; a point between them parts
+the two integrals. The integrals are Arb's, adaptive and proven (Petras 2002); what they give at an exact y
+is carried to the time asked for by the mean value theorem.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Final, final
+
+from flint import acb, arb, ctx
+
+from verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
+from verify.exact.euler.moments.turnings import regime, turnings
+from verify.exact.euler.moments.washboard import Washboard
+from verify.exact.euler.moments.washboard_speed import Speed, Swinging, speed
+from verify.exact.solution import Unsettled
+
+_PRECISION_STEP: Final = 32
+_STEPS_PER_BIT: Final = 4
+# Each takes some ten milliseconds.
+_MOST_TEETH: Final = 512
+_TEETH_AHEAD: Final = 8
+# An integral over a tooth takes ten, one past a crest that is all but a double root a hundred. Where the
+# precision does not resolve the crest, no number of evaluations would.
+_EVALUATIONS_PER_BIT: Final = 200
+_WIDENINGS: Final = 20
+# The last step of Newton's iteration is a few hundred last bits: the integrals are not better.
+_ARRIVED_BITS: Final = 12
+
+
+@final
+class WashboardBalls(Enclosed):
+    """omega(t) in body axes of a triaxial body under a moment along a principal axis."""
+
+    by_quadrature = True
+
+    def __init__(self, board: Washboard) -> None:
+        self.regime = regime(board).value
+        self._board = board
+        self._courses: dict[int, Course] = {}
+
+    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        """``omega``, rows of 3."""
+        working = -(-bits // _PRECISION_STEP) * _PRECISION_STEP
+        with ctx.workprec(working):
+            if working not in self._courses:
+                self._courses[working] = Course(self._board)
+            course = self._courses[working]
+            return {"omega": [course.omega(t) for t in elapsed]}
+
+
+class Turn:
+    """The motion through one turning point, at the precision of flint at which this was made."""
+
+    def __init__(self, speed: Speed, end: arb, side: int) -> None:
+        self._end, self.side = end, side
+        self._quotient, self._unit = speed.quotient(end), 1 / speed.rate.sqrt()
+        self._has_teeth, self._tooth = isinstance(speed, Swinging), arb.pi() / speed.rate
+        # Exact places, sorted, and the times at which the bead is there; it is at 0 at the turn.
+        self._places, self._times = [arb(0)], [arb(0)]
+
+    def sigma(self, y: arb) -> arb:
+        return self._end + self.side * y * y
+
+    def nu(self, y: arb) -> arb:
+        return self.side * y * self._root(y)
+
+    def place(self, sigma: arb) -> arb:
+        """y >= 0 of a phase on this side."""
+        squared = self.side * (sigma - self._end)
+        if not squared >= 0:
+            raise Undecidable
+        return squared.sqrt()
+
+    def time(self, y: arb) -> arb:
+        """t of a ball y >= 0."""
+        at = y.mid()
+        return self._time(at) + (y - at) * 2 / self._root(y)
+
+    def at(self, t: arb) -> arb:
+        """y of a ball t."""
+        middle = t.mid()
+        side = -1 if middle < 0 else 1
+        y = self._near(abs(middle))
+        # t(y) is monotonic: where y + (t - t(y)) y' lies inside the ball about y in which y' was taken,
+        # the place at the time t does too.
+        missing = side * t - self._time(y)
+        if missing.is_zero():
+            return side * y
+        reach = abs(missing).upper() * self._root(y).upper()
+        for _ in range(_WIDENINGS):
+            about = arb(y, reach)
+            found = y + missing * self._root(about) / 2
+            if about.contains_interior(found):
+                return side * found
+            reach *= 2
+        raise Undecidable
+
+    def _near(self, t: arb) -> arb:
+        """A place y >= 0 at about the exact time t >= 0, by Newton's iteration from the nearest known.
+
+        Where it leaves the known places before and after t, or does not gain, that interval is halved:
+        t rises like a step where the bead all but stops on a crest.
+        """
+        k = bisect_left(self._times, t, key=arb.mid)
+        low = self._places[max(k - 1, 0)]
+        high = self._places[k] if k < len(self._places) else None
+        is_lower = high is None or t - self._times[k - 1].mid() < self._times[k].mid() - t
+        y = low if k == 0 or is_lower or high is None else high
+        last: arb | None = None
+        for _ in range(_STEPS_PER_BIT * ctx.prec):
+            missing = (t - self._time(y)).mid()
+            step = (missing * self._root(y) / 2).mid()
+            if abs(step) <= y * _arrived():
+                return y
+            low, high = (y, high) if missing > 0 else (low, y)
+            ahead = (y + step).mid()
+            gains = last is None or abs(step) < last / 2
+            last = abs(step)
+            if high is None:
+                y = min(ahead, self._further(y))
+            else:
+                y = ahead if gains and low < ahead < high else ((low + high) / 2).mid()
+        raise Undecidable
+
+    def _further(self, y: arb) -> arb:
+        """How far beyond the furthest known place to look: over a few teeth more, or twice as far."""
+        if not self._has_teeth:
+            return (2 * y + self._unit).mid()
+        if y * y > _MOST_TEETH * self._tooth:
+            raise Unsettled(
+                f"the time asked for lies more than {_MOST_TEETH} teeth of the washboard after the turning "
+                "point, and each takes an integral"
+            )
+        return (y * y + _TEETH_AHEAD * self._tooth).sqrt().mid()
+
+    def _time(self, y: arb) -> arb:
+        """t at an exact y >= 0, from the nearest place that is known."""
+        k = bisect_left(self._places, y)
+        if k < len(self._places) and self._places[k] == y:
+            return self._times[k]
+        beside = range(max(k - 1, 0), min(k + 1, len(self._places)))
+        nearest = min(beside, key=lambda j: abs(self._places[j] - y))
+        way = acb.integral(
+            self._integrand,
+            acb(self._places[nearest]),
+            acb(y),
+            eval_limit=_EVALUATIONS_PER_BIT * ctx.prec,
+        ).real
+        # Written so that what is not finite is not narrow.
+        if not way.rad() <= abs(way) * arb(2) ** (-ctx.prec // 2):
+            raise Undecidable
+        self._places.insert(k, y)
+        self._times.insert(k, self._times[nearest] + way)
+        return self._times[k]
+
+    def _root(self, y: arb) -> arb:
+        """g^(1/2), which is positive."""
+        found = self._g(acb(y)).real
+        if not found > 0:
+            raise Undecidable
+        return found.sqrt()
+
+    def _integrand(self, y: acb, analytic: bool) -> acb:
+        return 2 / self._g(y).sqrt(analytic=analytic)
+
+    def _g(self, y: acb) -> acb:
+        return self.side * self._quotient(self.side * y * y)
+
+
+class Course:
+    """One motion, set up at one precision of flint and good only there."""
+
+    def __init__(self, board: Washboard) -> None:
+        self._speed, self._moment = speed(board), balls(board.moment)
+        ends = turnings(board)
+        self._lower = Turn(self._speed, ends.lower, 1)
+        self._upper: Turn | None = None
+        turn, start = self._lower, arb(0)
+        if ends.upper is not None:
+            self._upper = Turn(self._speed, ends.upper, -1)
+            parting = ((ends.lower + ends.upper) / 2).mid()
+            self._rise = self._lower.time(self._lower.place(parting))
+            self._half = self._rise + self._upper.time(self._upper.place(parting))
+            if parting < 0:
+                turn, start = self._upper, self._half
+        self._lead = start
+        if board.nu:
+            since = turn.time(turn.place(arb(0)))
+            self._lead += since if (board.nu > 0) == (turn.side > 0) else -since
+
+    @property
+    def period(self) -> arb | None:
+        """The time after which omega recurs; None for a run."""
+        return None if self._upper is None else 2 * self._half
+
+    def omega(self, t: Fraction) -> list[arb]:
+        """In body axes."""
+        turn, since = self._turn(self._lead + ball(t))
+        y = turn.at(since)
+        nu, across = turn.nu(y), self._speed.across(turn.sigma(y))
+        return [v + nu * m for v, m in zip(across, self._moment, strict=True)]
+
+    def _turn(self, since: arb) -> tuple[Turn, arb]:
+        """The turn that is nearest at this time since one at the lower end, and the time since that."""
+        if self._upper is None:
+            return self._lower, since
+        whole = (since / (2 * self._half)).mid() + arb("0.5")
+        count = whole.floor().unique_fmpz()
+        if count is None:
+            raise Undecidable
+        since -= 2 * int(count) * self._half
+        if abs(since).mid() <= self._rise.mid():
+            return self._lower, since
+        return self._upper, since - self._half if since.mid() > 0 else since + self._half
+
+
+def _arrived() -> arb:
+    """The relative size of a step that leads no nearer."""
+    return arb(2) ** (_ARRIVED_BITS - ctx.prec)
