@@ -329,7 +329,7 @@ def test_nearly_across_is_nearly_the_transverse_motion() -> None:
 @pytest.mark.parametrize(
     ("scene", "what"),
     [
-        (loaded(tensors.diagonal(vector(1, 2, 3)), vector(0, 1, 0), vector(1, 1, 1)), "three"),
+        (loaded(tensors.diagonal(vector(1, 2, 3)), vector(0, 1, 1), vector(1, 1, 1)), "three"),
         (loaded(TOP, vector(1, 0, 0), vector(1, 1, 1), attitude=True), "not along its axis"),
         (loaded(TOP, vector(1, 0, 1), vector(1, 1, 1), attitude=True), "not along its axis"),
         (loaded(TOP, vector(0, 0, "1e-9"), vector(1, 1, 1), attitude=True), "too weak"),

@@ -92,13 +92,15 @@ SCENES = {
     "middle falling": (FALLING, "washboard-run"),
     "greatest swing": (axial(2, "1/20", vector("1/2", "3/5", "-1/5")), "washboard-swing"),
     "greatest run": (axial(2, "1/20", vector("1/2", "3/5", "-1/2")), "washboard-run"),
-    "steep run": (axial(2, "2", vector("1/2", "1/5", "-1")), "washboard-run"),
+    "steep run": (axial(2, "1", vector("1/2", "1/5", "-1")), "washboard-run"),
     "from rest below": (axial(1, "1/10", vector("1/9", 0, "1/10")), "washboard-swing"),
     "from rest above": (axial(0, "1/10", vector(0, "-1/2", "3/4")), "washboard-swing"),
     "from rest, steep": (axial(2, "-1/2", vector("1/2", "-1/5", 0)), "washboard-run"),
     "turned": (turned(axial(0, "1/10", vector("1/5", "7/10", "1/2"))), "washboard-swing"),
 }
-TIMES = tuple(map(Fraction, ("0", "1/3", "13/2", "-4", "-9")))
+TIMES = tuple(map(Fraction, ("0", "1/3", "13/2", "-4", "-8")))
+# What the series take a second for, or a long recursion.
+LONGER = ("least run", "greatest run", "steep run", "middle falling", "from rest above")
 
 
 def gap(one: Motion, other: Motion) -> mpf:
@@ -130,8 +132,15 @@ def truth(name: str) -> Motion:
 # Against what knows nothing but the equations of motion.
 
 
-@pytest.mark.parametrize("route", ROUTES)
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    ("name", "route"),
+    [
+        pytest.param(name, route, marks=[pytest.mark.slow] if longer else [])
+        for name in SCENES
+        for route in ROUTES
+        for longer in [name in LONGER and route == "mpmath"]
+    ],
+)
 def test_the_closed_form_is_the_taylor_motion(name: str, route: str) -> None:
     """To 45 digits on both sides of the start, along each axis, for every kind of end."""
     scene, word = SCENES[name]
@@ -149,12 +158,12 @@ def test_the_shipped_scenes_have_their_regime_on_every_rung(name: str) -> None:
 
 
 @pytest.mark.parametrize("route", ROUTES)
-def test_it_holds_through_seventeen_turning_points(route: str) -> None:
+def test_it_holds_through_eleven_turning_points(route: str) -> None:
     """The shipped swing to its end, where the other axes are not rational."""
     scene = load("euler/washboard-swing")
     motion = solution(scene, "arb").motion(scene.clock.elapsed, 15)
     spin = [float(row[2]) for row in motion["omega"]]
-    assert sum(a * b < 0 for a, b in pairwise(spin)) == 17
+    assert sum(a * b < 0 for a, b in pairwise(spin)) == 11
     times = [Fraction(31), Fraction(60)]
     expected = TaylorSolution(scene).motion(times, DIGITS)
     assert gap(solution(scene, route).motion(times, DIGITS), expected) <= BOTH
@@ -257,26 +266,26 @@ def test_the_ends_are_where_the_spin_is_zero_and_nowhere_between(name: str) -> N
 # Between a swing and a run.
 
 
-def test_a_swing_and_a_run_a_part_in_ten_to_the_fifteen_apart_are_told() -> None:
+def test_a_swing_and_a_run_a_part_in_ten_to_the_twelve_apart_are_told() -> None:
     """No rational start is on the separatrix; on either side of it the routes overlap with Taylor.
 
-    Halved in between a swing and a run until they differ by 2^-50.
+    Halved in between a swing and a run until they differ by 2^-40.
     """
     low, high = Fraction(-1, 5), Fraction(-1, 2)
 
     def start(spin: Fraction) -> Scene:
         return axial(2, "1/20", (Fraction(1, 2), Fraction(3, 5), spin))
 
-    for _ in range(50):
+    for _ in range(40):
         middle = (low + high) / 2
         is_swing = regime(board(start(middle))) == "washboard-swing"
         low, high = (middle, high) if is_swing else (low, middle)
-    times = [Fraction(30)]
+    times, digits = [Fraction(30)], 25
     for spin, word in ((low, "washboard-swing"), (high, "washboard-run")):
-        expected = TaylorSolution(start(spin)).motion(times, DIGITS)
+        expected = TaylorSolution(start(spin)).motion(times, digits)
         found = solution(start(spin), "arb")
         assert found.regime == word
-        assert gap(found.motion(times, DIGITS), expected) <= BOTH
+        assert gap(found.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
 
 
 def test_what_falls_exactly_never_climbs_again() -> None:
@@ -288,7 +297,7 @@ def test_what_falls_exactly_never_climbs_again() -> None:
     found = solution(beside, "arb")
     assert found.regime == "washboard-swing"
     # The difference has grown by e^(Omega sigma), less than e^10 here, from 1e-40 of omega.
-    rows = (exact.motion([Fraction(4)], DIGITS) for exact in (found, solution(FALLING, "arb")))
+    rows = (exact.motion([Fraction(4)], 36) for exact in (found, solution(FALLING, "arb")))
     assert gap(*rows) <= mpf("1e-35")
     far = solution(FALLING, "arb").motion([Fraction(10**4)], DIGITS)["omega"][0]
     assert abs(far[0]) <= mpf("1e-1000")
@@ -360,7 +369,7 @@ def boards(draw: st.DrawFn) -> Scene:
 QUIET = [HealthCheck.too_slow]
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=QUIET)
+@settings(max_examples=12, deadline=None, suppress_health_check=QUIET)
 @given(boards(), st.integers(-60, 60).map(lambda n: Fraction(n, 11)))
 def test_drawn_bodies_move_as_the_taylor_motion(scene: Scene, t: Fraction) -> None:
     """Starts at rest, on an axis, or 1e-20 beside one: the balls are the recursion's numbers."""
@@ -439,15 +448,15 @@ def test_a_start_on_the_wrong_side_of_the_turn_is_caught(monkeypatch: pytest.Mon
 
 
 def test_the_panels_integrate_and_invert() -> None:
-    """int dx/(x^2 + 10^-12) = 10^6 atan(10^6 x): all but singular at 0, where the panels shrink."""
-    with mp.workdps(50):
-        small = mpf(10) ** -6
+    """int dx/(x^2 + 10^-6) = 10^3 atan(10^3 x): all but singular at 0, where the panels shrink."""
+    with mp.workdps(30):
+        small = mpf(10) ** -3
         panels = Panels(lambda x: 1 / (x * x + small**2), mpf(1))
         for x in (small, mpf(1) / 3, mpf(7)):
             expected = mp.atan(x / small) / small
-            assert abs(panels.at(x) - expected) <= expected * mpf(10) ** -40
-            # dx = dt (x^2 + 10^-12): of the digits of t, up to 14 are not there in x.
-            assert abs(panels.inverse(expected) - x) <= x * mpf(10) ** -26
+            assert abs(panels.at(x) - expected) <= expected * mpf(10) ** -24
+            # dx = dt (x^2 + 10^-6), t near 10^3: of its digits up to 5 are not there in x.
+            assert abs(panels.inverse(expected) - x) <= x * mpf(10) ** -19
 
 
 # Where it is not used.
@@ -474,6 +483,8 @@ def test_a_time_too_many_teeth_away_is_not_waited_for() -> None:
         solution(SCENES["steep run"][0], "arb").motion([Fraction(10**5)], 15)
 
 
+# nu grows by 2/3 of M in a unit of time, and sigma with its square: 10^6 turns.
+LONG = replace(SCENES["steep run"][0], clock=Clock(Fraction(0), (Fraction(10**4),)))
 WEAK = axial(2, "1e-9", vector("1/2", "3/5", -3))
 
 
@@ -486,6 +497,7 @@ WEAK = axial(2, "1e-9", vector("1/2", "3/5", -3))
             "no principal axis",
         ),
         (WEAK, "teeth of the washboard"),
+        (LONG, "too many teeth of the washboard in the time of the scene"),
     ],
 )
 def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> None:

@@ -8,6 +8,7 @@ apart by their lightness too, run from dark to light there, so that the finest s
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 from verify.publish.pictures.palette import FAINT, INK, QUIET, contrast
@@ -121,7 +122,7 @@ def line_of(family: str, rung: str) -> dict[str, Any]:
     return {"dash": "dot" if dotted else _DASHES[len(look.dashes)], "width": look.width * 1.3}
 
 
-def rungs_upwards(rungs: Any) -> list[str]:
+def rungs_upwards(rungs: Iterable[str]) -> list[str]:
     """The rungs, each once, the shortest first."""
     return sorted({*rungs}, key=place_of_rung)
 

@@ -14,11 +14,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Final
 
 from flint import arb, ctx
 
-from verify.exact.balls import Undecidable
+from verify.exact.balls import Undecidable, ball
 from verify.exact.euler.moments.washboard import Washboard, WashboardRegime
 from verify.exact.euler.moments.washboard_speed import Growing, Speed, Swinging, speed
 from verify.exact.solution import NoClosedForm
@@ -62,6 +63,21 @@ def located(board: Washboard) -> Turnings:
         except Undecidable:
             bits *= 2
     raise NoClosedForm("the start is too near to a separatrix")
+
+
+def is_within_reach(board: Washboard, longest: Fraction) -> bool:
+    """Whether a run surely passes few enough teeth in this time, forward or backward, to be followed.
+
+    With r the amplitude of what swings in F, nu^2 <= A + slope sigma for A = nu0^2 + P + r, so that
+    sigma <= A^(1/2) t + slope t^2/4. What grows (kappa > 0) has no teeth.
+    """
+    if board.kappa > 0:
+        return True
+    with ctx.workprec(_FIRST_BITS):
+        F, t = Swinging(board), ball(abs(longest))
+        most = F.squared(arb(0)) + F.even + _swing(F) / (2 * F.rate)
+        sigma = most.nonnegative_part().sqrt() * t + F.slope * t * t / 4
+        return bool(sigma * F.rate < _MOST_TEETH * arb.pi())
 
 
 def turnings(board: Washboard) -> Turnings:

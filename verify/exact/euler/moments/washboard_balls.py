@@ -117,8 +117,9 @@ class Turn:
         k = bisect_left(self._times, t, key=arb.mid)
         low = self._places[max(k - 1, 0)]
         high = self._places[k] if k < len(self._places) else None
-        is_lower = high is None or t - self._times[k - 1].mid() < self._times[k].mid() - t
-        y = low if k == 0 or is_lower or high is None else high
+        y = low
+        if k and high is not None and self._times[k].mid() - t < t - self._times[k - 1].mid():
+            y = high
         last: arb | None = None
         for _ in range(_STEPS_PER_BIT * ctx.prec):
             missing = (t - self._time(y)).mid()
