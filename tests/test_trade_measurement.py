@@ -38,7 +38,8 @@ def test_the_interval_is_made_of_the_values_and_holds_the_median(values: list[fl
     assert found.median == median(values)
     if found.low is not None and found.high is not None:
         assert found.low <= found.median <= found.high
-        assert sorted(values).index(found.low) <= sorted(values)[::-1].index(found.high) + 1
+        rank, ranked = place(len(values), CONFIDENCE), sorted(values)
+        assert (found.low, found.high) == (ranked[rank - 1], ranked[::-1][rank - 1])
 
 
 @pytest.mark.parametrize("count", range(1, 40))

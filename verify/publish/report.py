@@ -16,6 +16,7 @@ from verify.publish import (
     figures,
     growth,
     prices,
+    quoted,
     reach,
     sheets,
     sights,
@@ -81,7 +82,8 @@ def publish(folder: Path | str) -> list[Path]:
     }
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, besides)
-    return list(replace_files(place, texts, stale=_own_tables(place / TABLES)))
+    written = replace_files(place, texts, stale=_own_tables(place / TABLES))
+    return [*written, *replace_files(place.resolve().parent, quoted.requoted(place, verdicts))]
 
 
 def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
