@@ -73,6 +73,46 @@ def test_what_is_kept_is_not_run_again(cache: Path, monkeypatch: pytest.MonkeyPa
     assert not unfinished.folder().exists()
 
 
+# A result so long that its worker is still writing it when the run is interrupted.
+_IN_THE_MIDDLE = """
+import sys, time
+from pathlib import Path
+from verify.standard import on_all_cores
+
+MARK = Path(sys.argv[1])
+
+
+def work(size):
+    if size:
+        MARK.touch()
+    return bytes(size)
+
+
+def finished(size):
+    while not MARK.exists():
+        time.sleep(0.001)
+    time.sleep(float(sys.argv[2]))
+    raise KeyboardInterrupt
+
+
+if __name__ == "__main__":
+    try:
+        on_all_cores(work, [0, 200_000_000], lambda size: size, finished, 2)
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
+
+@pytest.mark.parametrize("later", ["0.02", "0.1", "0.2"])
+def test_an_interrupt_within_a_result_is_no_deadlock(tmp_path: Path, later: str) -> None:
+    """A worker that is ended while it hands over its result leaves nobody waiting for the rest."""
+    script = tmp_path / "interrupted.py"
+    script.write_text(_IN_THE_MIDDLE)
+    command = [sys.executable, str(script), str(tmp_path / "mark"), later]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    assert done.stdout == "interrupted\n", done.stderr
+
+
 @pytest.mark.skipif(not Path("/proc").exists(), reason="needs Linux's signals to a process group")
 def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     """It says so and how; what follows has every verdict of a run that was not interrupted."""
@@ -91,7 +131,11 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
         while not list(place.glob("*.pickle")) and time.monotonic() < deadline:
             time.sleep(0.01)
         os.killpg(working.pid, signal.SIGINT)
-        out, error = working.communicate(timeout=10)
+        try:
+            out, error = working.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            os.killpg(working.pid, signal.SIGKILL)
+            raise
     if working.returncode == 0:
         pytest.skip("the run was over before it could be interrupted")
     assert working.returncode == 130

@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
 
 
+# What a run takes, in that of one state in closed form: a recursion as many times as much, and so many
+# radians as much as one more.
+_RECURSION = 10
+_RADIANS_PER_STATE = 1e5
+
+
 class Failed(RuntimeError):  # noqa: N818 (it names what happened to the run)
     """A run that came to no judgement, by no fault of its scene; the text says which and why."""
 
@@ -113,11 +119,23 @@ def on_all_cores(
             # Nobody waits for the rest, and the pool would.
             for worker in set(multiprocessing.active_children()) - others:
                 worker.terminate()
+            _hang_up(pool)
             if isinstance(error, BrokenProcessPool):
                 raise Failed(
                     "a worker process was ended from outside (short of memory?)"
                 ) from error
             raise
+
+
+def _hang_up(pool: ProcessPoolExecutor) -> None:
+    """Let the pool see the end of its results, whose writers have been ended.
+
+    One that was ended within a message leaves the pool waiting for the rest of it, for ever, as long
+    as anybody could still write it: this process, too, holds that end of the pipe. There is no public way.
+    """
+    results = getattr(pool, "_result_queue", None)
+    if results is not None:
+        results._writer.close()
 
 
 def available_cores() -> int:
@@ -163,21 +181,24 @@ def _run(job: Job) -> list[Judgement]:
     return found
 
 
-def _expense(job: Job) -> int:
+def _expense(job: Job) -> float:
     """The longest first, so that no core is left with one at the end.
 
-    What is tracked tells, and whether the truth comes from a closed form or, as under loads and for
-    most bodies but Clebsch's, three times as dear, from a recursion. The scene is read again for it,
-    which costs a millisecond.
+    What is tracked tells, and whether the truth, or the flow between two samples of a loaded body, is
+    a closed form or a recursion, which is many times as dear; of long runs the radians. The scene is
+    read again for it, which costs a millisecond.
     """
     from verify.scenes.bodies import RigidBody
+    from verify.scenes.motion import Spin
     from verify.scenes.reader import load
 
     scene = load(job.scene)
-    body = scene.body
+    body, start = scene.body, scene.initial
     has_closed_form = body.is_free and (isinstance(body, RigidBody) or body.axis_of_symmetry)
     states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
-    return -states if has_closed_form else -3 * states
+    spin = max(map(abs, start.omega)) if isinstance(start, Spin) else 0
+    radians = float(spin * abs(scene.clock.elapsed[-1]))
+    return -states * (1 if has_closed_form else _RECURSION) - radians / _RADIANS_PER_STATE
 
 
 def _begin_worker() -> None:
