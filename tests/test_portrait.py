@@ -28,6 +28,7 @@ from verify.portrait import (
     roots,
 )
 from verify.publish import portraits
+from verify.publish.file_names import of_scene
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.library import names
 from verify.scenes.motion import Impulse
@@ -35,7 +36,7 @@ from verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "reports" / portraits.FOLDER
-SCENES = tuple(name for name in names() if (FOLDER / f"{portraits.stem_of(name)}.json").exists())
+SCENES = tuple(name for name in names() if (FOLDER / f"{of_scene(name)}.json").exists())
 # A full tensor, an axis of symmetry that is not the third, and time that runs backward.
 FRESH = ("euler/full-tensor", "kirchhoff/oblate-about-axis-1", "euler/backward")
 # Half a unit of the ninth digit, of a number below 10.
@@ -67,7 +68,7 @@ def with_quartic() -> list[str]:
 def test_every_scene_has_its_portrait() -> None:
     """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
     files = {file.stem for file in FOLDER.glob("*.json")}
-    assert files == {portraits.stem_of(name) for name in names()}
+    assert files == {of_scene(name) for name in names()}
     assert {name: stored(name)["sha256"] for name in names()} == {
         name: load(name).digest for name in names()
     }

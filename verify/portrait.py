@@ -33,7 +33,7 @@ from verify.scenes.motion import Impulse
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix
-from verify.standard import Failed, available_cores, fault, on_all_cores
+from verify.standard import documents
 
 DIGITS: Final = 30
 # Times at which the values are given: these parts of the span.
@@ -84,17 +84,7 @@ def portraits(names: Sequence[str], finished: Callable[[str], None]) -> list[Doc
     ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    workers = max(1, min(available_cores(), len(names)))
-    return on_all_cores(_of_name, names, _expense, finished, workers)
-
-
-def _of_name(name: str) -> Document:
-    try:
-        return portrait(load(name))
-    except Exception as error:
-        # Only text is sure to pass from process to process.
-        reason = str(error) if isinstance(error, Unsettled) else fault(error)
-        raise Failed(f"{name}: {reason}") from error
+    return documents(portrait, names, _expense, finished)
 
 
 def _expense(name: str) -> tuple[bool, int]:

@@ -11,13 +11,12 @@ from typing import Any, Final
 
 from verify.exact.printed import decimal_text, document
 from verify.exact.route import solution
-from verify.exact.solution import Unsettled
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.standard import Failed, available_cores, fault, on_all_cores
+from verify.standard import documents
 
 DIGITS: Final = 32
 
@@ -63,17 +62,7 @@ def references(names: Sequence[str], finished: Callable[[str], None]) -> list[di
     ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    workers = max(1, min(available_cores(), len(names)))
-    return on_all_cores(_of_name, names, _expense, finished, workers)
-
-
-def _of_name(name: str) -> dict[str, Any]:
-    try:
-        return reference(load(name))
-    except Exception as error:
-        # Only text is sure to pass from process to process.
-        reason = str(error) if isinstance(error, Unsettled) else fault(error)
-        raise Failed(f"{name}: {reason}") from error
+    return documents(reference, names, _expense, finished)
 
 
 def _expense(name: str) -> tuple[int, bool]:

@@ -12,6 +12,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -19,6 +20,7 @@ from verify.unfinished import forget, keep, kept
 
 if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
+    from verify.scenes.scene import Scene
 
 
 # What a run takes, in that of one state in closed form: a recursion as many times as much, and so many
@@ -125,6 +127,33 @@ def on_all_cores(
                     "a worker process was ended from outside (short of memory?)"
                 ) from error
             raise
+
+
+def documents(
+    make: Callable[[Scene], dict[str, Any]],
+    names: Sequence[str],
+    expense: Callable[[str], Any],
+    finished: Callable[[str], None],
+) -> list[dict[str, Any]]:
+    """What ``make`` says of many scenes, on all cores, in the order given.
+
+    ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
+    nothing.
+    """
+    workers = max(1, min(available_cores(), len(names)))
+    return on_all_cores(partial(_document, make), names, expense, finished, workers)
+
+
+def _document(make: Callable[[Scene], dict[str, Any]], name: str) -> dict[str, Any]:
+    from verify.exact.solution import Unsettled
+    from verify.scenes.reader import load
+
+    try:
+        return make(load(name))
+    except Exception as error:
+        # Only text is sure to pass from process to process.
+        reason = str(error) if isinstance(error, Unsettled) else fault(error)
+        raise Failed(f"{name}: {reason}") from error
 
 
 def _hang_up(pool: ProcessPoolExecutor) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from verify.publish import data, figures, portraits, reference_files
+from verify.publish.file_names import of_scene
 from verify.publish.markdown import code, prose
 from verify.publish.pictures import (
     axis_path,
@@ -82,7 +83,7 @@ class Stored:
 
     def rungs(self, scene: str) -> list[str]:
         """Those on which the scene was run, in the order of the ladder."""
-        stem = f"{portraits.stem_of(scene)}.{_SOLVER}"
+        stem = f"{of_scene(scene)}.{_SOLVER}"
         files = (self.folder / data.FOLDER / data.RECORDS).glob(f"{stem}.*.json")
         names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
         return sorted(names, key=place_of_rung)
@@ -99,15 +100,15 @@ class Stored:
 
     @staticmethod
     def portrait_name(scene: str) -> str:
-        return f"{portraits.FOLDER}/{portraits.stem_of(scene)}.json"
+        return f"{portraits.FOLDER}/{of_scene(scene)}.json"
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:
-        return f"{data.FOLDER}/{data.RECORDS}/{portraits.stem_of(scene)}.{_SOLVER}.{rung}.json"
+        return f"{data.FOLDER}/{data.RECORDS}/{of_scene(scene)}.{_SOLVER}.{rung}.json"
 
     @staticmethod
     def reference_name(scene: str) -> str:
-        return f"{reference_files.FOLDER}/{portraits.stem_of(scene)}.json"
+        return f"{reference_files.FOLDER}/{of_scene(scene)}.json"
 
 
 def write(folder: Path | str) -> list[Path]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from verify.publish import data
+from verify.publish.file_names import of_scene
 from verify.publish.replacement import first_line, replace_files
 
 FOLDER: Final = f"{data.FOLDER}/portraits"
@@ -27,7 +28,7 @@ def write(folder: Path | str, documents: Iterable[Portrait]) -> list[Path]:
     OSError; what the folder held then stays as it was.
     """
     target = Path(folder) / FOLDER
-    texts = {f"{stem_of(found['scene'])}.json": _laid_out(found) for found in documents}
+    texts = {f"{of_scene(found['scene'])}.json": _laid_out(found) for found in documents}
     return list(replace_files(target, texts, stale=_own_files(target)))
 
 
@@ -36,13 +37,8 @@ def load(folder: Path | str, scene: str) -> dict[str, Any] | None:
 
     Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
-    file = Path(folder) / FOLDER / f"{stem_of(scene)}.json"
+    file = Path(folder) / FOLDER / f"{of_scene(scene)}.json"
     return data.read_document(file) if file.exists() else None
-
-
-def stem_of(scene: str) -> str:
-    """The file's name without its ending: ``euler-generic``."""
-    return scene.replace("/", "-")
 
 
 def _laid_out(document: Portrait) -> str:
