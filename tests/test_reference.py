@@ -22,11 +22,11 @@ from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.publish import reference_files
 from verify.publish.page import MADE_BY
-from verify.reference import DIGITS, _of_name, reference, references
+from verify.reference import DIGITS, reference, references
 from verify.scenes.bodies import RigidBody
 from verify.scenes.library import names
 from verify.scenes.reader import load
-from verify.standard import Failed
+from verify.standard import Failed, _document
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "reports" / "reference"
@@ -327,17 +327,14 @@ def test_the_verb_writes_the_folder(
     [(Unsettled("two evaluations do not agree"), r"euler/rest: two evaluations do not agree$"),
      (ZeroDivisionError("by zero"), r"euler/rest: ZeroDivisionError: by zero.*please report it")],
 )  # fmt: skip
-def test_a_scene_that_cannot_be_solved_is_named(
-    monkeypatch: pytest.MonkeyPatch, error: Exception, text: str
-) -> None:
+def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> None:
     """Whatever a worker meets comes back as one line with the scene in it."""
 
-    def broken(scene: object) -> None:
+    def broken(scene: object) -> dict[str, Any]:
         raise error
 
-    monkeypatch.setattr("verify.reference.reference", broken)
     with pytest.raises(Failed, match=text):
-        _of_name("euler/rest")
+        _document(broken, "euler/rest")
 
 
 def test_documents_come_in_the_order_asked_for() -> None:
