@@ -20,13 +20,13 @@ from verify.cli import main
 from verify.exact.printed import document
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
+from verify.parallel import Failed, _document
 from verify.publish import reference_files
 from verify.publish.page import MADE_BY
 from verify.reference import DIGITS, reference, references
 from verify.scenes.bodies import RigidBody
 from verify.scenes.library import names
 from verify.scenes.reader import load
-from verify.standard import Failed, _document
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "reports" / "reference"

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from verify import standard, unfinished
+from verify.job import Job, jobs
 from verify.run import run
-from verify.standard import Job, jobs
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
 
@@ -77,7 +77,7 @@ def test_what_is_kept_is_not_run_again(cache: Path, monkeypatch: pytest.MonkeyPa
 _IN_THE_MIDDLE = """
 import sys, time
 from pathlib import Path
-from verify.standard import on_all_cores
+from verify.parallel import on_all_cores
 
 MARK = Path(sys.argv[1])
 

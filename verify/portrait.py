@@ -20,12 +20,14 @@ from mpmath import mp, mpf
 
 from verify.exact.elements import Elements, elements
 from verify.exact.ellipsoid import formed_to
+from verify.exact.kirchhoff.displaced import centred
 from verify.exact.kirchhoff.quartic import Nutation
 from verify.exact.kirchhoff.turned import upright
 from verify.exact.printed import decimal_text, document
 from verify.exact.route import solution
 from verify.exact.solution import Solution, Unsettled
 from verify.explain import explanation
+from verify.parallel import documents
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.library import find
@@ -33,7 +35,6 @@ from verify.scenes.motion import Impulse
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix
-from verify.standard import documents
 
 DIGITS: Final = 30
 # Times at which the values are given: these parts of the span.
@@ -303,14 +304,15 @@ def _plain(numbers: Sequence[mpf]) -> list[float]:
 def _potential(scene: Scene, orbit: Elements) -> Document | None:
     """X3 of Hydromechanics 49 with its roots, and the interval that the axial impulse moves in.
 
-    None unless the body is free, of Clebsch's form, and has a linear impulse: x3 is constant without
+    None unless the body is free, of revolution, and has a linear impulse: x3 is constant without
     one. ``variable`` names the component along the axis of symmetry, x3 but for a body turned round.
     """
     body = scene.body
     if not isinstance(body, ImmersedBody) or not body.is_free:
         return None
     named_anew, axis = upright(scene)
-    solid, start = named_anew.body, named_anew.initial
+    moved, _ = centred(named_anew)
+    solid, start = moved.body, moved.initial
     assert isinstance(solid, ImmersedBody)
     assert isinstance(start, Impulse)
     if solid.clebsch is None:

@@ -11,12 +11,12 @@ from typing import Any, Final
 
 from verify.exact.printed import decimal_text, document
 from verify.exact.route import solution
+from verify.parallel import documents
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
-from verify.standard import documents
 
 DIGITS: Final = 32
 

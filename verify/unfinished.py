@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 from platformdirs import user_cache_path
 
 if TYPE_CHECKING:
+    from verify.job import Job
     from verify.judge.judgement import Judgement
-    from verify.standard import Job
 
 
 def folder() -> Path:

@@ -71,6 +71,6 @@ def _told(error: Exception) -> str:
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
     if isinstance(error, ModuleNotFoundError) and error.name and error.name[:6] != "verify":
         return f"expected the package {error.name} (`make verify` sets all up), got none"
-    from verify.standard import Failed, fault
+    from verify.parallel import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)

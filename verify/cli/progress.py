@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from verify.cli.streams import say
 
 if TYPE_CHECKING:
-    from verify.standard import Job
+    from verify.job import Job
 
 # Nobody needs to be told that something takes less than this, in seconds.
 _PATIENCE = 1.0

@@ -90,12 +90,13 @@ def extremes(folder: Path) -> Answer:
     """What becomes of the extremes on float64; fails where an answer is not the one foreseen."""
     from verify.cli.progress import advancing
     from verify.expected import hold
+    from verify.job import jobs
     from verify.publish import extremes as pages
     from verify.scenes import library
     from verify.scenes.expected import left_out
     from verify.scenes.reader import load
     from verify.solvers.registry import TAYLOR
-    from verify.standard import jobs, run_all
+    from verify.standard import run_all
 
     without = left_out([library.EXTREMES], [_ON])
     scenes = [one for one in library.named(library.EXTREMES) if (one, _ON) not in without]

@@ -291,7 +291,8 @@ def _judge(
     resume: bool = False,
 ) -> list[Judgement]:
     from verify.cli.progress import advancing
-    from verify.standard import jobs, run_all
+    from verify.job import jobs
+    from verify.standard import run_all
 
     without = set(left_out)
     asked = [

@@ -12,9 +12,11 @@ from dataclasses import replace
 
 from verify.exact.element import Element, Elements
 from verify.exact.euler.elements import elements as euler_elements
+from verify.exact.kirchhoff.displaced import centred
 from verify.exact.kirchhoff.elements import elements as kirchhoff_elements
 from verify.exact.kirchhoff.turned import upright
 from verify.scenes.bodies import RigidBody
+from verify.scenes.precision import float_text
 from verify.scenes.scene import Scene
 
 __all__ = ["Element", "Elements", "elements"]
@@ -29,7 +31,14 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     if isinstance(scene.body, RigidBody):
         return euler_elements(scene, digits)
     named_anew, axis = upright(scene)
-    found = kirchhoff_elements(named_anew, digits)
+    moved, distance = centred(named_anew)
+    found = kirchhoff_elements(moved, digits)
+    if distance:
+        told = (
+            "T is of Clebsch's form about the point of axis 3 at "
+            f"{float_text(distance)} from the origin: the body is solved there."
+        )
+        found = replace(found, sentences=(told, *found.sentences))
     return found if axis == 3 else _about(axis, found)
 
 

@@ -69,15 +69,21 @@ class ImmersedBody:
 
     @cached_property
     def axis_of_symmetry(self) -> int | None:
-        """The body axis about which T is of Clebsch's form; 3 where there is a choice."""
-        blocks = (self.linear, self.coupling, self.angular)
-        if not all(tensors.is_diagonal(block) for block in blocks):
-            return None
-        for axis in (3, 1, 2):
-            i, j = axis % 3, (axis + 1) % 3
-            if all(block[i][i] == block[j][j] for block in blocks):
-                return axis
-        return None
+        """The body axis about which every turn leaves T as it is; 3 where there is a choice.
+
+        T is of Clebsch's form about some point of that axis, which need not be the origin.
+        """
+        return next((axis for axis in (3, 1, 2) if self._is_of_revolution(axis)), None)
+
+    def _is_of_revolution(self, axis: int) -> bool:
+        """Whether A, B and C commute with the turns about the axis."""
+        i, j, k = axis % 3, (axis + 1) % 3, axis - 1
+        return all(
+            block[i][i] == block[j][j]
+            and block[i][j] == -block[j][i]
+            and not any((block[i][k], block[k][i], block[j][k], block[k][j]))
+            for block in (self.linear, self.coupling, self.angular)
+        )
 
     @cached_property
     def clebsch(self) -> Clebsch | None:

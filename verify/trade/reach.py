@@ -24,13 +24,13 @@ from verify.judge.attainable import floor
 from verify.judge.errors import largest, state_errors
 from verify.judge.provenance import provenance
 from verify.models.problem import NotRepresentable, Problem, pose
+from verify.parallel import available_cores, on_all_cores
 from verify.scenes.motion import Motion
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
 from verify.scenes.scene import Scene
 from verify.solvers.taylor.driver import Taylor
 from verify.solvers.trajectory import Outcome, Trajectory
-from verify.standard import available_cores, on_all_cores
 from verify.trade.families import QUARTERS, Family, at_quarters, families, family, period_of
 
 # As the judge has them.

@@ -1,4 +1,4 @@
-"""Clebsch's body with its axis of symmetry along body axis 1 or 2: solved in axes named anew.
+"""A body of revolution about body axis 1 or 2: solved in axes named anew.
 
 The closed forms are written for the axis 3. A cyclic change of names, v' = (v_j, v_k, v_axis), turns
 the body axes by a third of a turn about (1, 1, 1) and mirrors nothing, so Kirchhoff's equations keep
@@ -14,6 +14,7 @@ from typing import final
 
 import numpy as np
 
+from verify.exact.kirchhoff.displaced import centred, displaced
 from verify.exact.solution import Quantities, Solution
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse, Motion, Quaternion
@@ -24,7 +25,9 @@ _BODY_AXES = ("linear_impulse", "angular_impulse", "attitude")
 
 
 def enclosed(scene: Scene) -> Solution:
-    """The closed form in balls of a scene with Clebsch's energy about any body axis, without loads.
+    """The closed form in balls of a solid of revolution about any body axis, without loads.
+
+    Clebsch's energy, that is, about some point of the axis.
 
     Raises NoClosedForm, with the reason, for every other scene.
     """
@@ -97,7 +100,10 @@ class Turned(Solution):
 
 def _solved(scene: Scene, solve: Callable[[Scene], Solution]) -> Solution:
     named_anew, axis = upright(scene)
-    found = solve(named_anew)
+    moved, distance = centred(named_anew)
+    found = solve(moved)
+    if distance:
+        found = displaced(found, distance, named_anew)
     return found if axis == 3 else Turned(found, axis)
 
 
