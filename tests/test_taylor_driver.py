@@ -208,7 +208,7 @@ def test_unfinished_run_fails_without_a_number(
     """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
     from verify.solvers.taylor import driver
 
-    monkeypatch.setattr(driver, "_propagate", lambda integrator, problem: (outcome, 7, [], 0.0))
+    monkeypatch.setattr(driver, "_propagate", lambda *_: (outcome, 7, [], 0.0))
     (verdict,) = run("euler/generic", "taylor", "f64").verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == outcome.value
@@ -353,17 +353,34 @@ def sampled(scene: Scene, count: int) -> Scene:
 
 
 @pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
-def test_samples_cost_no_steps(name: str) -> None:
+def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """Between the same 24 looks at the rate, 25 samples and 4801 take the same steps, to the bit.
 
     Samples are read off the steps: if a step ended at each, there would be thousands.
     """
+    from verify.solvers.taylor import driver
+
+    monkeypatch.setattr(driver, "_FEWEST_LOOKS", 24)
     few, many = (
         Taylor().solve(pose(sampled(load(name), n), rung("f64"))) for n in (25, 24 * 200 + 1)
     )
     assert few.steps == many.steps
     for quantity, rows in few.quantities.items():
         assert np.array_equal(rows[-1], many.quantities[quantity][-1])
+
+
+def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How MPFR's calls are compiled changes what they cost, and not a bit of what they compute."""
+    from verify.solvers.taylor import driver
+
+    problem = pose(load("euler/with-attitude"), rung("mp113"))
+    found = []
+    for long_way in (0, 10**6):
+        monkeypatch.setattr(driver, "_LONG_WAY", long_way)
+        found.append(Taylor().solve(problem))
+    assert found[0].steps == found[1].steps
+    for quantity, rows in found[0].quantities.items():
+        assert np.array_equal(rows, found[1].quantities[quantity])
 
 
 def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:

@@ -86,10 +86,11 @@ class Taylor(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
-        is_long = abs(problem.times[-1]) > _LONG_WAY
+        times = arithmetic(problem.rung).times(problem.times)
+        is_long = abs(float(times[-1])) > _LONG_WAY
         integrator = compiled(problem.form, problem.rung, self.tolerance, is_long=is_long)
         ready = perf_counter()
-        outcome, steps, rows, inner = _propagate(integrator, problem)
+        outcome, steps, rows, inner = _propagate(integrator, problem, times)
         seconds = perf_counter() - ready
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
@@ -162,7 +163,9 @@ def compiled(
         )
 
 
-def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, float]:
+def _propagate(
+    integrator: Any, problem: Problem, times: np.ndarray[Any, Any]
+) -> tuple[Outcome, int, Rows, float]:
     """Sample the problem's times; the outcome is FINISHED only if every row is there and finite.
 
     Also the number of steps, the rows, and the seconds that heyoka's own code took.
@@ -176,7 +179,6 @@ def _propagate(integrator: Any, problem: Problem) -> tuple[Outcome, int, Rows, f
     rate = linearised.fastest([float(value) for value in problem.initial])
     if not isfinite(rate):
         return Outcome.NON_FINITE, 0, [], 0.0
-    times = numbers.times(problem.times)
     # In these units the motion is of size one, also one that is at rest when it begins.
     pieces = _pieces(max(rate, 1.0) * abs(float(times[-1])), problem.rung)
     grid, samples = _grid(problem, times, numbers, pieces)
