@@ -85,13 +85,24 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
     Raises Unsettled if it never is.
     """
     exact = solution(scene)
-    # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
-    is_recursive = exact.route == "taylor" or scene.body.manufactured is not None
-    if is_recursive or exact.by_quadrature:
+    if differs_by_recursion(scene) or exact.by_quadrature:
         table = transition_table(scene, exact, _units(scene), elapsed)
         if table is not None:
             return Transition(tuple(elapsed), table)
     return Transition(tuple(elapsed), dict(_norms(next(settled(scene, elapsed)))))
+
+
+def differs_by_recursion(scene: Scene) -> bool:
+    """Whether the motion, or one from a start beside it, is known by the Taylor recursion alone.
+
+    A motion in a plane leaves it, Weber's has no FG, and a manufactured one has its closed form from one
+    start only: differences of such a motion would be of recursions, which cost more than one along it.
+    """
+    if scene.body.manufactured is not None:
+        return True
+    start = momentum(scene)
+    beside = (start.moved(j, unit) for j, unit in enumerate(start.units))
+    return any(solution(each).route == "taylor" for each in (scene, *beside))
 
 
 def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterator[Derivatives]:

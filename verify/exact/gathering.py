@@ -28,7 +28,15 @@ import numpy as np
 from flint import fmpz_mat
 from mpmath import mp
 
-from verify.exact.condition import Derivatives, as_integers, inverse, log2_size, quotient, settled
+from verify.exact.condition import (
+    Derivatives,
+    as_integers,
+    differs_by_recursion,
+    inverse,
+    log2_size,
+    quotient,
+    settled,
+)
 from verify.exact.inputs import momentum
 from verify.exact.route import solution
 from verify.exact.variation import Stepped, fastest, stepped
@@ -52,8 +60,9 @@ _MOST_SAMPLES: Final = 401
 # For a solid in a fluid, steps of float64 cost less than seven orbits of hundreds of digits, until
 # there are thousands; the four of a rigid body, in functions of real numbers, cost less than any.
 _MOST_RADIANS: Final = 2000
-# Norms are wanted to a digit or two.
+# Norms are wanted to a digit or two, and the size of one that is too large to within a tenth.
 _SHARP: Final = 1e-3
+_TOLD: Final = 0.1
 
 
 class Path(ABC):
@@ -92,14 +101,12 @@ def path(scene: Scene) -> Path:
     """
     elapsed = scene.clock.elapsed
     found = _along(scene, _few(elapsed))
-    rate = fastest(scene, momentum(scene).units, found.momentum)
-    times = np.array([abs(float(t)) for t in found.elapsed])
-    growth = found.growth()
-    if (growth <= _REGULAR * (1 + rate * times)).all():
+    rate, growth = _rate(scene, found), found.growth()
+    if _is_regular(found, rate, growth):
         return found
     points = _many(elapsed, rate)
     is_solid_in_fluid = found.momentum.shape[1] == 6
-    if is_solid_in_fluid and rate * times[-1] <= _MOST_RADIANS and growth.max() < inf:
+    if is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS and growth.max() < inf:
         steps = _stepped(scene, points, float(growth.max()))
         if steps is not None:
             return steps
@@ -107,14 +114,21 @@ def path(scene: Scene) -> Path:
 
 
 def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
-    exact = solution(scene)
-    # Differences of a manufactured motion would be of recursions: it has a closed form from one start only.
-    is_recursive = exact.route == "taylor" or scene.body.manufactured is not None
-    if is_recursive or exact.by_quadrature:
+    """The orbit at a few points; no sharper than it takes to see that they are too few."""
+    if differs_by_recursion(scene) or solution(scene).by_quadrature:
         found = _stepped(scene, points)
         if found is not None:
             return found
-    return _sharp(scene, points)
+    return _sharp(scene, points, to_tell=True)
+
+
+def _rate(scene: Scene, found: Path) -> float:
+    return fastest(scene, momentum(scene).units, found.momentum)
+
+
+def _is_regular(found: Path, rate: float, growth: Floats) -> bool:
+    times = np.array([abs(float(t)) for t in found.elapsed])
+    return bool((growth <= _REGULAR * (1 + rate * times)).all())
 
 
 def _stepped(
@@ -126,16 +140,23 @@ def _stepped(
     return None if found is None else _ByIntegration.of(scene, points, found)
 
 
-def _sharp(scene: Scene, points: Sequence[Fraction], least: int = 0) -> _ByDifference:
+def _sharp(
+    scene: Scene, points: Sequence[Fraction], least: int = 0, to_tell: bool = False
+) -> _ByDifference:
     """From differences so small that products of F with inverses of it have their leading digits.
 
     A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
-    ladder is enough, what is found there is noise on top of what is asked: more, and not less.
+    ladder is enough, what is found there is noise on top of what is asked: more, and not less. An orbit
+    that is not regular is left as it is ``to_tell`` that it is not: |F| is sharp before F F^-1 is.
     """
     for found in settled(scene, points, least):
         path = _ByDifference.of(scene, points, found)
-        blurred = path.growth() ** 2 * path.shrinkage().max()
+        growth = path.growth()
+        blurred = growth**2 * path.shrinkage().max()
         if (blurred <= _SHARP * 10.0**found.exponent).all():
+            break
+        told = growth.max() <= _TOLD * 10.0**found.exponent
+        if to_tell and told and not _is_regular(path, _rate(scene, path), growth):
             break
     return path
 
