@@ -29,7 +29,8 @@ class Invariant:
 
     ``value`` gives Q at every row of a motion, an object array (n,), or (n, 3) in space axes.
     ``scale`` gives a size of Q that vanishes with the motion only, and 1 there (then drift is
-    absolute). ``sensitivity`` gives, block by block, the spectral norm of dQ/d(block) at every row:
+    absolute). ``sensitivity`` gives dQ/d(block) at every row, block by block: (n, 3) by component where
+    a component that is zero adds nothing to Q, whoever disturbs it, and else its spectral norm (n,);
     blocks ``momentum`` (H, body axes) or ``linear_impulse`` and ``angular_impulse`` (body axes),
     ``attitude`` (a rotation vector in space axes, radians) and ``centre`` (space axes); a block
     that Q does not contain is absent.
@@ -81,7 +82,7 @@ def _euler_energy(body: RigidBody) -> Invariant:
         "T",
         value,
         lambda motion: _largest(value(motion)),
-        lambda motion: {"momentum": _norms(motion["omega"])},
+        lambda motion: {"momentum": motion["omega"]},
     )
 
 
@@ -95,7 +96,7 @@ def _euler_momentum(body: RigidBody) -> Invariant:
         "H2",
         value,
         lambda motion: _largest(value(motion)),
-        lambda motion: {"momentum": 2 * _norms(_applied(body.inertia, motion["omega"]))},
+        lambda motion: {"momentum": 2 * _applied(body.inertia, motion["omega"])},
     )
 
 
@@ -130,7 +131,7 @@ def _energy(body: ImmersedBody) -> Invariant:
 
     def sensitivity(motion: Motion) -> Mapping[str, Array]:
         both = velocities(motion)
-        return {"linear_impulse": _norms(both[:, :3]), "angular_impulse": _norms(both[:, 3:])}
+        return {"linear_impulse": both[:, :3], "angular_impulse": both[:, 3:]}
 
     return Invariant("T", value, lambda motion: _largest(value(motion)), sensitivity)
 
@@ -139,7 +140,7 @@ _F2 = Invariant(
     "F2",
     lambda motion: _squares(motion["linear_impulse"]),
     lambda motion: _largest(_squares(motion["linear_impulse"])),
-    lambda motion: {"linear_impulse": 2 * _norms(motion["linear_impulse"])},
+    lambda motion: {"linear_impulse": 2 * motion["linear_impulse"]},
 )
 
 # x.y may vanish while x and y do not: its scale is the product of theirs.

@@ -7,7 +7,7 @@ transition matrix Phi carries it on, so that after N steps
 
     attainable(t) = u [ sum over steps s and components i of |Phi(t, s) e_i|^2 r_i(s)^2 ]^(1/2).
 
-For a conserved quantity the gradient takes the place of Phi, because the orbit carries a change of
+For a conserved quantity its gradient takes the place of Phi, because the orbit carries a change of
 it unchanged. This is a model of independent roundings, not a bound; gates leave a factor for it.
 """
 
@@ -77,7 +77,9 @@ class Floor:
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.
                 relative = (gradient * unit / whole).astype(float)
-                injected += relative**2 * np.diff(self._squares(block)[ends - 1], prepend=0.0)
+                rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
+                shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
+                injected += np.sum(shares * rounded, axis=1)
         drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
         return self._at_samples(drift, self.times[nodes])
 
@@ -105,10 +107,10 @@ class Floor:
         return self.unit_roundoff * max(shares)
 
     def _squares(self, block: str) -> Floats:
-        """The sum over the steps so far of |rounding of the block|^2, at every time of the path."""
+        """The sums over the steps so far of squared roundings of a block, component by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
-        found: Floats = np.cumsum(self.steps_at * np.sum(rows**2, axis=1))
+        found: Floats = np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
         return found
 
     def _path_times(self) -> Floats:
