@@ -14,6 +14,7 @@ from verify.models.form import Form, clebsch_equations, euler_equations, kirchho
 from verify.models.frame import attitude_rate, centre_rate, rotation
 from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
 from verify.models.problem import NotRepresentable, Problem, pose
+from verify.models.rates import Linearised
 from verify.scenes import tensors
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.library import names
@@ -218,6 +219,19 @@ def test_a_third_is_rounded_once_and_not_through_a_double() -> None:
     exact = scene.body.inverse_inertia[2][2] / problem.units.inverse_inertia
     assert problem.parameter["K33"] != exact
     assert abs(problem.parameter["K33"] / exact - 1) <= Fraction(1, 2**237)
+
+
+@pytest.mark.parametrize("ratio", ["1e-4", "1e-10", "1e-40", "1e12"])
+def test_the_fastest_rate_is_of_order_one_however_far_apart_the_moments_are(ratio: str) -> None:
+    """H may turn far faster than the body: a Taylor series in units of omega would overflow.
+
+    The bound on the roots is within a factor of two, the power of two within another one on each side.
+    """
+    moments = tensors.diagonal((Fraction(ratio), Fraction(1), Fraction(9, 10)))
+    scene = replace(load("euler/generic"), body=RigidBody(moments))
+    problem = pose(scene, rung("f64"))
+    found = Linearised(problem).fastest([float(value) for value in problem.initial])
+    assert 2**-3 <= found <= 2**2
 
 
 @pytest.mark.parametrize("exponent", [-300, -7, 12, 500])

@@ -15,7 +15,9 @@ from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Spin
 from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector
+from verify.scenes.tensors import Matrix, Vector
+
+_AXES = tensors.diagonal((Fraction(1),) * 3)
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,31 @@ def _euler_units(body: RigidBody, initial: Spin, span: Fraction) -> Units:
         return Units(time=1 / _binary(rate), momentum=reached)
     unit = _size(momentum) or _binary(_size(body.moment) * span) or Fraction(1)
     rate = _size(initial.omega) or _largest(body.inverse_inertia) * unit
+    # Where the moments differ by many orders of magnitude H may turn far faster than the body does.
+    rate = max(rate, _nutation(body.inverse_inertia, momentum))
     return Units(time=1 / _binary(rate), momentum=unit)
+
+
+def _nutation(K: Matrix, H: Vector) -> Fraction:
+    """A power of two near the fastest rate of H' = H x K H linearised at H; 0 where nothing changes.
+
+    The trace of J = [H]x K - [K H]x vanishes, so that its eigenvalues are the roots of
+    z^3 + s z - d with s = -tr(J^2)/2, d = det J: not above twice the larger of |s|^(1/2), |d|^(1/3).
+    """
+    omega = tensors.apply(K, H)
+    columns = (
+        tensors.plus(
+            tensors.cross(H, column), tensors.scaled(Fraction(-1), tensors.cross(omega, e))
+        )
+        for column, e in zip(K, _AXES, strict=True)
+    )
+    J = tensors.transpose(tuple(columns))
+    square = tensors.product(J, J)
+    s = (square[0][0] + square[1][1] + square[2][2]) / 2
+    d = tensors.dot(J[0], tensors.cross(J[1], J[2]))
+    by_s = _root(abs(s)) if s else Fraction(0)
+    by_d = power_of_two(floor_log2(abs(d)) // 3) if d else Fraction(0)
+    return max(by_s, by_d)
 
 
 def _kirchhoff_units(body: ImmersedBody, initial: Impulse, span: Fraction) -> Units:
