@@ -40,6 +40,7 @@ from verify.exact.condition import (
 from verify.exact.inputs import momentum
 from verify.exact.route import solution
 from verify.exact.variation import Stepped, fastest, stepped
+from verify.scenes.motion import Impulse
 from verify.scenes.precision import power_of_two
 from verify.scenes.scene import Scene
 
@@ -57,9 +58,11 @@ _REGULAR: Final = 8.0
 # Until so many radians every radian is a point of its own, later every 64th part of the time so far.
 _RESOLVED: Final = 64
 _MOST_SAMPLES: Final = 401
-# For a solid in a fluid, steps of float64 cost less than seven orbits of hundreds of digits, until
-# there are thousands; the four of a rigid body, in functions of real numbers, cost less than any.
+# For a solid in a fluid, steps of float64 cost less than seven orbits of dozens of digits until there
+# are many, and less than seven of hundreds of digits until there are thousands; the four of a rigid body,
+# in functions of real numbers, cost less than any.
 _MOST_RADIANS: Final = 2000
+_FEW_RADIANS: Final = 60
 # Norms are wanted to a digit or two, and the size of one that is too large to within a tenth.
 _SHARP: Final = 1e-3
 _TOLD: Final = 0.1
@@ -115,11 +118,23 @@ def path(scene: Scene) -> Path:
 
 def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
     """The orbit at a few points; no sharper than it takes to see that they are too few."""
-    if differs_by_recursion(scene) or solution(scene).by_quadrature:
+    quickly = _is_short(scene) or differs_by_recursion(scene) or solution(scene).by_quadrature
+    if quickly:
         found = _stepped(scene, points)
         if found is not None:
             return found
     return _sharp(scene, points, to_tell=True)
+
+
+def _is_short(scene: Scene) -> bool:
+    """Whether steps of float64 along a solid in a fluid cost less than seven orbits of it."""
+    start = scene.initial
+    if not isinstance(start, Impulse):
+        return False
+    units = momentum(scene).units
+    impulses = zip(start.linear + start.angular, units, strict=True)
+    rate = fastest(scene, units, np.array([[float(value / unit) for value, unit in impulses]]))
+    return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
 
 
 def _rate(scene: Scene, found: Path) -> float:
