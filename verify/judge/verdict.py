@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
@@ -62,8 +62,8 @@ class Verdict:
     provenance: dict[str, Any] = field(default_factory=dict)
 
     def row(self) -> dict[str, Any]:
-        """The row as JSON holds it: no NaN, no infinity."""
-        return {name: _json_number(value) for name, value in asdict(self).items()}
+        """The row as JSON holds it: no NaN, no infinity. Its ``provenance`` is the verdict's own."""
+        return {one.name: _json_number(getattr(self, one.name)) for one in fields(self)}
 
 
 def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:
