@@ -133,12 +133,14 @@ def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
         scalex=False,
         scaley=False,
     )
-    # Named where it ends inside the panel, so that the names of neighbours stay apart.
+    # Named where it ends inside the panel, so that the names of neighbours stay apart: one that comes up
+    # steeply to the right border stands above its end, where a flat one has its name below.
+    is_steep_at_the_right = end == right and power >= 1
     axes.annotate(
         name,
         (end, e0 * (end / n0) ** power),
         textcoords="offset points",
-        xytext=(-3, -7),
+        xytext=(-3, 1 if is_steep_at_the_right else -7),
         ha="right",
         size=SMALL,
         color=QUIET,
@@ -150,7 +152,8 @@ def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
 def labels_of(runs: Sequence[Row]) -> list[str]:
     """What the lines are called: scene, rung, and the setting of the solver where it has one.
 
-    A scene goes by the last part of its name where no other has the same.
+    A scene goes by the last part of its name where no other has the same; of two ensembles with one name
+    the longer one says how far it goes.
     """
     tails = {run["scene"]: run["scene"].rpartition("/")[2] for run in runs}
     found = []
@@ -158,5 +161,6 @@ def labels_of(runs: Sequence[Row]) -> list[str]:
         is_alone = list(tails.values()).count(tails[run["scene"]]) == 1
         scene = tails[run["scene"]] if is_alone else run["scene"]
         setting = run["solver"].removeprefix("taylor").lstrip("?")
-        found.append(" ".join([scene, run["rung"], setting]).strip())
+        label = " ".join([scene, run["rung"], setting]).strip()
+        found.append(f"{label}, to {run['periods']:.0e}" if label in found else label)
     return found
