@@ -338,7 +338,7 @@ def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.Monk
     """Samples that meet a motion in one phase find the floor that every radian has; alone, a tenth."""
     asked = in_step(41)
     found = _floor(asked, 14505)
-    monkeypatch.setattr(gathering, "_few", lambda elapsed: list(elapsed))
+    monkeypatch.setattr(gathering, "few", lambda elapsed: list(elapsed))
     alone = _floor_again(asked, 14505)
     monkeypatch.setattr(gathering, "_REGULAR", 0)
     resolved = _floor_again(asked, 14505)

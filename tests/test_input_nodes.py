@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from verify.exact.elements import elements
-from verify.exact.gathering import evenly
+from verify.exact.looks import evenly
 from verify.judge import inputs
 from verify.judge.inputs import input_rounding
 from verify.scenes.motion import Clock, Spin

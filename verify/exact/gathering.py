@@ -38,6 +38,7 @@ from verify.exact.condition import (
     settled,
 )
 from verify.exact.inputs import momentum
+from verify.exact.looks import few, many
 from verify.exact.route import solution
 from verify.exact.variation import Stepped, fastest, stepped
 from verify.scenes.motion import Impulse
@@ -47,17 +48,9 @@ from verify.scenes.scene import Scene
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# On a regular orbit what is injected at any time grows alike, and so many samples stand for all,
-_FEW: Final = 33
-# if there are so many times beside them that no period shares: samples may meet the orbit in one phase.
-_BETWEEN: Final = 20
-_GOLDEN: Final = Fraction(0.6180339887498949)
 # A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
 # motion: it matters then at which moments of it an error is made, and where it is looked at.
 _REGULAR: Final = 8.0
-# Until so many radians every radian is a point of its own, later every 64th part of the time so far.
-_RESOLVED: Final = 64
-_MOST_SAMPLES: Final = 401
 # For a solid in a fluid, steps of float64 cost less than seven orbits of dozens of digits until there
 # are many, and less than seven of hundreds of digits until there are thousands; the four of a rigid body,
 # in functions of real numbers, cost less than any.
@@ -103,11 +96,11 @@ def path(scene: Scene) -> Path:
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
     elapsed = scene.clock.elapsed
-    found = _along(scene, _few(elapsed))
+    found = _along(scene, few(elapsed))
     rate, growth = _rate(scene, found), found.growth()
     if _is_regular(found, rate, growth):
         return found
-    points = _many(elapsed, rate)
+    points = many(elapsed, rate)
     is_solid_in_fluid = found.momentum.shape[1] == 6
     if is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS and growth.max() < inf:
         steps = _stepped(scene, points, float(growth.max()))
@@ -174,47 +167,6 @@ def _sharp(
         if to_tell and told and not _is_regular(path, _rate(scene, path), growth):
             break
     return path
-
-
-# The times.
-
-
-def _few(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Evenly chosen samples, and times that owe nothing to them: few samples leave more to these.
-
-    In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
-    which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.
-    """
-    samples = [Fraction(0), *chosen(elapsed, _FEW)]
-    parts = max(_BETWEEN, _FEW - len(elapsed))
-    between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
-    first = next((t for t in samples if t), Fraction(0))
-    return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
-
-
-def _many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
-    """Radian by radian at first, later in proportion to the time so far; and the samples."""
-    end = float(elapsed[-1])
-    times, t = [], 0.0
-    while t < abs(end):
-        times.append(Fraction(t if end > 0 else -t))
-        t += max(1 / rate, t / _RESOLVED)
-    return _sorted([*times, *chosen(elapsed, _MOST_SAMPLES)])
-
-
-def chosen(elapsed: Sequence[Fraction], most: int) -> list[Fraction]:
-    """At most so many of the samples, evenly, first and last among them."""
-    return [elapsed[k] for k in evenly(len(elapsed), most)]
-
-
-def evenly(samples: int, most: int) -> list[int]:
-    """At most so many indices, evenly, first and last among them."""
-    count = min(samples, most)
-    return sorted({round(k * (samples - 1) / max(count - 1, 1)) for k in range(count)})
-
-
-def _sorted(times: Sequence[Fraction]) -> list[Fraction]:
-    return sorted(set(times), key=abs)
 
 
 # By differences of the exact solution.

@@ -26,6 +26,7 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact import clocks
+from verify.exact.looks import refined
 from verify.exact.solution import Solution
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Motion
@@ -231,8 +232,8 @@ def _integrated(
     elapsed: Sequence[Fraction],
     more_digits: int = 0,
 ) -> tuple[list[Floats], _Samples] | None:
-    """The steps between the points of ``_refined``, and the truth there."""
-    points = list(_refined(elapsed))
+    """The steps between the points of ``looks.refined``, and the truth there."""
+    points = refined(elapsed, _PARTS)
     truth = exact.motion(points, _TRUTH_DIGITS + more_digits)
     with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
         samples = _samples(scene, points, truth, units, flow.length)
@@ -397,11 +398,3 @@ def _floats(matrix: Matrix, units: Vector, factor: Fraction) -> Floats:
 def _cross_matrix(v: Floats) -> Floats:
     x, y, z = v
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-
-
-def _refined(elapsed: Sequence[Fraction]) -> Iterator[Fraction]:
-    """The instants, and between two of them the points where the motion is set back."""
-    yield elapsed[0]
-    for begin, end in pairwise(elapsed):
-        for part in range(1, _PARTS + 1):
-            yield begin + (end - begin) * Fraction(part, _PARTS)

@@ -23,8 +23,9 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact.condition import Transition, transition
-from verify.exact.gathering import Path, chosen, evenly, path
+from verify.exact.gathering import Path, path
 from verify.exact.invariants import Invariant
+from verify.exact.looks import chosen, evenly
 from verify.exact.mpfr import in_mpfr, precision, to_mpfr
 from verify.judge.errors import Errors
 from verify.judge.magnitude import roundings
