@@ -21,8 +21,8 @@ from verify.scenes.tensors import Matrix
 
 TIMES = [Fraction(-3, 2), Fraction(0), Fraction(5, 2)]
 DIGITS = 30
-# p p' q q' r r': a generic orbit with a screw coupling beside the displacement, a spin that x = 0
-# leaves over, and a body whose A and B make the same for every axis when the origin is moved.
+# p p' q q' r r' about the point where T is of Clebsch's form: two generic regimes, and one in which p and q
+# are the same along the axis as across it.
 BODIES = {
     "four-roots": ("1", "2", "0.2", "0.5", "1.1", "0.7"),
     "two-roots": ("1.5", "0.8", "0.1", "0.4", "1", "1.25"),

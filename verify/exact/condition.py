@@ -84,21 +84,20 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
     shows in det D as it does in D_i D_k^-1, so precision rises until det D = 1 to six digits.
     Raises Unsettled if it never is.
     """
-    exact = solution(scene)
-    if differs_by_recursion(scene) or exact.by_quadrature:
-        table = transition_table(scene, exact, _units(scene), elapsed)
+    if differs_dearly(scene):
+        table = transition_table(scene, solution(scene), _units(scene), elapsed)
         if table is not None:
             return Transition(tuple(elapsed), table)
     return Transition(tuple(elapsed), dict(_norms(next(settled(scene, elapsed)))))
 
 
-def differs_by_recursion(scene: Scene) -> bool:
-    """Whether the motion, or one from a start beside it, is known by the Taylor recursion alone.
+def differs_dearly(scene: Scene) -> bool:
+    """Whether differences of the motion would be of recursions, or of quadratures.
 
-    A motion in a plane leaves it, Weber's has no FG, and a manufactured one has its closed form from one
-    start only: differences of such a motion would be of recursions, which cost more than one along it.
+    One integration along it costs less. A start beside it may leave the closed form: a motion in a plane
+    leaves the plane, Weber's loses FG = 0, and a manufactured one has its closed form from one start only.
     """
-    if scene.body.manufactured is not None:
+    if scene.body.manufactured is not None or solution(scene).by_quadrature:
         return True
     start = momentum(scene)
     beside = (start.moved(j, unit) for j, unit in enumerate(start.units))

@@ -31,7 +31,7 @@ from mpmath import mp
 from verify.exact.condition import (
     Derivatives,
     as_integers,
-    differs_by_recursion,
+    differs_dearly,
     inverse,
     log2_size,
     quotient,
@@ -111,8 +111,7 @@ def path(scene: Scene) -> Path:
 
 def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
     """The orbit at a few points; no sharper than it takes to see that they are too few."""
-    quickly = _is_short(scene) or differs_by_recursion(scene) or solution(scene).by_quadrature
-    if quickly:
+    if _is_short(scene) or differs_dearly(scene):
         found = _stepped(scene, points)
         if found is not None:
             return found
