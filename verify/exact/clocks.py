@@ -66,8 +66,8 @@ class Swing(NamedTuple):
         return float(np.abs(self.turning).max(initial=0.0))
 
     def at(self, clock: Floats) -> tuple[Floats, Floats]:
-        """z* and its rate."""
-        return self.waves @ clock, self.waves @ (self.turning @ clock)
+        """z* and its rate (..., d) at w (..., count)."""
+        return clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
 
 
 def swing(body: Body, units: Vector, time: Fraction) -> Swing:

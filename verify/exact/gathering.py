@@ -326,7 +326,7 @@ class _ByIntegration(Path):
     blocks: tuple[str, ...]
     momentum: Floats
     centre: Floats
-    steps: tuple[Floats, ...]
+    steps: Floats
     omega: Floats
 
     @classmethod

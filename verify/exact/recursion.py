@@ -38,6 +38,8 @@ _SLACK_BITS: Final = 12
 _ORDERS_PER_BIT: Final = (0.36, 0.40)
 _MOST_STEPS: Final = 1_000_000
 _PILOT_BITS: Final = 64
+# As a logarithm: more than what cutting a width to six bits takes away.
+_A_LITTLE_WIDER: Final = 0.06
 
 
 @dataclass(frozen=True)
@@ -78,19 +80,21 @@ class Combination:
 class Grid:
     """The fixed point: integers count 2^-bits of a unit.
 
-    A series has ``order`` terms, the last of which is to fall below 2^slack last bits; ``cut`` limits
-    their number.
+    A series has at most ``order`` terms, the last of which is to fall below 2^slack last bits.
     """
 
     bits: int
     slack: int
     orders_per_bit: float
-    cut: int | None = None
 
     @property
     def order(self) -> int:
-        whole = ceil((self.bits - self.slack) * self.orders_per_bit)
-        return whole if self.cut is None else min(whole, self.cut)
+        return ceil((self.bits - self.slack) * self.orders_per_bit)
+
+    @property
+    def last_terms(self) -> int:
+        """How many terms tell where a series ends: an eighth, so that gaps in it do not deceive."""
+        return max(self.order // 8, 3) + 1
 
     def integers(self, values: Iterable[Fraction]) -> list[int]:
         return [_Integer(round(value * 2**self.bits)) for value in values]
@@ -197,33 +201,24 @@ def march(
         steps += 1
         _refuse_endless(steps + abs(last - now) / abs(step), times[-1])
         state, now = _value(series, step / width, grid), now + step
-        # A little wider than this step, because the next one may be longer.
-        width = _dyadic(width, min(growth + 0.06, 1.0))
+        # The next step may be longer.
+        width = _dyadic(width, min(growth + _A_LITTLE_WIDER, 1.0))
     return reached
 
 
-def leap(problem: Problem, span: Fraction, grid: Grid) -> tuple[list[int], int]:
-    """The state after a short time, by one series where one reaches, and the order that it took.
-
-    Orders beyond the last term that matters are work for nothing: a next leap like this one needs
-    few more than it took.
-    """
+def leap(problem: Problem, span: Fraction, grid: Grid) -> list[int]:
+    """The state after a time so short that most often one series reaches."""
     width = span / power_of_two(problem.units.time)
     if not width:
-        return grid.integers(problem.start), grid.order
-    series = _series(problem, grid.integers(problem.start), width, grid)
-    if _log2_reach(series, problem.moving, grid) < 0:
-        whole = replace(grid, cut=None)
-        return march(problem, [span], whole, first_width(problem, span, whole))[span], whole.order
-    enough = 1 << grid.slack
-    last = grid.order
-    while last and all(abs(z[last]) <= enough for z in series):
-        last -= 1
-    return _value(series, Fraction(1), grid), last
+        return grid.integers(problem.start)
+    return march(problem, [span], grid, _dyadic(width, _A_LITTLE_WIDER))[span]
 
 
 def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
-    """Taylor coefficients of every state, those of order k held multiplied by width^k."""
+    """Taylor coefficients of every state, those of order k held multiplied by width^k.
+
+    They end where terms have become too small to matter, which in a short series is before its order.
+    """
     forms, products = problem.forms, problem.products
     rates = [_Rate.of(places, rate, width, grid.bits) for places, rate in problem.rates]
     forward = [[z] for z in state]
@@ -231,6 +226,7 @@ def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> 
     # The second factor of a convolution is kept in reverse, so that the two lists just pair up.
     backward = {b: forward[b][:] for _, b in products}
     pairs = [(a == b, forward[a], backward[b]) for a, b in products]
+    enough, small = 1 << grid.slack, 0
     for k in range(grid.order):
         sums = [_square(p, q) if same else sum(map(mul, p, q)) for same, p, q in pairs]
         fresh = [
@@ -245,6 +241,9 @@ def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> 
             coefficients.append(z)
         for b, coefficients in backward.items():
             coefficients.insert(0, fresh[b])
+        small = small + 1 if all(-enough <= z <= enough for z in fresh) else 0
+        if small == grid.last_terms:
+            break
     return forward[: len(state)]
 
 
@@ -285,7 +284,7 @@ def _value(series: list[list[int]], fraction: Fraction, grid: Grid) -> list[int]
     bits = grid.bits
     argument = _Integer(round(fraction * 2**bits))
     powers = [_Integer(1) << bits]
-    for _ in range(grid.order):
+    for _ in series[0][1:]:
         powers.append(powers[-1] * argument >> bits)
     return [sum(map(mul, coefficients, powers)) >> bits for coefficients in series]
 
@@ -293,15 +292,15 @@ def _value(series: list[list[int]], fraction: Fraction, grid: Grid) -> list[int]
 def _log2_reach(series: list[list[int]], moving: int, grid: Grid) -> float:
     """log2 of the fraction of the width at which the last terms fall below the slack.
 
-    A root test over the last eighth of the orders, so that a series with gaps does not deceive it.
-    1 where those terms are all zero: the width can then be doubled without harm. Where the motion
-    has outgrown its units, so have the roundings, and the slack with them.
+    A root test over the last terms. 1 where those terms are all zero: the width can then be doubled
+    without harm. Where the motion has outgrown its units, so have the roundings, and the slack with
+    them.
     """
-    order, bits_per_order = grid.order, 1 / grid.orders_per_bit
+    order, bits_per_order = len(series[0]) - 1, 1 / grid.orders_per_bit
     outgrown = max(abs(z[0]) for z in series[:moving]).bit_length() - grid.bits
     slack = grid.slack + max(0, outgrown)
     reach = 1.0
-    for k in range(order - max(order // 8, 3), order + 1):
+    for k in range(order + 1 - grid.last_terms, order + 1):
         size = max(abs(z[k]) for z in series).bit_length()
         if size:
             reach = min(reach, ((order - k) * bits_per_order + slack - size) / k)
@@ -318,6 +317,9 @@ def first_width(problem: Problem, last: Fraction, grid: Grid) -> Fraction:
     for _ in range(3):
         reach = _log2_reach(_series(problem, start, width, pilot), problem.moving, pilot)
         width = _dyadic(width, min(reach, 0.0))
+        # The first step finds its own length: within a factor of two its guess is good enough.
+        if reach > -1:
+            break
     return width
 
 

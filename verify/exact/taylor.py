@@ -37,7 +37,6 @@ from verify.scenes.tensors import Matrix, Vector
 
 Triple = tuple[int, int, int]
 
-_MORE_ORDERS = 4
 # A clock is so much sharper than the arc that it drives that its rounding is none of the arc's.
 _CLOCK_DIGITS = 10
 # What a division by the impulse may cost the centre.
@@ -127,21 +126,17 @@ class _Arcs(Settled):
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         ends: list[list[Any]] = []
-        cut: int | None = None
         for posed_arc, clock, span in zip(
             self._problems, self._clocks(digits), elapsed, strict=True
         ):
-            grid = replace(posed_arc.grid(digits), cut=cut)
+            grid = posed_arc.grid(digits)
             # The clock, in units of one, comes last.
             arc = (
                 replace(posed_arc, start=posed_arc.start[: -len(clock)] + clock)
                 if clock
                 else posed_arc
             )
-            end, order = leap(arc, span, grid)
-            # The arcs follow each other, so that the next one needs about as many orders.
-            cut = order + order // 8 + _MORE_ORDERS
-            ends.append(arc.reals(end, grid))
+            ends.append(arc.reals(leap(arc, span, grid), grid))
         return _quantities(self.scene, ends)
 
     def _clocks(self, digits: int) -> list[Vector]:

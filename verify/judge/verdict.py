@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -63,7 +63,7 @@ class Verdict:
 
     def row(self) -> dict[str, Any]:
         """The row as JSON holds it: no NaN, no infinity. Its ``provenance`` is the verdict's own."""
-        return {one.name: _json_number(getattr(self, one.name)) for one in fields(self)}
+        return {name: _json_number(value) for name, value in vars(self).items()}
 
 
 def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:

@@ -43,7 +43,8 @@ class Choice:
         """
         present = tuple(n for n, value in self.numbers.items() if n not in states and value)
         form = Form(self.equations, states, present)
-        moving = tuple(n for n in states if n not in form.constants())
+        still = form.constants()
+        moving = tuple(n for n in states if n not in still)
         kept = tuple(n for n, value in self.numbers.items() if n not in moving and value)
         form = replace(form, states=moving, parameters=kept)
         return replace(form, parameters=form.entering())

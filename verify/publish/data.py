@@ -34,6 +34,8 @@ _MACHINE = ("processor", "command")
 _SHIFT = ("time_shift", "residual", "shift")
 _RUN = ("scene", "solver", "setting", "rung")
 
+_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+
 
 def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) -> tuple[Path, ...]:
     """Write ``folder``/data, in place of an earlier one, and return the files written.
@@ -149,7 +151,10 @@ def _value(value: Any) -> str:
 
 
 def _json(value: Any) -> str:
-    return json.dumps(_finite(value), allow_nan=False, ensure_ascii=False)
+    try:
+        return _ENCODER.encode(value)
+    except ValueError:
+        return _ENCODER.encode(_finite(value))
 
 
 def _finite(value: Any) -> Any:
