@@ -21,6 +21,7 @@ from verify.exact import gathering
 from verify.exact.condition import transition
 from verify.exact.gathering import Path, path
 from verify.exact.inputs import momentum
+from verify.exact.mpfr import in_mpfr
 from verify.exact.route import solution
 from verify.exact.taylor import TaylorSolution
 from verify.exact.variation import stepped
@@ -306,7 +307,8 @@ def _all_floors(asked: Scene) -> list[Array]:
 
     found, truth = _floor_of(asked, 40)
     floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]
-    return floors + [found.of_invariant(i, truth, i.scale(truth)) for i in invariants(asked)]
+    quick = in_mpfr(truth)
+    return floors + [found.of_invariant(i, quick, i.scale(truth)) for i in invariants(asked)]
 
 
 def returning(samples: int) -> Scene:

@@ -74,15 +74,18 @@ def _run_or_recall(job: Job) -> list[Judgement]:
 def _run(job: Job) -> list[Judgement]:
     from verify.run import run
     from verify.scenes.faults import Refused
+    from verify.scenes.reader import load
 
-    found = []
-    for rung in job.rungs:
-        try:
-            found.append(run(job.scene, job.solver, rung))
-        except Exception as error:
-            # Only text is sure to pass from process to process.
-            reason = str(error) if isinstance(error, Refused) else fault(error)
-            raise Failed(f"{job.scene} on {rung}: {reason}") from error
+    found, place = [], job.scene
+    try:
+        scene = load(job.scene)
+        for rung in job.rungs:
+            place = f"{job.scene} on {rung}"
+            found.append(run(scene, job.solver, rung))
+    except Exception as error:
+        # Only text is sure to pass from process to process.
+        reason = str(error) if isinstance(error, Refused) else fault(error)
+        raise Failed(f"{place}: {reason}") from error
     return found
 
 

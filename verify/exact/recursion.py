@@ -27,11 +27,11 @@ Polynomial = Mapping[tuple[int, int], Fraction]
 _BITS_PER_DIGIT: Final = 3.3219280948873626
 # mpmath's integers: those of gmpy2 where it is installed, which are twice as fast, else Python's.
 _Integer: Final = libmp.MPZ
-# Roundings of one step add up to some hundred last bits, and a long span has some ten thousand
-# steps; half of these bits is what the truncation of a series may leave, so that it stays visible
-# above the roundings of its own coefficients.
-_GUARD_BITS: Final = 26
+# What the truncation of a series may leave, in last bits, so that it stays visible above the roundings
+# of its own coefficients: those of one step add up to some hundred last bits.
 _SLACK_BITS: Final = 12
+# A long span has so many steps, and each may leave the slack.
+_LONG_SPAN: Final = 10_000
 # A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
 # orders; the linear cost asks for a few more. Two ratios, taken in turn every dozen digits, so
 # that two evaluations that are compared differ in order, step and precision.
@@ -120,8 +120,8 @@ class Problem:
         units = self.units.variables[: len(start)]
         return replace(self, start=_scaled(start, [power_of_two(e) for e in units]))
 
-    def grid(self, digits: int) -> Grid:
-        """Bits for these digits of the smallest block, and for what coefficients make of a bit."""
+    def grid(self, digits: int, steps: int = _LONG_SPAN) -> Grid:
+        """Bits for these digits of the smallest block, after what coefficients and steps make of a bit."""
         blocks = [exponent(self.start[i : i + 3]) for i in range(0, self.moving, 3)]
         small = max(0, *(-exponent for exponent in blocks if exponent is not None), 0)
         rows = [*self.forms, *(rate for _, rate in self.rates)]
@@ -129,7 +129,8 @@ class Problem:
             (sum(map(abs, row.numerators)) // row.denominator).bit_length() for row in rows
         )
         slack = _SLACK_BITS + strong
-        bits = ceil(digits * _BITS_PER_DIGIT) + _GUARD_BITS + strong + small
+        guard = _SLACK_BITS + steps.bit_length()
+        bits = ceil(digits * _BITS_PER_DIGIT) + guard + strong + small
         return Grid(bits, slack, _ORDERS_PER_BIT[digits // SETTLING_STEP_DIGITS % 2])
 
     def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:

@@ -37,6 +37,8 @@ from verify.scenes.tensors import Matrix, Vector
 
 Triple = tuple[int, int, int]
 
+# Most have one.
+_STEPS_OF_AN_ARC = 8
 # A clock is so much sharper than the arc that it drives that its rounding is none of the arc's.
 _CLOCK_DIGITS = 10
 # What a division by the impulse may cost the centre.
@@ -129,7 +131,7 @@ class _Arcs(Settled):
         for posed_arc, clock, span in zip(
             self._problems, self._clocks(digits), elapsed, strict=True
         ):
-            grid = posed_arc.grid(digits)
+            grid = posed_arc.grid(digits, _STEPS_OF_AN_ARC)
             # The clock, in units of one, comes last.
             arc = (
                 replace(posed_arc, start=posed_arc.start[: -len(clock)] + clock)

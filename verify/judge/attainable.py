@@ -26,7 +26,7 @@ from verify.exact.condition import Transition, transition
 from verify.exact.gathering import Path, path
 from verify.exact.invariants import Invariant
 from verify.exact.looks import chosen, evenly
-from verify.exact.mpfr import in_mpfr, precision, to_mpfr
+from verify.exact.mpfr import precision, to_mpfr
 from verify.judge.errors import Errors
 from verify.judge.magnitude import roundings
 from verify.scenes.motion import Motion
@@ -67,13 +67,13 @@ class Floor:
         return self._at_samples(found, self._path_times())
 
     def of_invariant(self, invariant: Invariant, motion: Motion, scale: Any) -> Floats:
-        """The attainable drift at every sample, over the invariant's scale."""
+        """The attainable drift at every sample, over the invariant's scale; of a motion in MPFR."""
         nodes = evenly(len(self.times), _MOST_NODES)
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
-            gradients = invariant.sensitivity(in_mpfr(_rows(motion, nodes)))
+            gradients = invariant.sensitivity(_rows(motion, nodes))
             for block, gradient in gradients.items():
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from math import ulp
+from typing import Any, Final
 
 import numpy as np
 from mpmath import mp, mpf
@@ -15,6 +17,9 @@ from verify.scenes.motion import Motion
 from verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+_LEAST: Final = ulp(0.0)
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,20 @@ class Errors:
     truth_radius: Column
     parts: dict[str, Any]
     is_state: bool = False
+
+    @cached_property
+    def doubles(self) -> Floats:
+        """The values as bounds are: of float64. What is not zero does not become it."""
+        return _doubles(self.values)
+
+    @cached_property
+    def widths(self) -> Floats:
+        """The truth's radii likewise."""
+        return _doubles(self.truth_radius)
+
+
+def _doubles(values: Column) -> Floats:
+    return np.array([float(value) or (_LEAST if value else 0.0) for value in values])
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from mpmath import mp
 
-from verify.judge.attainable import Floats
-from verify.judge.errors import Errors, largest
+from verify.judge.errors import Errors, Floats
 from verify.judge.verdict import Status
 
 # The floor is the root mean square of a random sum. Ten times it leaves room for a solver that
@@ -40,8 +36,8 @@ def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
     The ratio is the largest of the samples that are asked, or of all if none is.
     """
     bounds = FACTOR * attainable
-    worst = index_of_largest(errors.values)
-    ratios = [_ratio(e, a) for e, a in zip(errors.values, attainable.tolist(), strict=True)]
+    worst = index_of_largest(errors.doubles)
+    ratios = _ratios(errors.doubles, attainable)
     ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
     status = _status(errors, bounds)
     because = f"{FACTOR} x attainable; {reason}"
@@ -53,19 +49,16 @@ def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:
-    if mp.isnan(largest(errors.values)):
+    if np.isnan(errors.doubles).any():
         return Status.FAIL
-    # Python's floats: mpmath asks NumPy's many questions before it compares with one.
-    limits = bounds.tolist()
-    within = [bool(error <= limit) for error, limit in zip(errors.values, limits, strict=True)]
+    within = errors.doubles <= bounds
     asked = _asked(bounds)
     if asked < len(bounds):
         # What the floor does not excuse still fails: the samples before it reached the motion.
-        return Status.VACUOUS if all(within[:asked]) else Status.FAIL
-    narrow = zip(errors.truth_radius, limits, strict=True)
-    if not all(bool(radius * _TRUTH_SHARE <= limit) for radius, limit in narrow):
+        return Status.VACUOUS if within[:asked].all() else Status.FAIL
+    if not (errors.widths * _TRUTH_SHARE <= bounds).all():
         return Status.UNDECIDED
-    return Status.PASS if all(within) else Status.FAIL
+    return Status.PASS if within.all() else Status.FAIL
 
 
 def _asked(bounds: Floats) -> int:
@@ -85,17 +78,14 @@ def _vacuous(errors: Errors, bounds: Floats) -> str:
     return f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"
 
 
-def _ratio(error: Any, attainable: float) -> Any:
+def _ratios(errors: Floats, attainable: Floats) -> Floats:
     """Error over attainable: 0 for no error, infinite where the floor is zero and the error not."""
-    if error == 0:
-        return mp.zero
-    return error / attainable if attainable > 0 else mp.inf + 0 * error
+    with np.errstate(all="ignore"):
+        held = np.where(attainable > 0, errors / attainable, np.inf + 0 * errors)
+    found: Floats = np.where(errors == 0, 0.0, held)
+    return found
 
 
-def index_of_largest(values: Iterable[Any]) -> int:
+def index_of_largest(values: Floats) -> int:
     """The index of the largest value, or of the first NaN."""
-    found = list(values)
-    top = largest(found)
-    if mp.isnan(top):
-        return next(i for i, value in enumerate(found) if mp.isnan(value))
-    return found.index(top)
+    return int(np.argmax(values))

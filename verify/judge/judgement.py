@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, log10
+from math import ceil, fsum, log10
 from typing import Any
 
 import numpy as np
 from mpmath import mp
 
+from verify.exact.mpfr import in_mpfr
 from verify.exact.route import solution
 from verify.exact.solution import Solution, Unsettled
 from verify.judge.attainable import Floats, Floor, floor
@@ -116,12 +117,12 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 for errors, shift in zip(states, shifts, strict=True)
             ]
         with costs.of(CONSERVED):
-            work = clock_work(problem.scene)
+            work, quick = clock_work(problem.scene), in_mpfr(truth)
             gated += [
                 _conserved(
                     run,
                     base,
-                    base.of_invariant(invariant, truth, _scale(errors)),
+                    base.of_invariant(invariant, quick, _scale(errors)),
                     errors,
                     work.get(invariant.name),
                 )
@@ -170,7 +171,7 @@ def _conserved(
 
 
 def _reason(base: Floor, errors: Errors, attainable: Floats, carried: str) -> str:
-    return base.reason(attainable, index_of_largest(errors.values), carried)
+    return base.reason(attainable, index_of_largest(errors.doubles), carried)
 
 
 def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
@@ -179,9 +180,9 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
     return run.verdict(
         errors.quantity,
         finding.status,
-        max=float(errors.values[worst]),
-        mean=float(sum(errors.values) / len(errors.values)),
-        final=float(errors.values[-1]),
+        max=float(errors.doubles[worst]),
+        mean=fsum(errors.doubles) / len(errors.doubles),
+        final=float(errors.doubles[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
         bound=float(FACTOR * attainable[worst]),
@@ -196,9 +197,9 @@ def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> G
     return GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=_four_digits(errors.values),
+        errors=_four_digits(errors.doubles),
         attainable=_four_digits(attainable),
-        truth_radius=_bound(max(_floats(errors.truth_radius))),
+        truth_radius=_bound(max(errors.widths)),
         shifts=_four_digits(shifts),
     )
 

@@ -97,7 +97,7 @@ def _states_apart(
         for errors in state_errors(given, truth, Motion(filled, truth.radius)):
             if errors.quantity in ("attitude", "centre"):
                 attainable = base.of_state(errors)
-                worst = index_of_largest(errors.values)
+                worst = index_of_largest(errors.doubles)
                 reason = base.reason(attainable, worst, "orbit")
                 rows.append(_row(problem, solver, errors, attainable, reason))
     return rows

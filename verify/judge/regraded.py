@@ -59,7 +59,7 @@ def _graded(
 ) -> Graded:
     rounding, moved = np.array(gate.attainable), inputs.at_samples[gate.quantity]
     both = np.hypot(rounding, moved)
-    worst = index_of_largest(gate.errors)
+    worst = index_of_largest(np.array(gate.errors))
     reason = (
         f"attainable = (rounding^2 + input^2)^(1/2) = {both[worst]:.2g}; "
         f"input: {inputs.moved}, moved by u = {roundoff:.2g} of its size, "
@@ -114,7 +114,7 @@ def initial_verdict(gates: Sequence[Graded], start: float) -> Verdict | None:
     if not found:
         return None
     ratios = [_ratio(gate.errors[k], gate.attainable[k]) for gate, k in found]
-    worst = index_of_largest([mpf(ratio) for ratio in ratios])
+    worst = index_of_largest(np.array(ratios))
     gate, k = found[worst]
     error, attainable = float(gate.errors[k]), float(gate.attainable[k])
     passed = ratios[worst] <= FACTOR

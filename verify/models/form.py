@@ -100,8 +100,7 @@ class Form:
 
         The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
         """
-        rates = zip(self.states, self._symbolic(), strict=True)
-        return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
+        return _constants(self)
 
     def entering(self) -> tuple[str, ...]:
         """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""
@@ -109,6 +108,12 @@ class Form:
 
 
 # Forms are few and scenes are many: a family of bodies asks for one and the same.
+@lru_cache(maxsize=256)
+def _constants(form: Form) -> tuple[str, ...]:
+    rates = zip(form.states, form._symbolic(), strict=True)
+    return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
+
+
 @lru_cache(maxsize=256)
 def _entering(form: Form) -> tuple[str, ...]:
     written = set(re.findall(r"[A-Za-z]\d*'?", form.written()))

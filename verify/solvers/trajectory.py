@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from verify.exact.mpfr import precision, to_mpf, to_mpfr
 from verify.models.frame import rotation
 from verify.models.problem import Problem
 from verify.scenes import tensors
@@ -88,19 +89,20 @@ class Trajectory:
         quantities = {k: v for k, v in self.quantities.items() if k != "quaternion"}
         if "quaternion" in self.quantities:
             with mp.workprec(bits):
-                quantities["attitude"] = np.array(
-                    [_rotation_matrix(q) for q in self.quantities["quaternion"]], dtype=object
-                )
+                quantities["attitude"] = _rotations(self.quantities["quaternion"])
         samples = len(next(iter(quantities.values())))
         return Motion(quantities, np.array([mp.zero] * samples, dtype=object))
 
 
-def _rotation_matrix(q: np.ndarray[Any, Any]) -> list[list[Any]]:
-    squared_norm = sum(component * component for component in q)
-    if squared_norm == 0:
-        # No attitude at all: NaN fails every gate that looks at it.
-        return [[mp.nan] * 3 for _ in range(3)]
-    return [[entry / squared_norm for entry in row] for row in rotation(list(q))]
+def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The rotation matrices (n, 3, 3) of quaternions (n, 4) of any length, in the ambient precision.
+
+    One of length zero is no attitude at all: 0/0, and NaN fails every gate that looks at it.
+    """
+    columns = to_mpfr(quaternions).T
+    with precision():
+        matrices = np.array(rotation(list(columns)), dtype=object) / np.sum(columns**2, axis=0)
+    return to_mpf(np.moveaxis(matrices, -1, 0))
 
 
 def _names(problem: Problem) -> tuple[str, ...]:

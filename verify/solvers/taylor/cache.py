@@ -19,8 +19,8 @@ import heyoka as hy
 from platformdirs import user_cache_path
 
 _SQLITE = b"SQLite format 3\0"
-# In bytes. The standard set fills a tenth of it; what a process pays to open it grows with its size.
-_LARGEST_CACHE = 2**30
+# In bytes. The standard set fills a quarter of it; what a process pays to open it grows with its size.
+_LARGEST_CACHE = 2**28
 
 
 def use_own_cache() -> None:
