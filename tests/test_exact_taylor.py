@@ -12,8 +12,9 @@ import pytest
 from mpmath import libmp, mp, mpf
 from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
+from verify.exact.recursion import STEP_DIGITS
 from verify.exact.route import solution
-from verify.exact.solution import SETTLING_STEP_DIGITS, Unsettled
+from verify.exact.solution import Unsettled
 from verify.exact.taylor import TaylorSolution, arcs
 from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
@@ -200,11 +201,11 @@ def test_a_quaternion_stands_for_a_direction() -> None:
     assert [float(entry) for entry in turn[:, 0]] == [0, 1, 0]
 
 
-@pytest.mark.parametrize("digits", [32, 52, 72])
+@pytest.mark.parametrize("digits", [32, 35, 52, 72])
 def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
     """Two evaluations that are compared share neither precision nor order nor the ratio of both."""
     problem = TaylorSolution(euler(RigidBody(TENSOR)))._problem
-    one, other = problem.grid(digits), problem.grid(digits + SETTLING_STEP_DIGITS)
+    one, other = problem.grid(digits), problem.grid(digits + STEP_DIGITS)
     assert one.bits < other.bits
     assert one.order != other.order
     # A step is radius / 2^(bits/order): unequal ratios make unequal steps.

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 
 from mpmath import libmp, mp
 
-from verify.exact.solution import SETTLING_STEP_DIGITS, Unsettled
+from verify.exact.solution import Unsettled
 from verify.scenes import tensors
 from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.tensors import Matrix, Vector
@@ -33,8 +33,9 @@ _SLACK_BITS: Final = 12
 # A long span has so many steps, and each may leave the slack.
 _LONG_SPAN: Final = 10_000
 # A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
-# orders; the linear cost asks for a few more. Two ratios, taken in turn every dozen digits, so
-# that two evaluations that are compared differ in order, step and precision.
+# orders; the linear cost asks for a few more. Two ratios, taken in turn from step to step of the
+# digits, so that two evaluations that are compared differ in order, step and precision.
+STEP_DIGITS: Final = 6
 _ORDERS_PER_BIT: Final = (0.36, 0.40)
 _MOST_STEPS: Final = 1_000_000
 _PILOT_BITS: Final = 64
@@ -131,7 +132,7 @@ class Problem:
         slack = _SLACK_BITS + strong
         guard = _SLACK_BITS + steps.bit_length()
         bits = ceil(digits * _BITS_PER_DIGIT) + guard + strong + small
-        return Grid(bits, slack, _ORDERS_PER_BIT[digits // SETTLING_STEP_DIGITS % 2])
+        return Grid(bits, slack, _ORDERS_PER_BIT[digits // STEP_DIGITS % 2])
 
     def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:
         """The state in the scene's own units, exactly, whatever the ambient precision."""

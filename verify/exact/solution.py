@@ -23,7 +23,9 @@ _FIRST_GUARD_DIGITS = 3
 # Two evaluations that are compared differ by this much in precision; each route makes sure that they
 # differ in more than that (the Taylor recursion in order and step) and never coincide.
 SETTLING_STEP_DIGITS: Final = 12
-_ATTEMPTS = 24
+# The precision rises by so many of these steps, attempt by attempt, until two evaluations agree: odd
+# numbers, so that what an evaluation does at every other step only, the next one does not.
+_RISES: Final = (1, 1, 3, 3, 9, 9, 27)
 
 
 @runtime_checkable
@@ -72,23 +74,29 @@ class Solution(ABC):
 
 
 class Settled(Solution):
-    """A solution that is believed when two evaluations at different precisions agree."""
+    """A solution that is believed when two evaluations at different precisions agree.
+
+    These differ by ``step_digits`` at least.
+    """
+
+    step_digits: int = SETTLING_STEP_DIGITS
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion to ``digits`` significant digits of every vector and matrix.
 
-        Two evaluations at precisions (for the Taylor route also orders and steps) that differ by
-        a dozen digits must agree to the digits asked for; until they do, both precisions rise. The
-        difference is the error of the poorer one; the better one is returned.
+        Two evaluations at different precisions (for the Taylor route also orders and steps) must
+        agree to the digits asked for; until they do, both precisions rise. The difference is the error
+        of the poorer one; the better one is returned.
 
-        Raises Unsettled when two dozen rises do not suffice.
+        Raises Unsettled when some hundreds of digits do not suffice.
         """
         working = digits + _FIRST_GUARD_DIGITS
         poorer = self.evaluate(elapsed, working)
-        for _ in range(_ATTEMPTS):
-            better = self.evaluate(elapsed, working + SETTLING_STEP_DIGITS)
-            with mp.workdps(working + SETTLING_STEP_DIGITS):
+        for rise in _RISES:
+            finer = working + rise * self.step_digits
+            better = self.evaluate(elapsed, finer)
+            with mp.workdps(finer):
                 radii = _differences(poorer, better)
                 radius = np.array(
                     [_largest(row) for row in zip(*radii.values(), strict=True)], dtype=object
@@ -97,10 +105,10 @@ class Settled(Solution):
                 # Written so that a NaN is not agreement.
                 if worst <= mpf(10) ** -digits:
                     return Motion(better, radius, radii)
-            poorer, working = better, working + SETTLING_STEP_DIGITS
+            poorer, below, working = better, working, finer
         raise Unsettled(
-            f"two evaluations of the exact solution at {working - SETTLING_STEP_DIGITS} and {working} "
-            f"digits do not agree to {digits} digits"
+            f"two evaluations of the exact solution at {below} and {working} digits do not agree to "
+            f"{digits} digits"
         )
 
 

@@ -17,6 +17,7 @@ from mpmath import mp
 from verify.exact import clocks
 from verify.exact.guided import crosswise, placed
 from verify.exact.recursion import (
+    STEP_DIGITS,
     Equations,
     Polynomial,
     Problem,
@@ -54,6 +55,7 @@ class TaylorSolution(Settled):
 
     route = "taylor"
     regime = NO_CLOSED_FORM
+    step_digits = STEP_DIGITS
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """The tracked quantities at these times, any order and either sign, to about ``digits``.
@@ -125,6 +127,7 @@ class _Arcs(Settled):
 
     route = "taylor"
     regime = NO_CLOSED_FORM
+    step_digits = STEP_DIGITS
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         ends: list[list[Any]] = []

@@ -34,7 +34,7 @@ _TOLERANCE: Final = 1e-4
 # Between two nodes the motion is set back to the truth this often, where once is not enough.
 _PARTS: Final = 4
 # A ten-thousandth of the tolerance. The better of the two evaluations that agree to these digits has
-# a dozen more, if the orbit leaves them, and so starts the motion with what float64 holds.
+# some more, if the orbit leaves them, and so starts the motion with what float64 holds.
 _TRUTH_DIGITS: Final = 8
 _FLOAT_DIGITS: Final = 20
 
