@@ -228,7 +228,7 @@ def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> 
     # The second factor of a convolution is kept in reverse, so that the two lists just pair up.
     backward = {b: forward[b][:] for _, b in products}
     pairs = [(a == b, forward[a], backward[b]) for a, b in products]
-    enough, small = 1 << grid.slack, 0
+    enough, small, last_terms = 1 << grid.slack, 0, grid.last_terms
     for k in range(grid.order):
         sums = [_square(p, q) if same else sum(map(mul, p, q)) for same, p, q in pairs]
         fresh = [
@@ -244,7 +244,7 @@ def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> 
         for b, coefficients in backward.items():
             coefficients.insert(0, fresh[b])
         small = small + 1 if all(-enough <= z <= enough for z in fresh) else 0
-        if small == grid.last_terms:
+        if small == last_terms:
             break
     return forward[: len(state)]
 
