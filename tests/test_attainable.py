@@ -21,7 +21,6 @@ from verify.exact import gathering
 from verify.exact.condition import transition
 from verify.exact.gathering import Path, path
 from verify.exact.inputs import momentum
-from verify.exact.mpfr import in_mpfr
 from verify.exact.route import solution
 from verify.exact.taylor import TaylorSolution
 from verify.exact.variation import stepped
@@ -36,6 +35,7 @@ from verify.run import run
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Clock, Impulse, Motion, Spin
+from verify.scenes.mpfr import in_mpfr
 from verify.scenes.precision import power_of_two, rung
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene

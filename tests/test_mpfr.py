@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from verify.exact.invariants import invariants
-from verify.exact.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
 from verify.exact.route import solution
+from verify.scenes.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
 from verify.scenes.reader import load
 
 OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)

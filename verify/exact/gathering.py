@@ -41,7 +41,9 @@ from verify.exact.inputs import momentum
 from verify.exact.looks import few, many
 from verify.exact.route import solution
 from verify.exact.variation import Stepped, fastest, stepped
-from verify.scenes.motion import Impulse
+from verify.scenes import tensors
+from verify.scenes.bodies import RigidBody
+from verify.scenes.motion import Impulse, Spin
 from verify.scenes.precision import power_of_two
 from verify.scenes.scene import Scene
 
@@ -51,11 +53,11 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 # A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
 # motion: it matters then at which moments of it an error is made, and where it is looked at.
 _REGULAR: Final = 8.0
-# For a solid in a fluid, steps of float64 cost less than seven orbits of dozens of digits until there
-# are many, and less than seven of hundreds of digits until there are thousands; the four of a rigid body,
-# in functions of real numbers, cost less than any.
+# Steps of float64 cost less than orbits of dozens of digits beside this one until there are many. For a
+# solid in a fluid they cost less than seven of hundreds of digits until there are thousands; the four of
+# a rigid body, in functions of real numbers, cost less than those.
+_FEW_RADIANS: Final = 200
 _MOST_RADIANS: Final = 2000
-_FEW_RADIANS: Final = 60
 # Norms are wanted to a digit or two, and the size of one that is too large to within a tenth.
 _SHARP: Final = 1e-3
 _TOLD: Final = 0.1
@@ -119,13 +121,16 @@ def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
 
 
 def _is_short(scene: Scene) -> bool:
-    """Whether steps of float64 along a solid in a fluid cost less than seven orbits of it."""
-    start = scene.initial
-    if not isinstance(start, Impulse):
-        return False
+    """Whether steps of float64 along the orbit cost less than four or seven orbits beside it."""
+    start, body = scene.initial, scene.body
+    if isinstance(body, RigidBody) and isinstance(start, Spin):
+        z = tensors.apply(body.inertia, start.omega)
+    else:
+        assert isinstance(start, Impulse)
+        z = start.linear + start.angular
     units = momentum(scene).units
-    impulses = zip(start.linear + start.angular, units, strict=True)
-    rate = fastest(scene, units, np.array([[float(value / unit) for value, unit in impulses]]))
+    counted = [[float(value / unit) for value, unit in zip(z, units, strict=True)]]
+    rate = fastest(scene, units, np.array(counted))
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
 
 

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from verify.exact.kirchhoff.integrable import Fourth, fourth_integral
-from verify.exact.mpfr import real, sqrt
 from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Motion
+from verify.scenes.mpfr import real, sqrt
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix
 

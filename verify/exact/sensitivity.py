@@ -24,11 +24,11 @@ import numpy as np
 from mpmath import mp, mpf
 
 from verify.exact.inputs import Input, body_input, start_inputs
-from verify.exact.mpfr import precision, to_mpf, to_mpfr
 from verify.exact.route import solution
 from verify.exact.solution import Quantities, Unsettled
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
+from verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import ZERO_VECTOR, Matrix

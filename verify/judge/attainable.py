@@ -26,10 +26,10 @@ from verify.exact.condition import Transition, transition
 from verify.exact.gathering import Path, path
 from verify.exact.invariants import Invariant
 from verify.exact.looks import chosen, evenly
-from verify.exact.mpfr import precision, to_mpfr
 from verify.judge.errors import Errors
 from verify.judge.magnitude import roundings
 from verify.scenes.motion import Motion
+from verify.scenes.mpfr import precision, to_mpfr
 from verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

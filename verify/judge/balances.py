@@ -30,11 +30,11 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact.invariants import Invariant, invariants
-from verify.exact.mpfr import in_mpfr, precision, to_mpf, to_mpfr
 from verify.exact.rates import rates
 from verify.exact.route import solution
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Motion
+from verify.scenes.mpfr import in_mpfr, precision, to_mpf, to_mpfr
 from verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -24,10 +24,10 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact.invariants import Invariant, invariants
-from verify.exact.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from verify.exact.taylor import arcs
 from verify.judge.errors import Errors
 from verify.scenes.motion import Motion, State
+from verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from verify.scenes.precision import exact_value
 from verify.scenes.scene import Scene
 

@@ -11,9 +11,9 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
-from verify.exact.mpfr import precision, sqrt, to_mpf, to_mpfr
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Motion
+from verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 from verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]

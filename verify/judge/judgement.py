@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from verify.exact.mpfr import in_mpfr
 from verify.exact.route import solution
 from verify.exact.solution import Solution, Unsettled
 from verify.judge.attainable import Floats, Floor, floor
@@ -25,6 +24,7 @@ from verify.judge.record import GateRecord, Record
 from verify.judge.shift import Shift, time_shifts
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import Problem
+from verify.scenes.mpfr import in_mpfr
 from verify.scenes.precision import Rung, hexadecimal
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Solver

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from verify.exact.mpfr import precision, to_mpf, to_mpfr
 from verify.models.frame import rotation
 from verify.models.problem import Problem
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Impulse, Motion
+from verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from verify.scenes.precision import held_exactly
 
 _IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")

@@ -21,10 +21,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from verify.exact.mpfr import real, sqrt
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.motion import Impulse, Motion
+from verify.scenes.mpfr import real, sqrt
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix
 
