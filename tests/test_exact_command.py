@@ -13,6 +13,9 @@ from hypothesis import strategies as st
 
 from verify.cli import main
 from verify.exact.printed import decimal_text
+from verify.exact.rotation import rotation_matrix
+from verify.scenes.motion import Spin
+from verify.scenes.reader import load
 
 SCENE = """
 title = "A body of one's own"
@@ -210,6 +213,21 @@ def test_a_body_at_rest_is_printed_as_zeros_with_an_absolute_radius(
     (row,) = exact(str(file), "--at", "2", "--digits", "8", "--route", "taylor")["rows"]
     assert row["linear_impulse"] == row["angular_impulse"] == ["0", "0", "0"]
     assert 0 < Fraction(row["radius"]) <= Fraction(6, 10**8)
+
+
+@pytest.mark.parametrize(
+    "scene", ["euler/nesc-brick", "kirchhoff/swimmer-vehicle", "manufactured/kirchhoff-path"]
+)
+def test_the_start_is_the_initial_state_itself(exact: Asked, scene: str) -> None:
+    """Numbers that the scene tells exactly come back exactly: a zero is no noise of forty digits."""
+    asked = load(scene)
+    at = ("--at", str(asked.clock.start), "--digits", "40", "--route", "taylor")
+    (row,) = exact(scene, *at)["rows"]
+    found, start = vectors(row), asked.initial
+    told = {"omega": start.omega} if isinstance(start, Spin) else {"linear_impulse": start.linear}
+    for name, vector in told.items():
+        assert found[name] == [Fraction(decimal_text(value, 40)) for value in vector]
+    assert found["attitude"] == [entry for row in rotation_matrix(start.attitude) for entry in row]
 
 
 def test_small_components_have_all_their_digits(exact: Asked, tmp_path: Any) -> None:

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from verify.exact.rotation import rotation_matrix
 from verify.exact.route import solution
 from verify.exact.solution import NoClosedForm, Solution
+from verify.scenes.motion import Spin
 from verify.scenes.precision import exact_value
 from verify.scenes.scene import Scene
 
@@ -29,15 +31,19 @@ def document(
     """What `exact --json` prints: a row for each time, given as its text and its exact value.
 
     ``radius`` bounds the error of every vector and matrix of the row in the Frobenius norm,
-    relative to its norm (absolute where that is zero).
+    relative to its norm (absolute where that is zero). The row at the start is the initial state itself.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     motion = found.motion(elapsed, digits + _SPARE_DIGITS)
     # Half a unit in the last of `digits` significant digits, of every entry.
     printing = Fraction(1, 2 * 10 ** (digits - 1))
+    start = _start(scene)
     rows = [
         {"t": text}
-        | {name: _text(values[k], digits) for name, values in motion.quantities.items()}
+        | {
+            name: _text(values[k] if elapsed[k] else start[name], digits)
+            for name, values in motion.quantities.items()
+        }
         | {"radius": decimal_text(exact_value(motion.radius[k]) + printing, 2, ROUND_CEILING)}
         for k, (text, _) in enumerate(times)
     ]
@@ -48,6 +54,18 @@ def document(
         "regime": _regime(scene, found),
         "rows": rows,
     }
+
+
+def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
+    """The initial state by name, as rationals: what is zero has no digits but that one."""
+    initial = scene.initial
+    if isinstance(initial, Spin):
+        state: dict[str, Any] = {"omega": initial.omega}
+    else:
+        state = {"linear_impulse": initial.linear, "angular_impulse": initial.angular}
+        state["centre"] = initial.centre
+    state["attitude"] = rotation_matrix(initial.attitude)
+    return {name: np.array(values, dtype=object) for name, values in state.items()}
 
 
 def _regime(scene: Scene, found: Solution) -> str:
@@ -82,6 +100,8 @@ def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
 
 def _entry(value: Any, digits: int) -> str:
     """The entry rounded once; on a separatrix it can be e^(-10^9), whose exact rational fills memory."""
+    if isinstance(value, Fraction):
+        return decimal_text(value, digits)
     if value and abs(mp.mag(value)) > _LARGEST_RATIONAL:
         with mp.workdps(digits + _SPARE_DIGITS):
             return str(mp.nstr(value, digits, strip_zeros=False))
