@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from dataclasses import replace
 from functools import cache
-from math import inf, log, nan
+from itertools import combinations
+from math import floor, inf, log, nan
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -16,6 +18,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.ticker import FixedLocator
 
 from verify.cli import main
 from verify.publish import gallery
@@ -24,6 +27,7 @@ from verify.publish.pictures import (
     axis_path,
     centre_path,
     errors_over_time,
+    log_axes,
     polhode,
     potential,
     shifts,
@@ -40,6 +44,9 @@ FREE = ("euler/generic", "euler/with-attitude", "euler/separatrix", "euler/tenni
 WITH_CENTRE = ("kirchhoff/whole-motion", "kirchhoff/falling-away", "manufactured/kirchhoff-path")
 # One of each kind, by the ends of their names.
 KINDS = ("generic-polhode", "whole-motion-axis", "whole-motion-centre", "generic-errors")
+
+RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
+LOWERED = str.maketrans(RAISED, "-0123456789")
 
 angles = st.floats(-180, 180)
 heights = st.floats(-80, 80)
@@ -336,11 +343,62 @@ def test_no_text_is_cut(end: str) -> None:
     fits(next(one.picture for one in shown() if one.picture.stem.endswith(end)))
 
 
-@pytest.mark.slow
 def test_no_text_is_cut_in_the_whole_gallery() -> None:
     """The same of all pictures that are published."""
     for one in shown():
         fits(one.picture)
+
+
+def overlaps(picture: Picture) -> list[tuple[str, str]]:
+    """The numbers at its axes that lie on each other."""
+    with plotting():
+        figure = picture.figure()
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        found = []
+        for axes in figure.axes:
+            for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+                ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+                shown = [
+                    (tick.label1.get_window_extent(renderer), tick.label1.get_text())
+                    for tick in ticks
+                    if tick.label1.get_visible() and min(limits) <= tick.get_loc() <= max(limits)
+                ]
+                named = [(box, text) for box, text in shown if text]
+                found += [
+                    (a, b) for (p, a), (q, b) in combinations(named, 2) if p.overlaps(q) and a != b
+                ]
+    return found
+
+
+@pytest.mark.parametrize("stem", ["euler-separatrix-errors", "kirchhoff-through-the-pole-errors"])
+def test_a_short_logarithmic_axis_can_be_read(stem: str) -> None:
+    """Of less than two decades it has plain numbers, and none of them lies on another."""
+    picture = next(one.picture for one in shown() if one.picture.stem == stem)
+    assert overlaps(picture) == []
+    with plotting():
+        figure = picture.figure()
+        figure.axes[0].set_xlim(1, 1.0001)
+        figure.axes[0].xaxis.set_major_locator(FixedLocator([1, 1.000001]))
+        figure.axes[0].xaxis.set_major_formatter(lambda value, _: f"{value:.6f}")
+    assert overlaps(replace(picture, figure=lambda: figure)) == [("1.000000", "1.000001")]
+
+
+@given(st.floats(-300, 300), st.floats(0.3, 12), st.booleans())
+def test_a_number_at_an_axis_reads_as_it_stands(low: float, decades: float, is_long: bool) -> None:
+    """Whatever its decade, the text of 1, 2 or 5 of it is that number; an axis has few enough of them."""
+    power = floor(low)
+    for digit in (1,) if is_long else (1, 2, 5):
+        text = log_axes.number(digit * 10.0**power, is_long)
+        raised = re.fullmatch(rf"(?:(\d)·)?10([{RAISED}]+)", text)
+        value = (
+            int(raised[1] or 1) * 10.0 ** int(raised[2].translate(LOWERED))
+            if raised
+            else float(text)
+        )
+        assert value == pytest.approx(digit * 10.0**power, rel=1e-12)
+    count = log_axes.powers_within(10.0**low, 10.0 ** (low + decades))
+    assert abs(count - decades) <= 1
 
 
 def test_two_drawings_are_the_same_file(tmp_path: Path) -> None:

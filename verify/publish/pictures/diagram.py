@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from verify.publish.pictures import panels as at
 from verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from verify.publish.pictures.log_axes import number_axes
 from verify.publish.pictures.named import Named
 from verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
 from verify.publish.pictures.panels import Frame, Panel, columns, width_of
 from verify.publish.pictures.series import FALSE, SOUND, Row, Series, amount, front_of
 from verify.publish.pictures.style import PAGE_WIDTH, SMALL, Look
-from verify.publish.pictures.wording import power_of_ten
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,10 +79,7 @@ def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
         x_limits = shared if panel.yardstick else _limits_x([panel], diagram)
         axes.set(xscale="log", yscale="log", xlim=x_limits, ylim=_limits_y(panel, diagram))
         axes.set(xlabel=diagram.x_name, ylabel=diagram.y_name)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(lambda value, _: power_of_ten(value))
-        axes.grid(True, which="major")
-        axes.tick_params(which="minor", length=1.5)
+        number_axes(axes)
         stairs = _stairs(front, diagram, axes)
         if stairs:
             axes.plot(*zip(*stairs, strict=True), **_FRONT)

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from verify.publish.pictures.diagram import add_axes, frames_of, free_place, line_of, widened
 from verify.publish.pictures.legend import draw_legend, foot_of
+from verify.publish.pictures.log_axes import number_axes
 from verify.publish.pictures.palette import QUIET
 from verify.publish.pictures.picture import Picture
 from verify.publish.pictures.style import PAGE_WIDTH, look_of_rung, place_of_rung
-from verify.publish.pictures.wording import plain, power_of_ten, stem_of
+from verify.publish.pictures.wording import plain, stem_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -126,14 +127,11 @@ def _draw(axes: Axes, panel: Panel) -> None:
     unit = "u rad" if panel.quantity == "attitude" else "u"
     axes.set(ylabel=f"error of {_NAMES.get(panel.quantity, panel.quantity)} ({unit})")
     axes.set_title(panel.heading, pad=4)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(lambda value, _: power_of_ten(value))
-    axes.grid(True, which="major")
-    axes.tick_params(which="minor", length=1.5)
     lines = {rung: so_far(points) for rung, points in panel.lines.items()}
     everything = [point for points in lines.values() for point in points]
     axes.set(xlim=widened([t for t, _ in everything], 0.04, 0.08))
     axes.set(ylim=widened([e for _, e in everything], 0.05, 0.08))
+    number_axes(axes)
     if panel.power:
         draw_power(axes, everything, panel.power)
     for rung, points in lines.items():

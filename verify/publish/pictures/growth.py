@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any, Final
 from verify.publish.pictures import panels as at
 from verify.publish.pictures.diagram import add_axes, line_of, widened
 from verify.publish.pictures.legend import draw_legend, foot_of
+from verify.publish.pictures.log_axes import number_axes
 from verify.publish.pictures.palette import QUIET
 from verify.publish.pictures.panels import Frame, width_of
 from verify.publish.pictures.picture import Picture
 from verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_line
-from verify.publish.pictures.wording import plain, power_of_ten, stem_of
+from verify.publish.pictures.wording import plain, stem_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,15 +93,12 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
         drawn = {label: points for label, points in lines[quantity].items() if points}
         axes.set(xscale="log", yscale="log", xlabel="periods", ylabel=heading)
         axes.set_title("conserved quantity" if quantity != "phase" else "phase", pad=4)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(lambda value, _: power_of_ten(value))
-        axes.grid(True, which="major")
-        axes.tick_params(which="minor", length=1.5)
         everything = [point for points in drawn.values() for point in points]
         if not everything:
             continue
         axes.set(xlim=widened([n for n, _ in everything], 0.05, 0.12))
         axes.set(ylim=widened([e for _, e in everything], 0.07, 0.1))
+        number_axes(axes)
         for points in apart(list(drawn.values())):
             for power, name in powers:
                 _draw_power(axes, points, power, name)
