@@ -40,7 +40,7 @@ from verify.exact.condition import (
 from verify.exact.inputs import momentum
 from verify.exact.looks import few, many
 from verify.exact.route import solution
-from verify.exact.variation import Stepped, fastest, stepped
+from verify.exact.variation import Stepped, fastest, resolved, stepped
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Impulse, Spin
@@ -129,8 +129,8 @@ def _is_short(scene: Scene) -> bool:
         assert isinstance(start, Impulse)
         z = start.linear + start.angular
     units = momentum(scene).units
-    counted = [[float(value / unit) for value, unit in zip(z, units, strict=True)]]
-    rate = fastest(scene, units, np.array(counted))
+    counted = [float(value / unit) for value, unit in zip(z, units, strict=True)]
+    rate = resolved(scene, units, np.array(counted))
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
 
 

@@ -82,6 +82,12 @@ def stepped(
     return Stepped(steps, samples.momentum, samples.centre, flow.omega, flow.time, flow.length)
 
 
+def resolved(scene: Scene, units: Vector, momentum: Floats) -> float:
+    """The rate that a step from this momentum (d; in units) resolves, per unit of the scene's time."""
+    flow = Flow.of(scene, units)
+    return float(flow.rate(momentum)) / float(flow.time)
+
+
 def fastest(scene: Scene, units: Vector, momenta: Floats) -> float:
     """The largest norm of J along a motion (n, d; in units), per unit of the scene's time."""
     flow = Flow.of(scene, units)
