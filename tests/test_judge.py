@@ -85,6 +85,13 @@ def test_largest_does_not_lose_a_nan(values: list[float], place: int) -> None:
     assert np.isnan(doubles[index_of_largest(doubles)])
 
 
+def test_an_error_below_every_double_is_an_error() -> None:
+    """Where the floor is zero nothing may move: 10^-400 is no zero, and zero itself passes."""
+    floor = np.zeros(2)
+    assert judge(errors_of([mpf(0), mpf("1e-400")]), floor, "").status is Status.FAIL
+    assert judge(errors_of([mpf(0), mpf(0)]), floor, "").status is Status.PASS
+
+
 def test_truth_wider_than_a_sixteenth_of_the_bound_decides_nothing() -> None:
     """A truth with a radius over bound/16 makes a gate undecided, for right and wrong alike."""
     attainable = np.array([1e-15])
