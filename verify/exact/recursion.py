@@ -33,10 +33,10 @@ _SLACK_BITS: Final = 12
 # A long span has so many steps, and each may leave the slack.
 _LONG_SPAN: Final = 10_000
 # A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
-# orders; the linear cost asks for a few more. Two ratios, taken in turn from step to step of the
-# digits, so that two evaluations that are compared differ in order, step and precision.
-STEP_DIGITS: Final = 6
+# orders; the linear cost asks for a few more. Two ratios, taken in turn every STEP_DIGITS, so that two
+# evaluations that are compared, which differ by an odd number of these, do so in order and step too.
 _ORDERS_PER_BIT: Final = (0.36, 0.40)
+STEP_DIGITS: Final = 6
 _MOST_STEPS: Final = 1_000_000
 _PILOT_BITS: Final = 64
 # As a logarithm: more than what cutting a width to six bits takes away.

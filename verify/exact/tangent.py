@@ -125,6 +125,7 @@ class Arcs:
         return cls(clock, momentum, attitude, np.tile(np.eye(d), (n, 1, 1)), nothing, nothing)
 
     def only(self, places: Any) -> Arcs:
+        """The arcs at these places, an array of indices: always a copy."""
         return Arcs(*(part[places] for part in self._parts()))
 
     def moved(self, rates: Arcs, h: Floats) -> Arcs:
@@ -145,8 +146,9 @@ def followed(flow: Flow, arcs: Arcs, spans: Floats) -> Arcs | None:
 
     By the classical Runge-Kutta method, each in steps that resolve its own Jacobian.
     """
-    reached = Arcs(*(part.copy() for part in vars(arcs).values()))
     left, active = spans.copy(), np.arange(len(spans))
+    # A copy, which what follows is written into.
+    reached = arcs.only(active)
     for _ in range(_MOST_STEPS):
         here = reached.only(active)
         rate = flow.rate(here.momentum)
@@ -167,7 +169,7 @@ def _step(flow: Flow, at: Arcs, h: Floats) -> Arcs:
     second = _rates(flow, at.moved(first, h / 2))
     third = _rates(flow, at.moved(second, h / 2))
     fourth = _rates(flow, at.moved(third, h))
-    slopes = zip(*(vars(rates).values() for rates in (first, second, third, fourth)), strict=True)
+    slopes = zip(*(rates._parts() for rates in (first, second, third, fourth)), strict=True)
     return at.moved(Arcs(*((a + 2 * b + 2 * c + d) / 6 for a, b, c, d in slopes)), h)
 
 

@@ -44,5 +44,5 @@ class Record:
     gates: tuple[GateRecord, ...]
 
     def document(self) -> dict[str, Any]:
-        """The record as JSON holds it, its numbers the record's own: there are ten thousands."""
+        """The record as JSON holds it. Its tuples are the record's own: a run has thousands of numbers."""
         return {**vars(self), "gates": [vars(gate) for gate in self.gates]}
