@@ -12,7 +12,7 @@ import pytest
 from mpmath import libmp, mp, mpf
 from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
-from verify.exact.recursion import STEP_DIGITS
+from verify.exact.grid import STEP_DIGITS
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.exact.taylor import TaylorSolution, arcs

@@ -8,15 +8,17 @@ rational: nothing is rounded but the states.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from math import ceil, lcm
 from operator import mul
 from typing import Any, Final, NamedTuple
 
 from mpmath import libmp, mp
 
+from verify.exact.grid import STEP_DIGITS, Grid, Integer
 from verify.exact.solution import Unsettled
 from verify.scenes import tensors
 from verify.scenes.precision import floor_log2, power_of_two
@@ -25,22 +27,15 @@ from verify.scenes.tensors import Matrix, Vector
 Polynomial = Mapping[tuple[int, int], Fraction]
 
 _BITS_PER_DIGIT: Final = 3.3219280948873626
-# mpmath's integers: those of gmpy2 where it is installed, which are twice as fast, else Python's.
-_Integer: Final = libmp.MPZ
 # What the truncation of a series may leave, in last bits, so that it stays visible above the roundings
 # of its own coefficients: those of one step add up to some hundred last bits.
 _SLACK_BITS: Final = 12
 # A long span has so many steps, and each may leave the slack.
 _LONG_SPAN: Final = 10_000
-# A step of radius/e^2 is the cheapest for the quadratic cost of a convolution: bits * ln 2 / 2
-# orders; the linear cost asks for a few more. Two ratios, taken in turn every STEP_DIGITS, so that two
-# evaluations that are compared, which differ by an odd number of these, do so in order and step too.
-_ORDERS_PER_BIT: Final = (0.36, 0.40)
-STEP_DIGITS: Final = 6
 _MOST_STEPS: Final = 1_000_000
 _PILOT_BITS: Final = 64
-# As a logarithm: more than what cutting a width to six bits takes away.
-_A_LITTLE_WIDER: Final = 0.06
+# As a logarithm: more than what cutting a width to the bits of a step takes away.
+_A_LITTLE_WIDER: Final = 0.1
 
 
 @dataclass(frozen=True)
@@ -78,30 +73,6 @@ class Combination:
 
 
 @dataclass(frozen=True)
-class Grid:
-    """The fixed point: integers count 2^-bits of a unit.
-
-    A series has at most ``order`` terms, the last of which is to fall below 2^slack last bits.
-    """
-
-    bits: int
-    slack: int
-    orders_per_bit: float
-
-    @property
-    def order(self) -> int:
-        return ceil((self.bits - self.slack) * self.orders_per_bit)
-
-    @property
-    def last_terms(self) -> int:
-        """How many terms tell where a series ends: an eighth, so that gaps in it do not deceive."""
-        return max(self.order // 8, 3) + 1
-
-    def integers(self, values: Iterable[Fraction]) -> list[int]:
-        return [_Integer(round(value * 2**self.bits)) for value in values]
-
-
-@dataclass(frozen=True)
 class Problem:
     """Equations and initial state in units: z' = constant + rates(products of two variables).
 
@@ -132,7 +103,36 @@ class Problem:
         slack = _SLACK_BITS + strong
         guard = _SLACK_BITS + steps.bit_length()
         bits = ceil(digits * _BITS_PER_DIGIT) + guard + strong + small
-        return Grid(bits, slack, _ORDERS_PER_BIT[digits // STEP_DIGITS % 2])
+        return Grid(bits, slack, digits // STEP_DIGITS % 2)
+
+    @cached_property
+    def is_still(self) -> tuple[bool, ...]:
+        """True for each state that the equations keep exactly at zero, or that has no rate at all.
+
+        A state leaves zero by its constant, or by a product of two variables that are not zero. What
+        is zero by cancellation counts as moving.
+        """
+        size = len(self.start)
+        constants = self.constant + (Fraction(0),) * size
+        nonzero = [bool(z or c) for z, c in zip(self.start, constants, strict=False)]
+        while True:
+            forms = [
+                any(n and z for n, z in zip(form.numerators, nonzero, strict=False))
+                for form in self.forms
+            ]
+            every = nonzero + forms
+            driven = [every[a] and every[b] for a, b in self.products]
+            fresh = [
+                z or any(driven[place] for place in places)
+                for z, (places, _) in zip(nonzero, self.rates, strict=True)
+            ]
+            if fresh == nonzero:
+                break
+            nonzero = fresh
+        has_rate = [
+            bool(places or c) for (places, _), c in zip(self.rates, constants, strict=False)
+        ]
+        return tuple(not (z and r) for z, r in zip(nonzero, has_rate, strict=True))
 
     def reals(self, state: Sequence[int], grid: Grid) -> list[Any]:
         """The state in the scene's own units, exactly, whatever the ambient precision."""
@@ -176,7 +176,7 @@ def _scaled(vector: Vector, units: Sequence[Fraction]) -> Vector:
 def _combination(coefficients: Sequence[Fraction]) -> Combination:
     denominator = lcm(*(c.denominator for c in coefficients))
     numerators = (c.numerator * (denominator // c.denominator) for c in coefficients)
-    return Combination(tuple(map(_Integer, numerators)), denominator)
+    return Combination(tuple(map(Integer, numerators)), denominator)
 
 
 # The recursion.
@@ -189,14 +189,18 @@ def march(
 
     ``width`` is a guess of the first step, with the sign of the times: `first_width` makes one.
     """
-    unit = power_of_two(problem.units.time)
+    unit, noise = power_of_two(problem.units.time), grid.noise()
     state, now, last = grid.integers(problem.start), Fraction(0), times[-1] / unit
     reached: dict[Fraction, list[int]] = {}
     steps, pending = 0, list(times[::-1])
     while pending:
+        state = [
+            z if still else z + next(noise)
+            for z, still in zip(state, problem.is_still, strict=True)
+        ]
         series = _series(problem, state, width, grid)
         growth = _log2_reach(series, problem.moving, grid)
-        step = _dyadic(width, min(growth, 0.0))
+        step = grid.step(width, min(growth, 0.0))
         while pending and abs(pending[-1] / unit - now) <= abs(step):
             time = pending.pop()
             reached[time] = _value(series, (time / unit - now) / width, grid)
@@ -204,7 +208,7 @@ def march(
         _refuse_endless(steps + abs(last - now) / abs(step), times[-1])
         state, now = _value(series, step / width, grid), now + step
         # The next step may be longer.
-        width = _dyadic(width, min(growth + _A_LITTLE_WIDER, 1.0))
+        width = grid.step(width, min(growth + _A_LITTLE_WIDER, 1.0))
     return reached
 
 
@@ -213,7 +217,7 @@ def leap(problem: Problem, span: Fraction, grid: Grid) -> list[int]:
     width = span / power_of_two(problem.units.time)
     if not width:
         return grid.integers(problem.start)
-    return march(problem, [span], grid, _dyadic(width, _A_LITTLE_WIDER))[span]
+    return march(problem, [span], grid, grid.step(width, _A_LITTLE_WIDER))[span]
 
 
 def _series(problem: Problem, state: list[int], width: Fraction, grid: Grid) -> list[list[int]]:
@@ -284,8 +288,8 @@ def _combined(form: Combination, state: list[int]) -> int:
 def _value(series: list[list[int]], fraction: Fraction, grid: Grid) -> list[int]:
     """The states at this fraction of the series' width."""
     bits = grid.bits
-    argument = _Integer(round(fraction * 2**bits))
-    powers = [_Integer(1) << bits]
+    argument = Integer(round(fraction * 2**bits))
+    powers = [Integer(1) << bits]
     for _ in series[0][1:]:
         powers.append(powers[-1] * argument >> bits)
     return [sum(map(mul, coefficients, powers)) >> bits for coefficients in series]
@@ -313,24 +317,16 @@ def first_width(problem: Problem, last: Fraction, grid: Grid) -> Fraction:
     """A first guess of the step towards a time, from short series; never beyond that time."""
     span = last / power_of_two(problem.units.time)
     bits = grid.slack + _PILOT_BITS
-    pilot = Grid(bits, grid.slack, grid.orders_per_bit)
+    pilot = Grid(bits, grid.slack, grid.parity)
     start = pilot.integers(problem.start)
-    width = _dyadic(span if span else Fraction(1), 0.0)
+    width = grid.step(span if span else Fraction(1), 0.0)
     for _ in range(3):
         reach = _log2_reach(_series(problem, start, width, pilot), problem.moving, pilot)
-        width = _dyadic(width, min(reach, 0.0))
+        width = grid.step(width, min(reach, 0.0))
         # The first step finds its own length: within a factor of two its guess is good enough.
         if reach > -1:
             break
     return width
-
-
-def _dyadic(width: Fraction, log2_factor: float) -> Fraction:
-    """The width times 2^log2_factor, cut to six bits: exact, and cheap to multiply by."""
-    whole = int(log2_factor // 1)
-    wide = width * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
-    unit = power_of_two(floor_log2(wide) - 5)
-    return int(wide / unit) * unit
 
 
 def _refuse_endless(steps: Fraction, span: Fraction) -> None:

@@ -15,9 +15,9 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact import clocks
+from verify.exact.grid import STEP_DIGITS
 from verify.exact.guided import crosswise, placed
 from verify.exact.recursion import (
-    STEP_DIGITS,
     Equations,
     Polynomial,
     Problem,
