@@ -36,6 +36,14 @@ class Undecidable(ArithmeticError):
     """At this precision a ball does not decide between two branches; a higher one may."""
 
 
+class Coarse(Undecidable):
+    """At this precision the motion cannot be followed to its end; ``bits`` may suffice."""
+
+    def __init__(self, bits: int) -> None:
+        super().__init__()
+        self.bits = bits
+
+
 class Enclosed(Solution):
     """A closed form evaluated in balls: what it says about its error is proven."""
 
@@ -57,7 +65,11 @@ class Enclosed(Solution):
         target = ceil(digits * log2(10))
         bits = target + _FIRST_GUARD_BITS
         for _ in range(_ATTEMPTS):
-            motion = self._attempt(elapsed, bits)
+            try:
+                motion = self._attempt(elapsed, bits)
+            except Coarse as reason:
+                bits = reason.bits
+                continue
             missing = _missing_bits(motion, target)
             if missing is None:
                 bits = 2 * bits
@@ -80,6 +92,8 @@ class Enclosed(Solution):
             with ctx.workprec(bits):
                 found = self.enclose(elapsed, bits)
                 return _motion(found, len(elapsed), bits)
+        except Coarse:
+            raise
         except (Undecidable, ZeroDivisionError):
             return None
 

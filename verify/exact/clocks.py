@@ -16,12 +16,12 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from mpmath import mp
 
-from verify.exact.recursion import Polynomial
 from verify.scenes.bodies import Body, RigidBody
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.precision import exact_value, floor_log2
 from verify.scenes.tensors import Vector
 
+Polynomial = Mapping[tuple[int, int], Fraction]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # A float64 has less.

@@ -8,7 +8,7 @@ rational: nothing is rounded but the states.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -18,13 +18,12 @@ from typing import Any, Final, NamedTuple
 
 from mpmath import libmp, mp
 
+from verify.exact.clocks import Polynomial
 from verify.exact.grid import STEP_DIGITS, Grid, Integer
 from verify.exact.solution import Unsettled
 from verify.scenes import tensors
 from verify.scenes.precision import floor_log2, power_of_two
 from verify.scenes.tensors import Matrix, Vector
-
-Polynomial = Mapping[tuple[int, int], Fraction]
 
 _BITS_PER_DIGIT: Final = 3.3219280948873626
 # What the truncation of a series may leave, in last bits, so that it stays visible above the roundings

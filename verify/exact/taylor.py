@@ -15,11 +15,20 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact import clocks
+from verify.exact.clocks import Polynomial
+from verify.exact.equations import (
+    Triple,
+    cross,
+    dot,
+    driven,
+    euler_drift,
+    euler_rates,
+    impulse_rates,
+)
 from verify.exact.grid import STEP_DIGITS
 from verify.exact.guided import crosswise, placed
 from verify.exact.recursion import (
     Equations,
-    Polynomial,
     Problem,
     Units,
     exponent,
@@ -31,12 +40,10 @@ from verify.exact.recursion import (
 from verify.exact.rotation import rotation_matrix
 from verify.exact.solution import NO_CLOSED_FORM, Quantities, Settled
 from verify.scenes import tensors
-from verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from verify.scenes.bodies import ImmersedBody, RigidBody
 from verify.scenes.motion import Impulse, Motion, Spin, State
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
-
-Triple = tuple[int, int, int]
+from verify.scenes.tensors import Vector
 
 # Most have one.
 _STEPS_OF_AN_ARC = 8
@@ -167,17 +174,11 @@ def _euler(body: RigidBody, with_attitude: bool) -> Equations:
     The clock of a manufactured motion comes last.
     """
     omega: Triple = (0, 1, 2)
-    inertia, inverse = body.inertia, body.inverse_inertia
-    torque: list[Polynomial] = []
-    for j, k in ((1, 2), (2, 0), (0, 1)):
-        forward = {(i, k): inertia[j][i] for i in omega}
-        backward = {(i, j): -inertia[k][i] for i in omega}
-        torque.append(_sum(forward, backward))
-    right = [_sum(*(_times(c, p) for c, p in zip(row, torque, strict=True))) for row in inverse]
-    right = _driven(right, body, 3 + 9 * with_attitude)
+    right = euler_rates(body)
+    right = driven(right, body, 3 + 9 * with_attitude)
     if with_attitude:
-        right[3:3] = [p for row in _rows_from(3) for p in _cross(row, omega)]
-    return Equations(tensors.apply(inverse, body.moment), (), tuple(right))
+        right[3:3] = [p for row in _rows_from(3) for p in cross(row, omega)]
+    return Equations(euler_drift(body), (), tuple(right))
 
 
 def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Equations:
@@ -186,44 +187,16 @@ def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Eq
     size = clock + clocks.count(body.manufactured)
     velocity: Triple = (size, size + 1, size + 2)
     omega: Triple = (size + 3, size + 4, size + 5)
-    right = _driven(_impulse_rates(body), body, clock)
+    right = driven(impulse_rates(body), body, clock)
     frame: list[Polynomial] = []
     if with_attitude:
-        frame += [p for row in _rows_from(6) for p in _cross(row, omega)]
+        frame += [p for row in _rows_from(6) for p in cross(row, omega)]
     if with_centre:
-        frame += [_dot(row, velocity) for row in _rows_from(6)]
+        frame += [dot(row, velocity) for row in _rows_from(6)]
     right[6:6] = frame
     # Only R and the centre ask for U and Omega themselves.
     forms = body.energy_matrix if with_attitude else ()
     return Equations(body.force + body.couple, forms, tuple(right))
-
-
-def _driven(free: list[Polynomial], body: Body, clock: int) -> list[Polynomial]:
-    """The rates with the loads of a manufactured motion, if there is one, and then those of its clock."""
-    motion = body.manufactured
-    if motion is None:
-        return free
-    driven = [_sum(p, q) for p, q in zip(free, clocks.loads(free, motion, clock), strict=True)]
-    return driven + clocks.rates(motion, clock)
-
-
-def _impulse_rates(body: ImmersedBody) -> list[Polynomial]:
-    """x x Omega, and y x Omega + x x U, in products of x and y alone.
-
-    With U and Omega put in, what cancels in exact coefficients is gone: where x x U vanishes for a
-    whole body, y stays a zero that no rounding disturbs.
-    """
-    velocity, omega = body.energy_matrix[:3], body.energy_matrix[3:]
-    turned = zip(_cross_form(3, omega), _cross_form(0, velocity), strict=True)
-    return _cross_form(0, omega) + [_sum(p, q) for p, q in turned]
-
-
-def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
-    """The vector of the states ``first``, ... times a linear form of all six, given by its rows."""
-    entries = [[(i, c) for i, c in enumerate(row) if c] for row in rows]
-    forward = [{(first + j, i): c for i, c in entries[k]} for j, k in ((1, 2), (2, 0), (0, 1))]
-    backward = [{(first + k, i): -c for i, c in entries[j]} for j, k in ((1, 2), (2, 0), (0, 1))]
-    return [_sum(p, q) for p, q in zip(forward, backward, strict=True)]
 
 
 def _euler_units(body: RigidBody, start: Vector) -> Units:
@@ -282,35 +255,6 @@ def _largest(*exponents: int | None, default: int) -> int:
     return max((e for e in exponents if e is not None), default=default)
 
 
-def _rows_from(first: int) -> tuple[Triple, Triple, Triple]:
-    """The variables of the three rows of R."""
-    a, b, c = ((i, i + 1, i + 2) for i in range(first, first + 9, 3))
-    return a, b, c
-
-
-def _cross(a: Triple, b: Triple) -> list[Polynomial]:
-    one = Fraction(1)
-    return [_sum({(a[j], b[k]): one}, {(a[k], b[j]): -one}) for j, k in ((1, 2), (2, 0), (0, 1))]
-
-
-def _dot(a: Triple, b: Triple) -> Polynomial:
-    return {pair: Fraction(1) for pair in zip(a, b, strict=True)}
-
-
-def _times(factor: Fraction, polynomial: Polynomial) -> Polynomial:
-    return {pair: factor * coefficient for pair, coefficient in polynomial.items()}
-
-
-def _sum(*polynomials: Polynomial) -> Polynomial:
-    """The sum; a b and b a are one product, and what cancels is gone."""
-    total: dict[tuple[int, int], Fraction] = {}
-    for polynomial in polynomials:
-        for (a, b), coefficient in polynomial.items():
-            pair = (min(a, b), max(a, b))
-            total[pair] = total[pair] + coefficient if pair in total else coefficient
-    return {pair: coefficient for pair, coefficient in total.items() if coefficient}
-
-
 def posed(scene: Scene) -> Problem:
     """The scene's equations and initial state, in units of their size."""
     start, body = _start(scene), scene.body
@@ -331,7 +275,7 @@ def _guided_problem(scene: Scene) -> Problem:
     assert isinstance(body, ImmersedBody)
     x, row = (0, 1, 2), (6, 7, 8)
     velocity, omega = (10, 11, 12), (13, 14, 15)
-    right = _impulse_rates(body) + _cross(row, omega) + [_dot(x, velocity)]
+    right = impulse_rates(body) + cross(row, omega) + [dot(x, velocity)]
     equations = Equations(body.force + body.couple, body.energy_matrix, tuple(right))
     moving = start.linear + start.angular
     units = _kirchhoff_units(body, moving)
@@ -344,6 +288,12 @@ def _guided_problem(scene: Scene) -> Problem:
         moving + across + (Fraction(0),),
         moving=6,
     )
+
+
+def _rows_from(first: int) -> tuple[Triple, Triple, Triple]:
+    """The variables of the three rows of R."""
+    a, b, c = ((i, i + 1, i + 2) for i in range(first, first + 9, 3))
+    return a, b, c
 
 
 def _start(scene: Scene) -> Vector:
