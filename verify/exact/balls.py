@@ -36,14 +36,6 @@ class Undecidable(ArithmeticError):
     """At this precision a ball does not decide between two branches; a higher one may."""
 
 
-class Coarse(Undecidable):
-    """At this precision the motion cannot be followed to its end; ``bits`` may suffice."""
-
-    def __init__(self, bits: int) -> None:
-        super().__init__()
-        self.bits = bits
-
-
 class Enclosed(Solution):
     """A closed form evaluated in balls: what it says about its error is proven."""
 
@@ -65,11 +57,7 @@ class Enclosed(Solution):
         target = ceil(digits * log2(10))
         bits = target + _FIRST_GUARD_BITS
         for _ in range(_ATTEMPTS):
-            try:
-                motion = self._attempt(elapsed, bits)
-            except Coarse as reason:
-                bits = reason.bits
-                continue
+            motion = self._attempt(elapsed, bits)
             missing = _missing_bits(motion, target)
             if missing is None:
                 bits = 2 * bits
@@ -92,8 +80,6 @@ class Enclosed(Solution):
             with ctx.workprec(bits):
                 found = self.enclose(elapsed, bits)
                 return _motion(found, len(elapsed), bits)
-        except Coarse:
-            raise
         except (Undecidable, ZeroDivisionError):
             return None
 

@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from flint import arb, fmpq
 from mpmath import mp
 
 from verify.scenes.bodies import Body, RigidBody
@@ -45,6 +46,16 @@ def at(motion: Manufactured, elapsed: Fraction, digits: int) -> Vector:
             c, s = mp.cos_sin(mp.convert(angle))
             found += [exact_value(c), exact_value(s)]
     return tuple(found)
+
+
+def balls_at(motion: Manufactured, elapsed: Fraction) -> list[arb]:
+    """The clock at a time since the start in balls, at the ambient precision."""
+    found = [arb(1)]
+    for wave in motion.waves:
+        angle = wave.frequency * elapsed
+        s, c = arb(fmpq(angle.numerator, angle.denominator)).sin_cos()
+        found += [c, s]
+    return found
 
 
 def floats(motion: Manufactured | None, times: Sequence[Fraction]) -> Floats:

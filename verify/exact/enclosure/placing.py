@@ -50,6 +50,12 @@ class Place:
             centre_error=norm([arb(b.rad()) for b in point or ()]),
         )
 
+    def balls(self) -> tuple[list[arb], list[arb] | None]:
+        """Attitude (nine entries) and centre, each entry with the whole bound as its radius."""
+        return _about(self.turn, self.turn_error), (
+            None if self.centre is None else _about(self.centre, self.centre_error)
+        )
+
 
 @dataclass(frozen=True)
 class Leg:
@@ -90,8 +96,7 @@ class Leg:
     def within(self, begin: Place, s: arb) -> tuple[list[arb], list[arb] | None]:
         """Attitude (nine entries) and centre at s, each entry with the whole bound as its radius."""
         turn, turn_error, centre, centre_error = self.place(begin, s)
-        placed = None if centre is None else [c + arb(0, centre_error) for c in centre]
-        return [t + arb(0, turn_error) for t in turn], placed
+        return Place(turn, turn_error, centre, centre_error).balls()
 
 
 def leg(
@@ -152,6 +157,10 @@ def _left_out(lengths: Sequence[arb], others: Sequence[arb]) -> arb:
         tail += other
         total += length * tail
     return total
+
+
+def _about(entries: Sequence[arb], error: arb) -> list[arb]:
+    return [entry + arb(0, error) for entry in entries]
 
 
 def product(matrix: Sequence[arb], other: Sequence[arb]) -> list[arb]:

@@ -18,7 +18,7 @@ from verify.exact import clocks, equations
 from verify.exact.balls import ball, balls
 from verify.exact.clocks import Polynomial
 from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Spin
+from verify.scenes.motion import Spin, State
 from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector, diagonal
 
@@ -66,13 +66,11 @@ def posed(scene: Scene) -> System:
     clock = () if motion is None else clocks.at(motion, Fraction(0), 0)
     forms: tuple[Matrix, Matrix]
     blocks: tuple[int, ...]
+    start = moving(initial)
     if isinstance(body, RigidBody):
-        assert isinstance(initial, Spin)
-        start, forms = initial.omega, (diagonal((Fraction(1),) * 3), ())
+        forms = diagonal((Fraction(1),) * 3), ()
         constant, free, blocks = equations.euler_drift(body), equations.euler_rates(body), (3,)
     else:
-        assert not isinstance(initial, Spin)
-        start = initial.linear + initial.angular
         forms = body.energy_matrix[3:], body.energy_matrix[:3]
         constant, free, blocks = body.force + body.couple, equations.impulse_rates(body), (3, 6)
     padding = (Fraction(0),) * len(clock)
@@ -85,6 +83,11 @@ def posed(scene: Scene) -> System:
         spin=spin,
         velocity=velocity,
     )
+
+
+def moving(state: State) -> Vector:
+    """The state that enters its own equations: omega, or x and y."""
+    return state.omega if isinstance(state, Spin) else state.linear + state.angular
 
 
 @dataclass(frozen=True)

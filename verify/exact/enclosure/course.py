@@ -1,22 +1,21 @@
-"""The motion of any scene, enclosed: the steps, the outputs and the precision."""
+"""Steps from a start to the times asked for, and when a precision is given up."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from math import ceil, log2
 from statistics import median
-from typing import Any, Final, final
+from typing import Final
 
 from flint import arb, ctx
 
-from verify.exact.balls import Coarse, Enclosed, Enclosure, ball, balls
+from verify.exact.balls import ball
 from verify.exact.enclosure.box import Box, Flow, carried, exponent, flow, within
 from verify.exact.enclosure.placing import Leg, Place, leg
 from verify.exact.enclosure.series import Series, scaled, state_series
-from verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes, posed
+from verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes
 from verify.exact.enclosure.tube import (
     BOUND_BITS,
     StepTooLong,
@@ -24,11 +23,8 @@ from verify.exact.enclosure.tube import (
     rates_of_change,
     tube,
 )
-from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import NO_CLOSED_FORM, Unsettled
-from verify.scenes.motion import Impulse
+from verify.exact.solution import Unsettled
 from verify.scenes.precision import floor_log2, power_of_two
-from verify.scenes.scene import Scene
 
 # The cheapest step is the radius of convergence over e^2: bits ln 2/2 orders. The linear part of the
 # cost asks for a few more.
@@ -47,69 +43,25 @@ _SHRUNK: Final = -20
 _SEVERAL: Final = 16
 
 
-@final
-@dataclass(frozen=True)
-class EnclosedMotion(Enclosed):
-    """The motion of any scene, free or loaded, in balls that are proven to contain it."""
+class Coarse(ArithmeticError):
+    """At this precision the motion cannot be followed to its end; ``bits`` may suffice."""
 
-    scene: Scene
-
-    route = "taylor"
-    regime = NO_CLOSED_FORM
-
-    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        """Balls about the tracked quantities. Raises Coarse where more bits are needed.
-
-        Raises Unsettled where more than a million steps, or ten thousand bits, would be needed.
-        """
-        rows = {Fraction(0): self._start()}
-        later = sorted({t for t in elapsed if t > 0})
-        earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
-        for times in filter(None, (later, earlier)):
-            rows.update(_Course(self._system, self._place, bits).rows(times))
-        return self._quantities([rows[t] for t in elapsed])
-
-    @cached_property
-    def _system(self) -> System:
-        return posed(self.scene)
-
-    @property
-    def _place(self) -> Place | None:
-        """The frame at the start, at the ambient precision; None where it is not tracked."""
-        if not self.scene.track:
-            return None
-        initial = self.scene.initial
-        has_centre = "centre" in self.scene.track and isinstance(initial, Impulse)
-        centre = initial.centre if has_centre and isinstance(initial, Impulse) else None
-        return Place.of(rotation_matrix(initial.attitude), centre)
-
-    def _start(self) -> _Row:
-        initial = self.scene.initial
-        turn = [entry for row in rotation_matrix(initial.attitude) for entry in row]
-        centre = balls(initial.centre) if isinstance(initial, Impulse) else None
-        return _Row(balls(self._system.start), balls(turn), centre)
-
-    def _quantities(self, rows: Sequence[_Row]) -> Enclosure:
-        found: dict[str, Any] = {}
-        if self.scene.model == "euler":
-            found["omega"] = [row.state[:3] for row in rows]
-        else:
-            found["linear_impulse"] = [row.state[:3] for row in rows]
-            found["angular_impulse"] = [row.state[3:6] for row in rows]
-        if self.scene.track:
-            found["attitude"] = [[row.turn[i : i + 3] for i in (0, 3, 6)] for row in rows]
-        if "centre" in self.scene.track:
-            found["centre"] = [row.centre for row in rows]
-        return found
+    def __init__(self, bits: int) -> None:
+        super().__init__()
+        self.bits = bits
 
 
 @dataclass(frozen=True)
-class _Row:
-    """The state at one time in balls; ``turn`` is R, nine entries row by row."""
+class Row:
+    """The state at one time in balls. ``turn`` is R, nine entries row by row, and may be empty.
+
+    ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre.
+    """
 
     state: list[arb]
     turn: list[arb]
     centre: list[arb] | None
+    largest: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -124,53 +76,84 @@ class _Step:
 
 
 @dataclass(frozen=True)
-class _Course:
-    """Steps from the start, away from it, at one precision."""
+class Course:
+    """Steps from a start, away from it, at one precision; to be used at that precision.
+
+    ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
+    """
 
     system: System
+    balls: Balls
+    bounds: Bounds
+    start: Sequence[arb]
     place: Place | None
     bits: int
+
+    @classmethod
+    def of(
+        cls, system: System, held: Balls, start: Sequence[arb], place: Place | None, bits: int
+    ) -> Course:
+        """The course of a system whose balls are ``held``."""
+        with ctx.workprec(BOUND_BITS):
+            return cls(system, held, Bounds.of(held), start, place, bits)
 
     @property
     def order(self) -> int:
         return ceil(_ORDERS_PER_BIT * self.bits) + 2
 
-    def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, _Row]]:
-        """The state at these times, which go away from zero on one side."""
-        system, now, last = Balls.of(self.system), Fraction(0), times[-1]
-        with ctx.workprec(BOUND_BITS):
-            bounds = Bounds.of(system)
-        box, place = Box.about(balls(self.system.start)), self.place
-        pending, lengths = list(times[::-1]), []
-        largest = [_size(box.point, span) for span in self.system.spans]
-        length = last
+    def first_row(self) -> Row:
+        """The start itself."""
+        turn, centre = ([], None) if self.place is None else self.place.balls()
+        return Row(list(self.start), turn, centre, self._largest(Box.about(self.start), self.place))
+
+    def _largest(self, box: Box, place: Place | None) -> tuple[float, ...]:
+        """log2 of the size of each block, and of the centre."""
+        centre = [] if place is None or place.centre is None else place.centre
+        sizes = [_size(box.point, span) for span in self.system.spans]
+        return (*sizes, _size(centre, range(len(centre))))
+
+    def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
+        """The state at these times, which go away from zero on one side.
+
+        Raises Coarse where more bits are needed, and Unsettled where more than a million steps, or
+        ten thousand bits, would be.
+        """
+        box, place = Box.about(self.start), self.place
+        now, last = Fraction(0), times[-1]
+        pending, lengths, length = list(times[::-1]), [], last
+        largest = self._largest(box, place)
         while pending:
-            step = self._step(system, bounds, box, length, last - now)
+            step = self._step(box, length, last - now)
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
-                yield time, self._row(box, place, step, ball((time - now) / step.length))
+                share = ball((time - now) / step.length)
+                yield time, self._row(box, place, step, share, largest)
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
+            sizes = self._largest(box, place)
+            largest = tuple(max(a, b) for a, b in zip(largest, sizes, strict=True))
             now, length = now + step.length, 2 * step.length
             lengths.append(abs(step.length))
-            self._refuse_endless(len(lengths) + abs(last - now) / lengths[-1], last)
-            self._watch(box, largest, lengths, now, last)
+            _refuse_endless(len(lengths) + abs(last - now) / lengths[-1], last)
+            if pending:
+                self._watch(box, largest, lengths, now, last)
 
-    def _row(self, box: Box, place: Place | None, step: _Step, s: arb) -> _Row:
+    def _row(
+        self, box: Box, place: Place | None, step: _Step, s: arb, largest: tuple[float, ...]
+    ) -> Row:
         state = within(box, step.state, step.tube, step.flow, s)
         if place is None or step.leg is None:
-            return _Row(state, [], None)
+            return Row(state, [], None, largest)
         turn, centre = step.leg.within(place, s)
-        return _Row(state, turn, centre)
+        return Row(state, turn, centre, largest)
 
     # One step.
 
-    def _step(
-        self, system: Balls, bounds: Bounds, box: Box, guess: Fraction, left: Fraction
-    ) -> _Step:
-        length = self._first(bounds, box, guess, left)
+    def _step(self, box: Box, guess: Fraction, left: Fraction) -> _Step:
+        system, bounds = self.balls, self.bounds
+        length = self._first(box, guess, left)
         state = state_series(system, box.point, ball(length), self.order)
-        length, state = self._fitted(system, bounds, state, length, left)
+        length, state = self._fitted(state, length, left)
         for _ in range(_HALVINGS):
             h = ball(length)
             with ctx.workprec(BOUND_BITS):
@@ -191,19 +174,19 @@ class _Course:
             state, length = scaled(state, arb(1) / 2), length / 2
         raise Coarse(2 * self.bits)
 
-    def _first(self, bounds: Bounds, box: Box, guess: Fraction, left: Fraction) -> Fraction:
+    def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth(bounds, [[abs(z).upper() for z in box.point]])
+            growth = self._growth([box.point])
         length = guess if abs(guess) < abs(left) else left
         if growth == float("-inf"):
             return length
         limit = power_of_two(ceil(-growth))
         return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
 
-    def _growth(self, bounds: Bounds, state: Series) -> float:
+    def _growth(self, state: Series) -> float:
         """log2 of the largest row sum of |dF/dz| at the first coefficients, in units of the blocks."""
-        rates = rates_of_change(bounds, magnitudes(column(state[0])))
+        rates = rates_of_change(self.bounds, magnitudes(column(state[0])))
         units = [0.0] * self.system.size
         for span in self.system.spans:
             size = _first_size(state, span)
@@ -216,16 +199,14 @@ class _Course:
                     total = max(total, exponent(rates[i, j]) + units[j] - units[i])
         return total
 
-    def _fitted(
-        self, system: Balls, bounds: Bounds, state: Series, length: Fraction, left: Fraction
-    ) -> tuple[Fraction, Series]:
+    def _fitted(self, state: Series, length: Fraction, left: Fraction) -> tuple[Fraction, Series]:
         """The length at which the last coefficients fall below the last bit, and the series there."""
         factor = self._root_test(state)
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth(bounds, state) + log2(abs(length))
+            growth = self._growth(state) + log2(abs(length))
             factor = min(factor, log2(_MOST_GROWTH) - growth)
             if self.place is not None:
-                factor = min(factor, self._turning(system, state, length))
+                factor = min(factor, self._turning(state, length))
         fitted = left if factor > 1e9 else _cut(length, factor)
         if abs(fitted) >= abs(left):
             fitted = left
@@ -242,24 +223,29 @@ class _Course:
                     factor = min(factor, (size - self.bits - last) / k)
         return factor
 
-    def _turning(self, system: Balls, state: Series, length: Fraction) -> float:
+    def _turning(self, state: Series, length: Fraction) -> float:
         """log2 of the factor at which the frame turns by no more than its series can follow."""
         most = log2(max(1.0, self.order * _TURN_PER_ORDER))
         spins = [
-            _size((system.spin * column(z)).entries(), range(3)) + log2(abs(length)) for z in state
+            _size((self.balls.spin * column(z)).entries(), range(3)) + log2(abs(length))
+            for z in state
         ]
         return min((most - spin) / (k + 1) for k, spin in enumerate(spins))
 
     # When to stop.
 
     def _watch(
-        self, box: Box, largest: list[float], lengths: list[Fraction], now: Fraction, last: Fraction
+        self,
+        box: Box,
+        largest: Sequence[float],
+        lengths: list[Fraction],
+        now: Fraction,
+        last: Fraction,
     ) -> None:
         """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere."""
         apart = box.apart().entries()
         for k, span in enumerate(self.system.spans):
-            largest[k] = max(largest[k], _size(box.point, span))
-            if _size(apart, span) > largest[k] + _LOST and now != last:
+            if _size(apart, span) > largest[k] + _LOST:
                 raise Coarse(self._needed(now, last))
         if len(lengths) % _SEVERAL == 0:
             usual = float(median(lengths[-8 * _SEVERAL :]))
@@ -278,12 +264,13 @@ class _Course:
             )
         return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
 
-    def _refuse_endless(self, steps: Fraction, last: Fraction) -> None:
-        if steps > _MOST_STEPS:
-            raise Unsettled(
-                f"the Taylor enclosure would take about {float(steps):.1e} steps to reach a time of "
-                f"{float(last):g}; expected at most {_MOST_STEPS}: ask for a shorter time"
-            )
+
+def _refuse_endless(steps: Fraction, last: Fraction) -> None:
+    if steps > _MOST_STEPS:
+        raise Unsettled(
+            f"the Taylor enclosure would take about {float(steps):.1e} steps to reach a time of "
+            f"{float(last):g}; expected at most {_MOST_STEPS}: ask for a shorter time"
+        )
 
 
 def _cut(length: Fraction, log2_factor: float) -> Fraction:
