@@ -177,33 +177,29 @@ class Course:
     def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth([box.point])
+            growth = self._growth(box.point)
         length = guess if abs(guess) < abs(left) else left
         if growth == float("-inf"):
             return length
         limit = power_of_two(ceil(-growth))
         return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
 
-    def _growth(self, state: Series) -> float:
-        """log2 of the largest row sum of |dF/dz| at the first coefficients, in units of the blocks."""
-        rates = rates_of_change(self.bounds, magnitudes(column(state[0])))
-        units = [0.0] * self.system.size
-        for span in self.system.spans:
-            size = _first_size(state, span)
-            for i in span:
-                units[i] = size
-        total = float("-inf")
-        for i in range(self.system.size):
-            for j in range(self.system.size):
-                if not rates[i, j].is_zero() and units[i] > float("-inf") < units[j]:
-                    total = max(total, exponent(rates[i, j]) + units[j] - units[i])
-        return total
+    def _growth(self, point: Sequence[arb]) -> float:
+        """log2 of the spectral radius of |dF/dz| there, within a factor of n^(1/8); -inf of none.
+
+        The trace of an eighth power does not depend on the units of the components.
+        """
+        power = rates_of_change(self.bounds, magnitudes(column(point)))
+        for _ in range(3):
+            power = power * power
+        trace = power.trace()
+        return float("-inf") if trace.is_zero() else exponent(trace) / 8
 
     def _fitted(self, state: Series, length: Fraction, left: Fraction) -> tuple[Fraction, Series]:
         """The length at which the last coefficients fall below the last bit, and the series there."""
         factor = self._root_test(state)
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth(state) + log2(abs(length))
+            growth = self._growth(state[0]) + log2(abs(length))
             factor = min(factor, log2(_MOST_GROWTH) - growth)
             if self.place is not None:
                 factor = min(factor, self._turning(state, length))
