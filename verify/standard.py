@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 Finished = Callable[[Job], None]
 
-# What a run takes, in that of one state in closed form: a recursion as many times as much, and so many
+# What a run takes, in that of one state in closed form: Taylor series as many times as much, and so many
 # radians as much as one more.
-_RECURSION = 10
+_TAYLOR = 10
 _RADIANS_PER_STATE = 1e5
 
 
@@ -93,7 +93,7 @@ def _expense(job: Job) -> float:
     """The longest first, so that no core is left with one at the end.
 
     What is tracked tells, and whether the truth, or the flow between two samples of a loaded body, is
-    a closed form or a recursion, which is many times as dear; of long runs the radians. The scene is
+    a closed form or Taylor series, which are many times as dear; of long runs the radians. The scene is
     read again for it, which costs a millisecond.
     """
     from verify.scenes.bodies import RigidBody
@@ -106,4 +106,4 @@ def _expense(job: Job) -> float:
     states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
     spin = max(map(abs, start.omega)) if isinstance(start, Spin) else 0
     radians = float(spin * abs(scene.clock.elapsed[-1]))
-    return -states * (1 if has_closed_form else _RECURSION) - radians / _RADIANS_PER_STATE
+    return -states * (1 if has_closed_form else _TAYLOR) - radians / _RADIANS_PER_STATE

@@ -141,8 +141,8 @@ def _add_exact(found: Any) -> None:
     verb.add_argument(
         "--route",
         choices=("arb", "mpmath", "taylor"),
-        help="default: arb, the closed form in balls; mpmath, the same by other formulas; taylor "
-        "needs no closed form",
+        help="arb, the closed form in balls (default where there is one); mpmath, the same by other "
+        "formulas; taylor, Taylor series in balls (default elsewhere)",
     )
 
 

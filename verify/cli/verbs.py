@@ -154,18 +154,19 @@ def exact(options: argparse.Namespace) -> Answer:
     from verify.exact.route import solution
     from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 
-    route = options.route or "arb"
     try:
         with working(f"exact {scene.name}"):
             scene = formed_to(scene, options.digits)
-            found = solution(scene, route)
+            found = solution(scene, options.route)
             printed = document(scene, found, times, options.digits)
     except NoClosedForm as reason:
-        because = f"no closed form: {reason}; use --route taylor @ {scene.name}"
-        return _without_rows(scene, options.digits, route, NO_CLOSED_FORM, because)
+        because = (
+            f"no closed form: {reason}; leave out --route, or use --route taylor @ {scene.name}"
+        )
+        return _without_rows(scene, options.digits, options.route, NO_CLOSED_FORM, because)
     except Unsettled as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
-        return _without_rows(scene, options.digits, route, found.regime, because)
+        return _without_rows(scene, options.digits, found.route, found.regime, because)
     return Answer(PASS, printed, partial(exact_text, printed))
 
 

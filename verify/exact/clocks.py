@@ -1,4 +1,4 @@
-"""The loads of a manufactured motion for the Taylor recursion: cosines and sines carried as variables.
+"""The loads of a manufactured motion as a quadratic system: cosines and sines carried as variables.
 
 The equations z' = N(z) become z' = N(z) + z*' - N(z*), N quadratic and z* a linear form of the clock w:
 
