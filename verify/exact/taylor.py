@@ -21,7 +21,7 @@ from verify.exact import clocks
 from verify.exact.balls import balls, max_or_nan, midpoint, upper
 from verify.exact.enclosure.course import Coarse, Course, Row
 from verify.exact.enclosure.placing import Place, norm
-from verify.exact.enclosure.system import Balls, System, moving, posed
+from verify.exact.enclosure.system import System, moving, posed
 from verify.exact.enclosure.tube import BOUND_BITS
 from verify.exact.rotation import rotation_matrix
 from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
@@ -31,6 +31,8 @@ from verify.scenes.scene import Scene
 _GUARD_BITS: Final = 40
 _MORE_BITS: Final = 16
 _ATTEMPTS: Final = 24
+# Beyond twice the bits of the digits asked for: what a motion may lose.
+_MOST_BITS: Final = 10_000
 # A vector that may be zero has no relative digits. If it is smaller than this, in bits beyond the digits
 # asked for, beside its own largest size, its error is told absolutely.
 _NEGLIGIBLE_BITS: Final = 200
@@ -45,7 +47,7 @@ class _Enclosing(Solution):
     route = "taylor"
     regime = NO_CLOSED_FORM
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int) -> list[Row]:
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
         """A row of balls for each time, at ``bits`` bits, which are the ambient precision already."""
         raise NotImplementedError
 
@@ -53,14 +55,17 @@ class _Enclosing(Solution):
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The midpoints, and the proven radius of every vector and matrix relative to its norm.
 
-        Raises Unsettled where more than a million steps, or ten thousand bits, would be needed.
+        Raises Unsettled where more than a million steps, or ten thousand bits more than the digits
+        take, would be needed.
         """
         target = ceil(digits * log2(10))
-        bits = target + _GUARD_BITS
+        bits, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
         for _ in range(_ATTEMPTS):
+            if bits > most_bits:
+                break
             try:
                 with ctx.workprec(bits):
-                    rows = self.rows(elapsed, bits)
+                    rows = self.rows(elapsed, bits, most_bits)
                 motion, missing = self._measured(rows, target)
             except Coarse as reason:
                 bits = reason.bits
@@ -68,7 +73,9 @@ class _Enclosing(Solution):
             if missing <= 0:
                 return motion
             bits += min(missing + _MORE_BITS, bits)
-        raise Unsettled(f"the enclosure of the motion does not shrink to {digits} digits")
+        raise Unsettled(
+            f"the enclosure of the motion does not shrink to {digits} digits with {most_bits} bits"
+        )
 
     @final
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
@@ -109,10 +116,9 @@ class _Enclosing(Solution):
 class TaylorSolution(_Enclosing):
     """The motion of any scene, free or loaded, in balls that are proven to contain it."""
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int) -> list[Row]:
-        system = Balls.of(self._system)
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
         start, place = balls(self._system.start), _place(self.scene, self.scene.initial)
-        course = Course.of(self._system, system, start, place, bits)
+        course = Course.of(self._system, start, place, bits, most_bits)
         later = sorted({t for t in elapsed if t > 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         rows = {Fraction(0): course.first_row()}
@@ -154,9 +160,9 @@ class _Arcs(_Enclosing):
     starts: tuple[State, ...]
     begins: tuple[Fraction, ...]
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int) -> list[Row]:
-        system, manufactured = Balls.of(self._system), self.scene.body.manufactured
-        whole = Course.of(self._system, system, (), None, bits)
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+        manufactured = self.scene.body.manufactured
+        whole = Course.of(self._system, (), None, bits, most_bits)
         rows = []
         for k, (start, span) in enumerate(zip(self.starts, elapsed, strict=True)):
             state = balls(moving(start))

@@ -60,9 +60,6 @@ class Flow:
     terms: list[arb_mat]
     defect: arb_mat
 
-    def of_point(self) -> bool:
-        return not self.terms
-
     def at(self, s: arb) -> arb_mat:
         """V(s), as balls with the defect."""
         total, power = self.terms[0], arb(1)

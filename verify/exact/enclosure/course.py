@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from decimal import MAX_EMAX, MIN_EMIN, Decimal, localcontext
 from fractions import Fraction
 from math import ceil, log2
 from statistics import median
@@ -36,11 +37,11 @@ _HALVINGS: Final = 30
 # A turn by this share of the order has its last term below the last bit.
 _TURN_PER_ORDER: Final = 1 / 20
 _MOST_STEPS: Final = 1_000_000
-_MOST_BITS: Final = 10_000
 # A box so large, as a power of two of its vector, is lost: steps shrink with it for ever.
 _LOST: Final = -10
 _SHRUNK: Final = -20
 _SEVERAL: Final = 16
+_DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
 
 class Coarse(ArithmeticError):
@@ -55,7 +56,8 @@ class Coarse(ArithmeticError):
 class Row:
     """The state at one time in balls. ``turn`` is R, nine entries row by row, and may be empty.
 
-    ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre.
+    ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre. A
+    block is as large as the terms of its rate make it in a step, though they may cancel.
     """
 
     state: list[arb]
@@ -80,6 +82,7 @@ class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
+    More than ``most_bits`` bits are never asked for.
     """
 
     system: System
@@ -88,14 +91,17 @@ class Course:
     start: Sequence[arb]
     place: Place | None
     bits: int
+    most_bits: int
 
     @classmethod
     def of(
-        cls, system: System, held: Balls, start: Sequence[arb], place: Place | None, bits: int
+        cls, system: System, start: Sequence[arb], place: Place | None, bits: int, most_bits: int
     ) -> Course:
-        """The course of a system whose balls are ``held``."""
+        """The course of a system, at the ambient precision of ``bits`` bits."""
+        held = Balls.of(system)
         with ctx.workprec(BOUND_BITS):
-            return cls(system, held, Bounds.of(held), start, place, bits)
+            bounds = Bounds.of(held)
+        return cls(system, held, bounds, start, place, bits, most_bits)
 
     @property
     def order(self) -> int:
@@ -116,7 +122,7 @@ class Course:
         """The state at these times, which go away from zero on one side.
 
         Raises Coarse where more bits are needed, and Unsettled where more than a million steps, or
-        ten thousand bits, would be.
+        more than ``most_bits`` bits, would be.
         """
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
@@ -124,19 +130,26 @@ class Course:
         largest = self._largest(box, place)
         while pending:
             step = self._step(box, length, last - now)
+            largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
                 share = ball((time - now) / step.length)
                 yield time, self._row(box, place, step, share, largest)
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
-            sizes = self._largest(box, place)
-            largest = tuple(max(a, b) for a, b in zip(largest, sizes, strict=True))
+            largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
             now, length = now + step.length, 2 * step.length
             lengths.append(abs(step.length))
-            _refuse_endless(len(lengths) + abs(last - now) / lengths[-1], last)
             if pending:
                 self._watch(box, largest, lengths, now, last)
+
+    def _terms(self, step: _Step) -> tuple[float, ...]:
+        """log2 of what the terms of the rates make of each block in a step, none cancelled."""
+        with ctx.workprec(BOUND_BITS):
+            point = magnitudes(column(step.state[0]))
+            terms = self.bounds.hessian * column((point * point.transpose()).entries())
+            added = (terms * ball(step.length)).entries()
+        return (*(_size(added, span) for span in self.system.spans), float("-inf"))
 
     def _row(
         self, box: Box, place: Place | None, step: _Step, s: arb, largest: tuple[float, ...]
@@ -199,7 +212,7 @@ class Course:
         """The length at which the last coefficients fall below the last bit, and the series there."""
         factor = self._root_test(state)
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth(state[0]) + log2(abs(length))
+            growth = self._growth(state[0]) + _log2(length)
             factor = min(factor, log2(_MOST_GROWTH) - growth)
             if self.place is not None:
                 factor = min(factor, self._turning(state, length))
@@ -223,8 +236,7 @@ class Course:
         """log2 of the factor at which the frame turns by no more than its series can follow."""
         most = log2(max(1.0, self.order * _TURN_PER_ORDER))
         spins = [
-            _size((self.balls.spin * column(z)).entries(), range(3)) + log2(abs(length))
-            for z in state
+            _size((self.balls.spin * column(z)).entries(), range(3)) + _log2(length) for z in state
         ]
         return min((most - spin) / (k + 1) for k, spin in enumerate(spins))
 
@@ -238,35 +250,47 @@ class Course:
         now: Fraction,
         last: Fraction,
     ) -> None:
-        """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere."""
+        """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere.
+
+        Raises Unsettled where there would be too many steps.
+        """
         apart = box.apart().entries()
         for k, span in enumerate(self.system.spans):
             if _size(apart, span) > largest[k] + _LOST:
                 raise Coarse(self._needed(now, last))
         if len(lengths) % _SEVERAL == 0:
-            usual = float(median(lengths[-8 * _SEVERAL :]))
-            if float(lengths[-1]) < usual * 2.0**_SHRUNK:
+            usual = median(lengths[-8 * _SEVERAL :])
+            if lengths[-1] < usual * power_of_two(_SHRUNK):
                 raise Coarse(self._needed(now, last))
+            steps = len(lengths) + abs(last - now) / usual
+            if steps > _MOST_STEPS:
+                raise Unsettled(
+                    f"the Taylor series would take about {_brief(steps)} steps to reach a time of "
+                    f"{_brief(last)} from the start; expected at most {_MOST_STEPS}: ask for a shorter "
+                    "time"
+                )
 
     def _needed(self, lost: Fraction, last: Fraction) -> int:
         """The bits with which the box would reach the end, if it grows as it did so far."""
         rate = self.bits / abs(lost)
         needed = ceil(rate * abs(last))
-        if needed > _MOST_BITS:
-            digits = float(rate) * log2(2) / log2(10)
+        if needed > self.most_bits:
             raise Unsettled(
-                f"the motion loses about {digits:.2g} digits per unit of time; a time of "
-                f"{float(abs(last)):g} from the start needs more than {_MOST_BITS} bits"
+                f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; a "
+                f"time of {_brief(last)} from the start needs more than {self.most_bits} bits"
             )
         return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
 
 
-def _refuse_endless(steps: Fraction, last: Fraction) -> None:
-    if steps > _MOST_STEPS:
-        raise Unsettled(
-            f"the Taylor enclosure would take about {float(steps):.1e} steps to reach a time of "
-            f"{float(last):g}; expected at most {_MOST_STEPS}: ask for a shorter time"
-        )
+def _log2(length: Fraction) -> float:
+    """log2 of a magnitude that no float needs to hold."""
+    return log2(abs(length.numerator)) - log2(length.denominator)
+
+
+def _brief(value: Fraction) -> str:
+    """Two digits of a number of any size."""
+    with localcontext(Emax=MAX_EMAX, Emin=MIN_EMIN):
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):.2g}"
 
 
 def _cut(length: Fraction, log2_factor: float) -> Fraction:
