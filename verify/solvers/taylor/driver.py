@@ -176,10 +176,10 @@ def _propagate(
     numbers = arithmetic(problem.rung)
     zero = numbers.array([Fraction(0)])
     integrator.time = zero[0]
-    integrator.state[:] = numbers.array(problem.initial)
+    integrator.state[:] = numbers.array(problem.initial_momenta)
     integrator.pars[:] = numbers.array(problem.parameters)
     linearised = Linearised(problem)
-    rate = linearised.fastest([float(value) for value in problem.initial])
+    rate = linearised.fastest([float(value) for value in problem.initial_momenta])
     if not isfinite(rate):
         return Outcome.NON_FINITE, 0, [], 0.0
     # In these units the motion is of size one, also one that is at rest when it begins.

@@ -90,7 +90,7 @@ class Ensemble:
 
     def start(self) -> tuple[Lane, ...]:
         """Every lane at its initial state."""
-        return tuple(Lane(Fraction(0), problem.initial) for problem in self.problems)
+        return tuple(Lane(Fraction(0), problem.initial_momenta) for problem in self.problems)
 
     def advance(self, lanes: Sequence[Lane], until: Sequence[Fraction]) -> tuple[Lane, ...]:
         """Every lane that goes on, at its time in ``until``: numbers of the rung, in its own units.
