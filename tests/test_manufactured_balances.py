@@ -107,7 +107,7 @@ class ClockOff(Solver):
             value + self.by * (state == "u1")
             for state, value in zip(problem.form.states, problem.initial_momenta, strict=True)
         ]
-        return Taylor().solve(replace(problem, initial=tuple(start)))
+        return Taylor().solve(replace(problem, initial_momenta=tuple(start)))
 
 
 @pytest.mark.parametrize("name", [EULER, pytest.param(KIRCHHOFF, marks=pytest.mark.slow)])

@@ -700,7 +700,7 @@ def in_21_coefficients(posed: Problem) -> Problem:
     form = replace(form, parameters=form.entering())
     parameters = tuple(numbers[name] for name in form.parameters)
     initial = tuple(known[name] for name in states)
-    return replace(posed, form=form, parameters=parameters, initial=initial)
+    return replace(posed, form=form, parameters=parameters, initial_momenta=initial)
 
 
 def answered(posed: Problem) -> Run:
