@@ -80,7 +80,7 @@ def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
 
 
 def test_code_for_mpfr_numbers_is_not_stored(folder: Path) -> None:
-    """What has addresses of this process in it is of no use to another."""
+    """Code with addresses of this process in it is of no use to another."""
     compile_afresh("mp237")
     assert files(folder) == []
 
@@ -106,7 +106,7 @@ def _beheaded(file: Path) -> None:
 
 
 def _one_bit(file: Path) -> None:
-    """In the machine code, at the time that the file had: no stamp tells of it."""
+    """Flip a bit of the machine code and keep the time of the file: no stamp shows the change."""
     before, content = file.stat(), bytearray(file.read_bytes())
     content[len(content) // 2] ^= 1
     file.write_bytes(content)
@@ -144,7 +144,7 @@ def test_damaged_code_is_set_aside_with_one_warning(
 
 
 def test_one_damaged_folder_is_kept(folder: Path) -> None:
-    """What was set aside before makes room for what is set aside now."""
+    """An earlier folder set aside makes room for the new one."""
     for _ in range(3):
         compile_afresh()
         _truncated(*files(folder))
@@ -153,7 +153,7 @@ def test_one_damaged_folder_is_kept(folder: Path) -> None:
 
 
 def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) -> None:
-    """Of two processes that share a damaged cache one says so, and both come to their answers."""
+    """Two processes that share a damaged cache both come to their answers, and warn once."""
     script = (
         "import sys\nfrom verify.run import run\n"
         "for scene in sys.argv[1:]:\n"
@@ -180,7 +180,7 @@ def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) 
 def test_only_files_of_the_user_s_own_are_read(
     folder: Path, fault: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is loaded that anybody else could have written; it is compiled instead."""
+    """A file that anybody else could have written is not loaded; the integrator is compiled."""
     compile_afresh()
     (file,) = files(folder)
     if fault == "writable by all":

@@ -50,7 +50,7 @@ WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
 @pytest.mark.parametrize("code", CODES)
 def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
-    """Whatever the code, the verdict is a fail whose reason names the exit."""
+    """The verdict is a fail whose reason names the exit, whatever the code."""
     (verdict,) = way(lambda problem: sys.exit(code)).verdicts
     assert verdict.verdict is Status.FAIL
     assert verdict.outcome == Outcome.RAISED.value
@@ -66,7 +66,7 @@ def test_sys_exit_in_a_solver_class_is_a_failed_solver(code: Any) -> None:
 
 
 def test_sys_exit_in_the_answer_is_a_failed_solver() -> None:
-    """Also where the answer is an object that is asked for its numbers later."""
+    """An answer may be an object, which leaves when it is asked for its numbers."""
     (verdict,) = verify.check("euler/rest", lambda problem: Array()).verdicts
     assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
 

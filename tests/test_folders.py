@@ -1,4 +1,4 @@
-"""One run at a time in a folder, and nothing published outside a checkout."""
+"""A folder takes one run at a time, and only a checkout is published from."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def short(tmp_path: Path) -> Path:
 
 
 def test_a_folder_that_was_made_for_a_lock_goes_with_it(tmp_path: Path) -> None:
-    """What was there before stays, and what came into it meanwhile too."""
+    """A folder that was there before stays, and so does one that is no longer empty."""
     with alone_in(tmp_path / "new" / "nested"):
         assert (tmp_path / "new" / "nested" / LOCK).exists()
     assert list(tmp_path.iterdir()) == []
@@ -160,7 +160,7 @@ MEASURED = [
 
 
 def test_every_option_of_publish_is_here() -> None:
-    """What `publish` may be asked for is what these tests ask for."""
+    """These tests ask for all that `publish` may be asked for."""
     from verify.cli.arguments import parse
 
     known = vars(parse(["publish"])).keys()
@@ -207,7 +207,7 @@ def test_a_folder_of_one_s_own_is_published_anywhere(
 def test_the_reports_of_the_checkout_are_meant_below_it_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """From a folder of the checkout `publish` finds the reports that stand beside it."""
+    """`publish` finds the reports of the checkout from any folder of it."""
     from verify.cli.folders import reports_folder
 
     (tmp_path / "pyproject.toml").write_text('[project]\nname = "taylor-verify"\n')

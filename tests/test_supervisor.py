@@ -141,7 +141,7 @@ def test_an_interrupt_ends_them(program: Path, hidden: Path) -> None:
 def test_the_death_of_the_caller_ends_them(
     program: Path, hidden: Path, number: signal.Signals
 ) -> None:
-    """Also where the caller has no time left for anything."""
+    """A caller that is killed has no time for anything, and its program ends all the same."""
     program.write_text(HIDES + HANG)
     script = f"from verify.run import run\nrun('euler/rest', {name(program)!r})\n"
     with subprocess.Popen([sys.executable, "-c", script]) as caller:
@@ -159,7 +159,7 @@ def test_the_death_of_the_caller_ends_them(
 
 
 def test_other_children_of_the_caller_are_left_alone(program: Path, hidden: Path) -> None:
-    """What the caller has started itself is no process of the program."""
+    """A process that the caller has started itself is no process of the program."""
     with subprocess.Popen(["sleep", "600"], start_new_session=True) as own:
         try:
             assert solve(program, HIDES + TELL).outcome is Outcome.FINISHED
@@ -199,7 +199,7 @@ def test_a_system_that_cannot_says_so(
     outcome: Outcome,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Where nobody adopts orphans, the session ends, and the detail says what may be left."""
+    """The session ends where nobody adopts orphans, and the detail says what may be left."""
     supervised_by(program.parent, "sys.platform = 'other'", monkeypatch)
     found = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
     assert found.outcome is outcome
@@ -213,7 +213,7 @@ def test_a_process_that_cannot_be_ended_is_named(
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Of another user, say: the run does not wait for ever, and a warning has the numbers."""
+    """The run does not wait for ever for a process of another user; a warning has its number."""
     changes = "_kill = lambda pid: None\n_PATIENCE = 0.5"
     supervised_by(program.parent, changes, monkeypatch)
     found = solve(program, HIDES + TELL)

@@ -62,7 +62,7 @@ def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
 
 
 def kept(resume: bool, asked: list[Job] = ASKED, out: Path | None = None) -> int:
-    """How many of these jobs a run would find finished."""
+    """Count the jobs that a run would find finished."""
     with unfinished(asked, out, resume) as store:
         return sum(store.recall(job) is not None for job in asked) if store else 0
 
@@ -75,7 +75,7 @@ def keep(out: Path | None = None) -> None:
 
 
 def test_a_run_begins_anew_unless_it_is_resumed(cache: Path) -> None:
-    """What is kept is there for the same run with --resume, and gone after a run without."""
+    """The same run with --resume finds everything; a run without removes it."""
     keep()
     assert kept(resume=True) == kept(resume=True) == 2
     assert kept(resume=False) == 0
@@ -147,7 +147,7 @@ def _one_digit(content: bytes) -> bytes:
 
 
 def _pickled(content: bytes) -> bytes:
-    """What would run a command if it were unpickled."""
+    """A pickle that fails the test if it is loaded."""
     return pickle.dumps(_Trap())
 
 

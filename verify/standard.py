@@ -71,7 +71,7 @@ def run_all(
 
 
 def _run_or_recall(store: Unfinished | None, job: Job) -> list[Judgement]:
-    """One of several: kept as soon as it is finished, and not run again if it is kept."""
+    """Run a job of several, unless it is in the store, and store it as soon as it is finished."""
     found = store.recall(job) if store else None
     if found is None:
         found = _run(job)

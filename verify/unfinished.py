@@ -85,9 +85,9 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
     place = os.path.abspath(out) if out is not None else None
     run = _digest(repr((list(asked), os.getcwd(), place)).encode())
     store = Unfinished(user_cache_path("taylor-verify") / "unfinished" / run[:32])
-    with ExitStack() as held:
+    with ExitStack() as stack:
         try:
-            held.enter_context(alone_in(store.folder))
+            stack.enter_context(alone_in(store.folder))
             if not resume:
                 for file in store.folder.glob(f"*{_SUFFIX}"):
                     file.unlink()
@@ -103,11 +103,11 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
 def _written(judgements: Sequence[Judgement]) -> bytes:
     rows = [
         {
-            "verdicts": [vars(verdict) for verdict in one.verdicts],
-            "record": one.record and one.record.document(),
-            "costs": dict(one.costs),
+            "verdicts": [vars(verdict) for verdict in judgement.verdicts],
+            "record": judgement.record and judgement.record.document(),
+            "costs": dict(judgement.costs),
         }
-        for one in judgements
+        for judgement in judgements
     ]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
     text = json.dumps(rows).encode()
@@ -123,11 +123,11 @@ def _read(content: bytes) -> list[Judgement]:
         raise ValueError("expected the digest of the content")
     return [
         Judgement(
-            tuple(_verdict(row) for row in one["verdicts"]),
-            None if one["record"] is None else _record(one["record"]),
-            costs=one["costs"],
+            tuple(_verdict(row) for row in judgement["verdicts"]),
+            None if judgement["record"] is None else _record(judgement["record"]),
+            costs=judgement["costs"],
         )
-        for one in json.loads(text)
+        for judgement in json.loads(text)
     ]
 
 

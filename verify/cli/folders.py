@@ -29,9 +29,9 @@ def alone_in(folder: Path | None, option: str = "--out") -> Iterator[None]:
     if folder is None:
         yield
         return
-    with ExitStack() as held:
+    with ExitStack() as stack:
         try:
-            held.enter_context(folder_lock.alone_in(folder))
+            stack.enter_context(folder_lock.alone_in(folder))
         except folder_lock.Occupied as error:
             raise WrongCall(f"{error} ({option})") from error
         except OSError as error:

@@ -139,7 +139,7 @@ def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
 
 @dataclass(frozen=True)
 class _Ended:
-    """How a program ended, what it answered, and the last of what it had to say on stderr.
+    """The end of a program: its outcome, its answer, and the last of its words on stderr.
 
     ``seconds`` it ran; ``left`` says which of its processes are not known to have ended.
     """
@@ -251,7 +251,7 @@ class _Talk:
         self.has_ended = False
 
     def listen(self, deadline: float, longest: int) -> tuple[Outcome, str]:
-        """Until the program has ended, or was too long about it or too long in it."""
+        """Exchange question and answer until the program ends, its time is up, or it says too much."""
         with selectors.DefaultSelector() as waiting:
             self._register(waiting)
             while waiting.get_map():

@@ -111,18 +111,18 @@ def _bury(program: int = 0) -> int | None:
 
     Raises ChildProcessError if there is no child at all.
     """
-    found = None
+    exit_status = None
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)
         except ChildProcessError:
-            if found is None:
+            if exit_status is None:
                 raise
-            return found
+            return exit_status
         if not pid:
-            return found
+            return exit_status
         if pid == program:
-            found = os.waitstatus_to_exitcode(status)
+            exit_status = os.waitstatus_to_exitcode(status)
 
 
 def _end_descendants(deaths: int) -> str:
@@ -149,11 +149,11 @@ def _descendants() -> list[int]:
         parent = _parent(name)
         if parent is not None:
             children.setdefault(parent, []).append(int(name))
-    found, last = [], [os.getpid()]
+    descendants, last = [], [os.getpid()]
     while last:
         last = [child for parent in last for child in children.get(parent, ())]
-        found += last
-    return found
+        descendants += last
+    return descendants
 
 
 def _numbers() -> list[str]:
@@ -174,7 +174,7 @@ def _parent(pid: str) -> int | None:
 
 
 def _end_session(program: int) -> str:
-    """Where orphans go to another process than this: end the session of the program."""
+    """End the session of the program, on a system where orphans go to another process."""
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(program, signal.SIGKILL)
     with suppress(ChildProcessError):

@@ -43,11 +43,11 @@ def stored(make: Callable[..., Any], system: Any, **options: Any) -> Any:
     """
     heyoka_cache_off()
     file = cache_folder() / _name(make, system, options)
-    found = _read(file)
-    if found is None:
-        found = make(system, **options)
-        _write(file, found)
-    return found
+    integrator = _read(file)
+    if integrator is None:
+        integrator = make(system, **options)
+        _write(file, integrator)
+    return integrator
 
 
 def heyoka_cache_off() -> None:
@@ -113,14 +113,14 @@ def _read(file: Path) -> Any:
         _set_aside(file.parent, number)
         return None
     try:
-        found = pickle.loads(data)
+        integrator = pickle.loads(data)
     except Exception as error:  # whole, but of a library that has changed: it is made anew
         _log.debug("%s cannot be loaded: %s", file, error)
         return None
     with suppress(OSError):
         # The files in use are the youngest, whatever filesystem keeps no times of access.
         os.utime(file)
-    return found
+    return integrator
 
 
 def _own_bytes(file: Path) -> bytes | None:
@@ -191,9 +191,9 @@ def _prune(folder: Path) -> None:
 
 
 def _files(folder: Path) -> list[tuple[str, os.stat_result]]:
-    found = []
+    files = []
     for entry in os.scandir(folder):
         # Another process may remove it at the same moment.
         with suppress(FileNotFoundError):
-            found.append((entry.path, entry.stat()))
-    return found
+            files.append((entry.path, entry.stat()))
+    return files
