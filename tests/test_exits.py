@@ -42,8 +42,7 @@ class Array:
 
 WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
     "check": lambda solve: verify.check("euler/rest", solve),
-    "run": lambda solve: verify.run("euler/rest", solve),
-    "run a Callback": lambda solve: verify.run("euler/rest", Callback(solve)),
+    "run": lambda solve: verify.run("euler/rest", Callback(solve)),
 }
 
 

@@ -17,6 +17,7 @@ from verify import standard
 from verify import unfinished as module
 from verify.job import Job, jobs
 from verify.run import run
+from verify.solvers.solver import Callback
 from verify.unfinished import unfinished
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
@@ -43,8 +44,8 @@ def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
         run("euler/generic"),
         run("kirchhoff/whole-motion"),
         run("euler/generic", "scipy:RK45?rtol=1e-3"),
-        run("euler/generic", lambda problem: [[float("nan")] * 3] * len(problem.times)),
-        run("euler/generic", lambda problem: 1 / 0),
+        run("euler/generic", Callback(lambda problem: [[float("nan")] * 3] * len(problem.times))),
+        run("euler/generic", Callback(lambda problem: 1 / 0)),
     ]
     with unfinished(ASKED, None, resume=False) as store:
         assert store is not None

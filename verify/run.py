@@ -5,43 +5,34 @@ The module is callable, so that `verify.run(scene, solver, rung)` is this chain.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from verify.callable_module import make_callable
 from verify.judge.costs import SOLVING, Costs, total
 from verify.judge.judgement import Judgement, judgement, unjudged
 from verify.judge.verdict import Status
-from verify.models.problem import NotRepresentable, Problem, pose
+from verify.models.problem import NotRepresentable, pose
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.registry import solver_named
-from verify.solvers.solver import Callback, Solver, raised
+from verify.solvers.solver import Solver, raised
 
 
-def run(
-    scene: Scene | str,
-    solver: Solver | Callable[[Problem], Any] | str = "taylor",
-    rung: Rung | str = "f64",
-) -> Judgement:
+def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64") -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
-    The scene is a Scene, a path or the name of a shipped scene; the solver a Solver, a callable as
-    `check` takes it, or a name such as ``taylor?tol=1e-9`` or ``process:./mine``; the rung a Rung or
-    ``f32 f64 f80 f128 mpN``. The Judgement has a Verdict for each tracked and each conserved quantity.
-    That a solver fails, or that this machine lacks a rung, is a verdict.
+    The scene is a Scene, a path or the name of a shipped scene; the solver a Solver or a name such as
+    ``taylor?tol=1e-9`` or ``process:./mine``; the rung a Rung or ``f32 f64 f80 f128 mpN``. The Judgement
+    has a Verdict for each tracked and each conserved quantity. That a solver fails, or that this machine
+    lacks a rung, is a verdict.
 
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
     no solver or no rung. What the rung cannot hold is a verdict, not an error.
     """
     scene = load(scene) if isinstance(scene, str) else scene
-    if isinstance(solver, str):
-        solver = solver_named(solver)
-    elif not isinstance(solver, Solver):
-        solver = Callback(solver)
+    solver = solver_named(solver) if isinstance(solver, str) else solver
     rung = rung_named(rung) if isinstance(rung, str) else rung
     if missing := solver.unavailable(rung):
         return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing)
