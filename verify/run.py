@@ -17,7 +17,7 @@ from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.registry import solver_named
-from verify.solvers.solver import Solver
+from verify.solvers.solver import Solver, raised
 
 
 def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64") -> Judgement:
@@ -44,7 +44,11 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
         return unjudged(scene, solver, rung, Status.UNAVAILABLE, unsuited)
     costs = Costs()
     with costs.of(SOLVING):
-        trajectory = solver.solve(problem)
+        try:
+            trajectory = solver.solve(problem)
+        except SystemExit as end:
+            # A solver of one's own: its end is a failed run, and not the end of the caller.
+            trajectory = raised(end)
     found = judgement(problem, solver, trajectory)
     return replace(found, costs=total([costs.seconds, found.costs]))
 
