@@ -41,7 +41,9 @@ def _print(answer: Answer, as_json: bool) -> int:
     if as_json:
         import json
 
-        print_out(json.dumps(answer.document, indent=1, allow_nan=False))
+        text = json.dumps(answer.document, indent=1, allow_nan=False)
+        # JSON escapes every other control character by itself.
+        print_out(text.replace("\x7f", "\\u007f"))
     else:
         print_out(answer.text())
     for message in answer.messages:
@@ -66,6 +68,8 @@ def _told(error: Exception) -> str:
 
     if isinstance(error, WrongCall | Refused):
         return str(error)
+    if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
+        return f"expected a package to load, got {error}"
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"

@@ -38,8 +38,11 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     """
     if route == "taylor":
         return TaylorSolution(scene)
-    if route is not None:
+    if route in CLOSED_ROUTES:
         return _closed_form(scene, route)
+    if route is not None:
+        known = ", ".join((*CLOSED_ROUTES, "taylor"))
+        raise ValueError(f"expected a route ({known}), got {route!r:.60}")
     try:
         return _closed_form(scene, "arb")
     except NoClosedForm:
