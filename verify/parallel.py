@@ -116,10 +116,13 @@ def available_cores() -> int:
 def fault(error: BaseException) -> str:
     """One line for an error that nobody foresaw: what it is, and where in this package it rose.
 
-    Memory that runs out is the machine's or the question's, and no fault of ours.
+    Memory that runs out is the machine's or the question's, and a library that does not load is the
+    machine's: neither is called a fault of this package.
     """
     if isinstance(error, MemoryError):
         return NO_MEMORY
+    if isinstance(error, ImportError):
+        return f"expected a library to load (installed whole, with memory for it), got {error}"
     package = Path(__file__).parent
     frames = [
         f"{Path(frame.filename).relative_to(package)}:{frame.lineno}"

@@ -68,8 +68,6 @@ def _told(error: Exception) -> str:
 
     if isinstance(error, WrongCall | Refused):
         return str(error)
-    if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
-        return f"expected a package to load, got {error}"
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"

@@ -51,7 +51,8 @@ class Callback(Solver):
     """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
-    is. A Python or NumPy number, a Fraction or an mpf is taken exactly.
+    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. A masked number and a table with
+    named columns are refused.
     """
 
     answer: Callable[[Problem], Any]
@@ -61,7 +62,10 @@ class Callback(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         try:
-            states = np.asarray(self.answer(problem))
+            answered = self.answer(problem)
+            if fault := _no_array(answered):
+                return Trajectory(Outcome.MISSHAPEN, detail=fault)
+            states = np.asarray(answered)
         except Exception as error:  # a stranger's code: whatever it raises is its outcome
             return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
         seconds = perf_counter() - began
@@ -80,6 +84,23 @@ class Callback(Solver):
             for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
         }
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
+
+
+def _no_array(answered: Any) -> str:
+    """Why what would become an array of numbers is none; empty where it is one.
+
+    NumPy drops a mask, and a table's columns have names that say more than their order.
+    """
+    if hasattr(answered, "columns"):
+        kind = type(answered).__name__
+        return (
+            f"expected an array of states, got a {kind} (hand over its columns in the order of a "
+            "state, as an array)"
+        )
+    rows = answered if isinstance(answered, list | tuple) else [answered]
+    masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
+    masked = sum(int(np.sum(mask)) for mask in masks)
+    return f"expected states without a mask, got {masked} masked numbers" if masked else ""
 
 
 def columns(problem: Problem) -> list[tuple[str, int]]:
