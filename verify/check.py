@@ -39,8 +39,8 @@ def check(
     if not isinstance(solve_or_file, str | PathLike):
         kind = type(solve_or_file).__name__
         raise ValueError(
-            f"expected a callable solve(problem) or a trajectory file, got the {kind} "
-            f"{solve_or_file!r:.60} (write it to a file, or return it from a callable)"
+            f"expected a callable solve(problem) or a trajectory file, got {kind} "
+            "(write it to a file, or return it from a callable)"
         )
     from verify.judge.answer import judge_file
     from verify.solvers.file import read

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 
 from verify.cli.answer import Answer, WrongCall, files_written
@@ -137,7 +138,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
     from verify.publish import worst as pages
     from verify.scenes.library import WORST, cases_directory
 
-    if not seconds > 0:
+    if not 0 < seconds < inf:
         raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
     found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}
