@@ -9,6 +9,7 @@ from typing import Final
 
 from verify.judge.judgement import Judgement
 from verify.judge.verdict import Status, Verdict
+from verify.scenes.faults import brief
 from verify.scenes.positive import positive
 
 Tolerance = float | Mapping[str, float] | None
@@ -80,7 +81,7 @@ def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None
     if not isinstance(only, str) and not (
         isinstance(only, Collection) and all(map(_is_text, only))
     ):
-        raise ValueError(f"expected names of quantities, got {only!r:.60} @ only")
+        raise ValueError(f"expected names of quantities, got {brief(only)} @ only")
     wanted = [only] if isinstance(only, str) else list(only)
     _check_known(wanted, [*verdicts, CONSERVED], "only")
     return [demand for demand in found if demand.verdict.quantity in wanted]

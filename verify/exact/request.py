@@ -9,6 +9,7 @@ from numbers import Rational
 from operator import index
 from typing import Any, Final
 
+from verify.scenes.faults import brief
 from verify.scenes.table import exact_number
 
 MOST_DIGITS: Final = 10_000
@@ -22,11 +23,11 @@ def exact_times(times: Iterable[Any]) -> list[Fraction]:
     """
     expected = "a sequence of times"
     if isinstance(times, str | bytes | set | frozenset) or hasattr(times, "columns"):
-        raise ValueError(f"expected {expected}, got the {_type(times)} {times!r:.60}")
+        raise ValueError(f"expected {expected}, got the {_type(times)} {brief(times)}")
     try:
         listed = list(times)
     except TypeError:
-        raise ValueError(f"expected {expected}, got {times!r:.60}") from None
+        raise ValueError(f"expected {expected}, got {brief(times)}") from None
     return [_exact_time(time, f"times[{i}]") for i, time in enumerate(listed)]
 
 
@@ -37,7 +38,7 @@ def check_digits(digits: Any) -> int:
     except TypeError:
         number = None
     if number is None or not 1 <= number <= MOST_DIGITS:
-        raise ValueError(f"expected digits from 1 to {MOST_DIGITS}, got {digits!r:.60} @ digits")
+        raise ValueError(f"expected digits from 1 to {MOST_DIGITS}, got {brief(digits)} @ digits")
     return number
 
 
@@ -45,7 +46,7 @@ def _exact_time(time: Any, place: str) -> Fraction:
     try:
         return _exact(time)
     except (ValueError, OverflowError) as error:
-        raise ValueError(f"expected {error}, got {time!r:.60} @ {place}") from None
+        raise ValueError(f"expected {error}, got {brief(time)} @ {place}") from None
 
 
 def _exact(time: Any) -> Fraction:

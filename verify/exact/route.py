@@ -8,6 +8,7 @@ from typing import Final
 
 from verify.exact.solution import NoClosedForm, Solution
 from verify.exact.taylor import TaylorSolution
+from verify.scenes.faults import brief
 from verify.scenes.scene import Scene
 
 CLOSED_ROUTES: Final = ("arb", "mpmath")
@@ -42,7 +43,7 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
         return _closed_form(scene, route)
     if route is not None:
         known = ", ".join((*CLOSED_ROUTES, "taylor"))
-        raise ValueError(f"expected a route ({known}), got {route!r:.60}")
+        raise ValueError(f"expected a route ({known}), got {brief(route)}")
     try:
         return _closed_form(scene, "arb")
     except NoClosedForm:

@@ -62,6 +62,15 @@ def cut(text: str) -> str:
     return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
 
 
+def brief(value: object) -> str:
+    """What a Python caller handed over, on one line and cut short."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python prints no integer of more than 4300 digits
+        text = f"a number of the type {type(value).__name__}"
+    return cut(" ".join(text.split()))
+
+
 def _toml(value: object, depth: int = 0) -> str:
     if isinstance(value, bool):
         return str(value).lower()

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Final
 
-from verify.scenes.faults import Refused
+from verify.scenes.faults import Refused, brief
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
@@ -56,7 +56,7 @@ def find(scene: str | os.PathLike[str]) -> Path:
     """
     expected = "a path or the name of a shipped scene"
     if not isinstance(scene, str | os.PathLike):
-        raise Refused([f"expected {expected}, got the {type(scene).__name__} {scene!s:.60}"])
+        raise Refused([f"expected {expected}, got the {type(scene).__name__} {brief(scene)}"])
     path = Path(scene)
     name = str(scene)
     try:

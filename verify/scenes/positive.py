@@ -7,6 +7,8 @@ from math import isfinite
 from numbers import Real
 from typing import Any
 
+from verify.scenes.faults import brief
+
 
 def positive(value: Any, place: str, what: str = "a positive number") -> float:
     """Return the number as a double.
@@ -20,5 +22,5 @@ def positive(value: Any, place: str, what: str = "a positive number") -> float:
     except (OverflowError, ValueError):
         number = 0.0
     if not (number > 0 and isfinite(number)):
-        raise ValueError(f"expected {what}, got {value!r:.60} @ {place}")
+        raise ValueError(f"expected {what}, got {brief(value)} @ {place}")
     return number

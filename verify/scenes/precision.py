@@ -138,3 +138,11 @@ def float_text(value: Fraction) -> str:
     from mpmath import libmp
 
     return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
+
+
+def double_text(value: Fraction | float) -> str:
+    """Every digit of the double nearest to the value; a short decimal where there is none."""
+    try:
+        return repr(float(value))
+    except OverflowError:
+        return float_text(Fraction(value))

@@ -122,11 +122,14 @@ def _own_degree(rung: Rung) -> int:
 def named(name: str) -> Odefun:
     """The integrator at its tolerance and degree.
 
-    Raises ValueError for a method that there is not, a tolerance that is not positive, and a degree
+    Raises ValueError for a method that there is not, a tolerance outside 0 to 1, and a degree
     that is no whole number from 2 to a thousand.
     """
     asked = options(name, METHODS, ["tol", "degree"])
     tol = asked.positive("tol", "") if "tol" in asked else None
+    if tol is not None and not tol <= 1:
+        # mpmath would ask for a negative number of bits, and never end.
+        raise ValueError(f"expected a tolerance of at most 1, got {asked.values['tol']!r} @ tol")
     if "degree" not in asked:
         return Odefun(name, tol)
     degree = asked.positive("degree", "")

@@ -89,6 +89,7 @@ def solver_named(name: str) -> Solver:
 
 def as_solver(solver: Solver | str) -> Solver:
     """Return a Solver as it is, and that of a name; ValueError for anything else."""
+    from verify.scenes.faults import brief
     from verify.solvers.solver import Solver
 
     if isinstance(solver, str):
@@ -96,7 +97,7 @@ def as_solver(solver: Solver | str) -> Solver:
     if isinstance(solver, Solver):
         return solver
     mend = " (a callable is judged by verify.check)" if callable(solver) else ""
-    raise ValueError(f"expected a Solver or the name of one, got {solver!r:.60}{mend}")
+    raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
 
 
 def check_name(name: str) -> None:
