@@ -13,6 +13,7 @@ import pytest
 from mpmath import mp
 
 import verify
+from verify.cli import main
 from verify.demand import demands
 from verify.explain import explanation
 from verify.judge.convergence import sweep
@@ -277,6 +278,34 @@ def test_settings_that_never_end_are_refused() -> None:
         ValueError, match="expected a whole number from 2 to 1000, got '1e9' @ degree"
     ):
         check_name("mpmath:odefun?degree=1e9")
+
+
+# What is not ours.
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (MemoryError(), "expected more memory, got none left"),
+        (ImportError("libquadmath.so.0: failed to map segment"), "expected a library to load"),
+    ],
+)
+def test_the_machines_faults_are_not_called_ours(
+    error: Exception, expected: str, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    """Memory that runs out, and a library that does not load, are told as what they are."""
+
+    def break_down(*_: Any) -> None:
+        raise error
+
+    monkeypatch.setattr("verify.run.pose", break_down)
+    assert main(["run", SCENE]) == 2
+    told = capsys.readouterr().err
+    assert expected in told
+    assert "a fault of taylor-verify" not in told
+    monkeypatch.setattr("verify.run.pose", lambda *_: 1 / 0)
+    assert main(["run", SCENE]) == 2
+    assert "a fault of taylor-verify" in capsys.readouterr().err
 
 
 # Results.
