@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from verify.callable_module import make_callable
@@ -12,14 +12,14 @@ from verify.models.problem import Problem
 from verify.run import run
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback
 
 
 def check(
-    scene: Scene | str,
-    solve_or_file: Callable[[Problem], Any] | str | Path,
+    scene: Scene | str | PathLike[str],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
 ) -> Judgement:
@@ -32,16 +32,20 @@ def check(
     A file (CSV, NPZ, Parquet, JSON; see solvers.file) was made in the arithmetic of ``rung``. Its
     judgement is a judge.answer.FileJudgement, which says what was found out about its conventions;
     they are corrected with ``accept_conventions`` only. Raises scenes.faults.Refused for a file that
-    cannot be judged, with every fault of it.
+    cannot be judged, with every fault of it, and ValueError for what is neither a callable nor a file.
     """
-    if not isinstance(solve_or_file, str | Path):
+    if callable(solve_or_file):
         return run(scene, Callback(solve_or_file), rung)
+    if not isinstance(solve_or_file, str | PathLike):
+        kind = type(solve_or_file).__name__
+        raise ValueError(
+            f"expected a callable solve(problem) or a trajectory file, got {kind} "
+            "(write it to a file, or return it from a callable)"
+        )
     from verify.judge.answer import judge_file
     from verify.solvers.file import read
 
-    scene = load(scene) if isinstance(scene, str) else scene
-    rung = rung_named(rung) if isinstance(rung, str) else rung
-    return judge_file(read(solve_or_file), scene, rung, accept_conventions)
+    return judge_file(read(solve_or_file), as_scene(scene), rung_named(rung), accept_conventions)
 
 
 make_callable(__name__, check)

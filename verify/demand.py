@@ -9,6 +9,8 @@ from typing import Final
 
 from verify.judge.judgement import Judgement
 from verify.judge.verdict import Status, Verdict
+from verify.scenes.faults import brief
+from verify.scenes.positive import positive
 
 Tolerance = float | Mapping[str, float] | None
 Only = str | Collection[str] | None
@@ -76,6 +78,10 @@ def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None
         return found
     if only == CONSERVED:
         return [demand for demand in found if demand.is_conserved]
+    if not isinstance(only, str) and not (
+        isinstance(only, Collection) and all(map(_is_text, only))
+    ):
+        raise ValueError(f"expected names of quantities, got {brief(only)} @ only")
     wanted = [only] if isinstance(only, str) else list(only)
     _check_known(wanted, [*verdicts, CONSERVED], "only")
     return [demand for demand in found if demand.verdict.quantity in wanted]
@@ -87,10 +93,11 @@ def _tolerances(tolerance: Tolerance, quantities: Collection[str]) -> Mapping[st
     if not isinstance(tolerance, Mapping):
         tolerance = dict.fromkeys(quantities, tolerance)
     _check_known(list(tolerance), list(quantities), "tolerance")
-    for value in tolerance.values():
-        if isinstance(value, bool) or not 0 < value < inf:
-            raise ValueError(f"expected a positive number, got {value!r} @ tolerance")
-    return tolerance
+    return {name: positive(value, "tolerance") for name, value in tolerance.items()}
+
+
+def _is_text(name: object) -> bool:
+    return isinstance(name, str)
 
 
 def _check_known(names: Sequence[str], known: Sequence[str], place: str) -> None:

@@ -139,7 +139,9 @@ def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Convention
         return _alone(scene, file, rung, Status.UNDECIDED, why)
     sides = [_side(part, rung, file.name) for part in answer.sides()]
     unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
-    return unfinished or _united(sides, file, float(scene.clock.start))
+    if unfinished is not None:
+        return unfinished
+    return _united(sides, file, float(scene.clock.start))
 
 
 def _alone(scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str) -> Judgement:

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -44,12 +45,15 @@ from verify.judge.rounding_class import (
     told,
 )
 from verify.judge.verdict import Status, Verdict, exit_status
+from verify.scenes.limit import Limit
+from verify.scenes.regular_file import read_bytes
 
 _TEXTS: Final = ("scene", "solver", "rung", "setting", "quantity", "outcome", "unit")
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
 _COUNTS: Final = ("steps", "evaluations")
 # From the best: 0 all passed, 3 nothing shown, 1 failed.
 _GRADES: Final = (0, 3, 1)
+_MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 
 
 @dataclass(frozen=True)
@@ -157,11 +161,12 @@ def _row(verdict: Verdict, expected: str, got: str) -> Departure:
 def load(file: Path | str) -> tuple[Verdict, ...]:
     """The verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
 
-    Raises OSError for a file that cannot be read, and ValueError, with what was expected and where,
-    for one that holds something else: a baseline that is half understood would let all pass.
+    Raises scenes.faults.Refused for a file that cannot be read, and ValueError, with what was expected
+    and where, for one that holds something else: a baseline that is half understood would let all pass.
     """
+    content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:
-        document = json.loads(Path(file).read_text(encoding="utf-8"), parse_constant=_no_number)
+        document = _parsed(content)
         rows = document.get("verdicts") if isinstance(document, Mapping) else None
         if not isinstance(rows, list):
             raise ValueError('expected an object with "verdicts", a list')
@@ -170,6 +175,13 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
     return found
+
+
+def _parsed(content: bytes) -> Any:
+    try:
+        return json.loads(content.decode(), parse_constant=_no_number)
+    except RecursionError:
+        raise ValueError("expected a JSON document, got brackets nested too deeply") from None
 
 
 def _check_once(found: Iterable[Verdict]) -> None:
@@ -215,8 +227,8 @@ def _number(row: Mapping[str, Any], name: str, place: str) -> float | None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"expected a number or null, got {value!r} @ {place}.{name}")
-    if not math.isfinite(value):  # 1e999 is read as infinite
-        raise ValueError(f"expected a finite number or null, got {value!r} @ {place}.{name}")
+    if not abs(value) <= sys.float_info.max:  # 1e999 is read as infinite
+        raise ValueError(f"expected a finite number or null, got {value!r:.60} @ {place}.{name}")
     return float(value)
 
 

@@ -173,7 +173,7 @@ def read_document(file: Path) -> dict[str, Any]:
     """The JSON object in a file; ValueError, with the file, for anything else."""
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
-    except ValueError as fault:
+    except (ValueError, RecursionError) as fault:
         raise ValueError(f"expected a JSON document, got a fault: {fault} @ {file}") from fault
     if not isinstance(document, dict):
         raise ValueError(f"expected a JSON object, got {type(document).__name__} @ {file}")
