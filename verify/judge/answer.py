@@ -283,8 +283,7 @@ class _Answer:
             R = _attitudes(scene, rung, times, bits)
             with mp.workprec(bits):
                 for name, reading in accepted.readings.items():
-                    read = reading.read(quantities.pop(name), R)
-                    quantities["attitude" if name == "quaternion" else name] = read
+                    quantities[name] = reading.read(quantities[name], R)
         return cls(scene, times, quantities)
 
     def sides(self) -> list[_Answer]:
