@@ -21,7 +21,7 @@ from verify.judge.errors import Errors, state_errors
 from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
-from verify.judge.shift import Shift, time_shifts
+from verify.judge.shift import Kind, Shift, time_shifts
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import Problem
 from verify.scenes.mpfr import in_mpfr
@@ -153,6 +153,8 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
         time_shift=shift.time_shift,
         residual=shift.residual,
         shift=shift.kind.value,
+        trend=shift.trend if shift.kind is Kind.DRIFTING else None,
+        remains=None if shift.kind is Kind.NONE else shift.remains,
     )
     return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
 

@@ -24,6 +24,7 @@ from verify.judge.inputs import angular_velocity
 from verify.judge.judgement import Judgement, judgement
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord
+from verify.judge.shift import Kind
 from verify.judge.verdict import Verdict
 from verify.models.problem import Problem
 from verify.scenes.bodies import ImmersedBody
@@ -130,7 +131,9 @@ def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gate
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(exact.scale)
-        return replace(row, time_shift=late, residual=left, shift=shift.kind.value), gate
+        remains = None if shift.kind is Kind.NONE else left
+        row = replace(row, time_shift=late, residual=left, shift=shift.kind.value)
+        return replace(row, remains=remains), gate
 
 
 def _row(

@@ -140,6 +140,8 @@ def initial_verdict(gates: Sequence[Graded], start: float) -> Verdict | None:
         time_shift=None,
         residual=None,
         shift=None,
+        trend=None,
+        remains=None,
     )
 
 

@@ -20,7 +20,7 @@ CONTROLS: Final = f"{data.FOLDER}/controls.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
 _APART: Final = ("seconds", "provenance")
-_SHIFT: Final = ("time_shift", "residual", "shift")
+_SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 
 @dataclass(frozen=True)
