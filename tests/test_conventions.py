@@ -114,7 +114,11 @@ def permuted(sound: Sound) -> Columns:
         (in_milliseconds, "time", "thousandths"),
         (late, "time", "late by 0.0005"),
         (of_another_epoch, "time", "late by 1024"),
-        (permuted, "axes", "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1"),
+        (
+            permuted,
+            "axes",
+            "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1",
+        ),
     ],
 )
 def test_each_convention_is_found_and_mended_only_when_asked(

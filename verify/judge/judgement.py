@@ -22,6 +22,7 @@ from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
 from verify.judge.shift import Kind, Shift, time_shifts
+from verify.judge.unit_quaternion import unit_quaternion
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import Problem
 from verify.scenes.mpfr import in_mpfr
@@ -116,6 +117,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 _state(run, base, errors, shift)
                 for errors, shift in zip(states, shifts, strict=True)
             ]
+            gated += _lengths(run, base)
         with costs.of(CONSERVED):
             work, quick = clock_work(problem.scene), in_mpfr(truth)
             gated += [
@@ -157,6 +159,16 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
         remains=None if shift.kind is Kind.NONE else shift.remains,
     )
     return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+
+
+def _lengths(run: _Run, base: Floor) -> list[Gated]:
+    """The row of quaternions that are no unit quaternions; none where they are."""
+    quaternions = run.trajectory.quantities.get("quaternion")
+    failed = None if quaternions is None else unit_quaternion(quaternions, base)
+    if failed is None:
+        return []
+    errors, attainable, finding = failed
+    return [(_verdict(run, errors, attainable, finding), _gate(errors, attainable))]
 
 
 def _conserved(
