@@ -117,7 +117,6 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 _state(run, base, errors, shift)
                 for errors, shift in zip(states, shifts, strict=True)
             ]
-            gated += _lengths(run, base)
         with costs.of(CONSERVED):
             work, quick = clock_work(problem.scene), in_mpfr(truth)
             gated += [
@@ -130,6 +129,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 )
                 for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
             ]
+            gated += _lengths(run, base)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
     return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
 

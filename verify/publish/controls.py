@@ -262,14 +262,15 @@ def sheet(sights: Iterable[Sight]) -> str:
     writer.writeheader()
     for sight in sights:
         for name, verdict in sight.verdicts.items():
-            twin = sight.sound[name]
+            twin = sight.sound.get(name)
             row = verdict.row() | {
                 "defect": sight.name,
                 "seen": "yes" if sight.is_seen_by(name) else "no",
                 "error_over_bound": sight.over_bound(name),
                 "twin": sight.twin,
-                "twin_verdict": twin.verdict.value,
-                "twin_ratio": twin.ratio,
+                # A sound quaternion is a unit one, and has no row that says so.
+                "twin_verdict": None if twin is None else twin.verdict.value,
+                "twin_ratio": None if twin is None else twin.ratio,
             }
             writer.writerow(row)
     return text.getvalue()
