@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from first_order import engine, explicit
 from mpmath import mp, mpf
 from trajectories import (
     MATRIX,
@@ -31,6 +33,7 @@ from verify.judge.conventions.search import EXPLAINS, conventions
 from verify.judge.verdict import Status
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.motion import Spin
 from verify.scenes.precision import rung
 from verify.scenes.reader import load
 from verify.solvers.file import read
@@ -233,6 +236,111 @@ def test_poor_answers_show_their_conventions(tmp_path: Path) -> None:
     )
     (finding,) = judged(tmp_path, scene, scalar_last(poor)).conventions
     assert "scalar last" in finding.words
+
+
+# What is no convention.
+
+
+def test_one_reflected_component_is_an_error(tmp_path: Path) -> None:
+    """A sign of one component of omega is no change of axes: the attitude in the file is right."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
+    found = judged(tmp_path, "euler/with-attitude", spoiled, accept=True)
+    assert found.conventions == ()
+    assert Status.FAIL in statuses(found)
+    # Nor is it one where omega is all that the file has.
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    assert judged(tmp_path, "euler/with-attitude", alone, accept=True).conventions == ()
+
+
+def test_axes_of_omega_alone_are_no_convention_beside_an_attitude(tmp_path: Path) -> None:
+    """A permutation of omega must be one of the attitude's body axes too; alone in a file it may stand."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+    assert judged(tmp_path, "euler/with-attitude", spoiled, accept=True).conventions == ()
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    (finding,) = judged(tmp_path, "euler/with-attitude", alone).conventions
+    assert finding.subject == "axes"
+    assert finding.words.endswith("other axes: axis 1 is w3, axis 2 is w1, axis 3 is w2")
+
+
+SYMMETRIC = (
+    'title = "Symmetric"\nmodel = "euler"\ntrack = ["omega", "attitude"]\n[body]\n'
+    "inertia = [1.3, 1.3, 0.7]\n[initial]\nomega = [0.5, 0.2, 1.5]\nattitude = [1, 2, -1, 3]\n"
+    "[time]\nend = 20\nsamples = 21\n"
+)
+
+
+@pytest.mark.parametrize("with_attitude", [False, True])
+@pytest.mark.parametrize("angle", [0.3, -0.3])
+def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_path: Path) -> None:
+    """A symmetric body that starts turned about its axis looks late; its initial state fails all the same."""
+    name = tmp_path / "symmetric.toml"
+    name.write_text(SYMMETRIC)
+    scene = load(str(name))
+    assert isinstance(scene.initial, Spin)
+    c, s = np.cos(angle), np.sin(angle)
+    w1, w2, w3 = map(float, scene.initial.omega)
+    turned = tuple(Fraction(v) for v in (float(c * w1 - s * w2), float(s * w1 + c * w2), w3))
+    initial = replace(scene.initial, omega=turned)
+    columns = columns_at(replace(scene, initial=initial), scene.clock.instants)
+    if not with_attitude:
+        columns = {n: columns[n] for n in ("t", *OMEGA)}
+    found = judged(tmp_path, str(name), columns, accept=True)
+    assert found.conventions == ()
+    first = found.verdicts[0]
+    assert (first.quantity, first.verdict) == ("initial state", Status.FAIL)
+
+
+def test_a_body_that_stands_still_has_no_unit_of_time(tmp_path: Path) -> None:
+    """A constant omega is not counted in nanoseconds, in which the truth does not move either."""
+    sound = exact_columns("euler/with-attitude")
+    still = replaced(sound, OMEGA, [rows_of(sound, OMEGA)[0]] * len(sound["t"]))
+    for columns in (still, {n: still[n] for n in ("t", *OMEGA)}):
+        assert judged(tmp_path, "euler/with-attitude", columns).conventions == ()
+
+
+# Honest files of first-order engines, whose later rows are off by far more than a hundredth.
+
+
+def identical(columns: Columns) -> Columns:
+    return columns
+
+
+def all_at_once(columns: Columns) -> Columns:
+    return scalar_last(in_degrees(in_space_axes(columns)))
+
+
+# A start in line with the axes of space shows space axes only after a while.
+@pytest.mark.parametrize(
+    ("scene", "rows"),
+    [("euler/with-attitude", 5), ("euler/with-attitude", 1001), ("euler/nesc-brick", 1001)],
+)
+@pytest.mark.parametrize(
+    ("spoil", "subjects"),
+    [
+        (identical, []),
+        (scalar_last, ["quaternion"]),
+        (conjugate, ["quaternion"]),
+        (in_space_axes, ["omega"]),
+        (in_degrees, ["omega"]),
+        (permuted, ["axes"]),
+        (all_at_once, ["omega", "quaternion"]),
+    ],
+)
+def test_the_first_rows_of_an_engine_decide(
+    scene: str, rows: int, spoil: Callable[[Sound], Columns], subjects: list[str], tmp_path: Path
+) -> None:
+    """Of semi-implicit Euler at h = 0.01 the first five rows suffice, and a long file hides nothing."""
+    file = read(write_csv(tmp_path / "mine.csv", spoil(first_order(scene, rows))))
+    found = conventions(file, load(scene), rung("f64")).findings
+    assert [finding.subject for finding in found] == subjects
+    assert all(finding.is_certain for finding in found)
+
+
+@cache
+def first_order(scene: str, rows: int) -> Columns:
+    return engine(scene, explicit, 0.01, rows)
 
 
 # Readings.
