@@ -274,7 +274,7 @@ SYMMETRIC = (
 @pytest.mark.parametrize("with_attitude", [False, True])
 @pytest.mark.parametrize("angle", [0.3, -0.3])
 def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_path: Path) -> None:
-    """A symmetric body that starts turned about its axis looks late; its initial state fails all the same."""
+    """A symmetric body that starts turned about its axis looks late; its initial state fails."""
     name = tmp_path / "symmetric.toml"
     name.write_text(SYMMETRIC)
     scene = load(str(name))

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from trajectories import VECTORS, columns_at, write_csv
 
 from verify.check import check
 from verify.exact.rates import rates
@@ -431,3 +433,27 @@ def test_a_motion_without_widths_of_its_own_has_that_of_its_rows() -> None:
     rows = np.array([[mpf(1)] * 3], dtype=object)
     motion = Motion({"omega": rows}, np.array([mpf(2)], dtype=object))
     assert list(motion.radius_of("omega")) == [2]
+
+
+@pytest.mark.parametrize("stray", [False, True])
+def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
+    stray: bool, tmp_path: Path
+) -> None:
+    """Omega = B^T x + C y has its shift with a first row that does not share it as without."""
+    scene = load("kirchhoff/whole-motion")
+    instants = scene.clock.instants[:60:3]
+    shift = Fraction(1, 1000)
+    columns = columns_at(scene, [t - (shift if t or not stray else 0) for t in instants])
+    columns = {name: columns[name] for name in VECTORS["omega"]} | {
+        "t": [float(t) for t in instants]
+    }
+    (omega,) = (
+        v
+        for v in check(scene, write_csv(tmp_path / "mine.csv", columns)).verdicts
+        if v.quantity == "omega"
+    )
+    assert omega.shift == "constant"
+    assert omega.time_shift == pytest.approx(1e-3, rel=1e-9)
+    assert omega.residual is not None
+    # Rounding to doubles is left, of Omega and of the times.
+    assert omega.residual == omega.remains <= 1e-13

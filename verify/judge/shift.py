@@ -219,7 +219,9 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
         return
     for robust in (_median, _theil_sen):
         course = robust(single.shift, moving, np.array(compared.run.instants))
-        strays = _strays(single, course)
+        speed = np.sqrt(single.weight) / (float(single.unit) * single.size)
+        across = np.linalg.norm(single.error, axis=1)
+        strays = strays_from(course, single.shift, speed, across)
         if not strays:
             continue
         shared = compared.without(strays)
@@ -230,11 +232,13 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
             yield _Fits.of(shared, start, begin, strays)
 
 
-def _strays(single: Shifted, course: Floats) -> tuple[int, ...]:
-    """The samples that are off a course by an unusual part of the shift; none where they are many."""
-    speed = np.sqrt(single.weight) / (float(single.unit) * single.size)
-    across = np.linalg.norm(single.error, axis=1)
-    off = np.hypot((single.shift - course) * speed, across)
+def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
+    """The samples that are off a course by an unusual part of the shift; none where they are many.
+
+    ``shifts`` are those of single samples, which leave ``across`` of the error, and ``speed`` is the
+    error that a shift of one makes.
+    """
+    off = np.hypot((shifts - course) * speed, across)
     is_off = (off > LEAVES * np.abs(course) * speed) & (off > _UNUSUAL * np.median(off))
     strays = tuple(int(k) for k in np.flatnonzero(is_off))
     few = max(1, int(_STRAYS * len(off)))
