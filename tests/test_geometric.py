@@ -433,7 +433,7 @@ def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
 
 
 def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str]) -> None:
-    """The midpoint rule is a clock that runs slow; splitting moves off the orbit too, which no clock does."""
+    """The midpoint rule is a clock that runs slow; splitting leaves the orbit too, as no clock does."""
 
     def printed(method: str) -> str:
         assert main(["run", "euler/generic", "--solver", f"geometric:{method}?step=0.01"]) == 1
