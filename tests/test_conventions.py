@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from first_order import engine, explicit
+from first_order import engine, explicit, none
 from mpmath import mp, mpf
 from trajectories import (
     MATRIX,
@@ -336,6 +336,15 @@ def test_the_first_rows_of_an_engine_decide(
     found = conventions(file, load(scene), rung("f64")).findings
     assert [finding.subject for finding in found] == subjects
     assert all(finding.is_certain for finding in found)
+
+
+def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: Path) -> None:
+    """The start and the first step are right to a hundredth even where omega never changes."""
+    scene = "euler/with-attitude"
+    columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
+    found = judged(tmp_path, scene, columns)
+    assert [finding.subject for finding in found.conventions] == ["omega", "quaternion"]
+    assert any(note.startswith("no gyroscopic term") for note in found.notes)
 
 
 @cache

@@ -45,7 +45,9 @@ _AS_WELL: Final = 10.0
 # Errors of so many units of roundoff, or of float64's, are not told apart.
 _NOISE_ROUNDOFFS: Final = 64
 _FLOAT64: Final = 2.0**-53
-# The shortest beginning, and how much longer each further one is; the longest is half of the file.
+# The start and one step, which is all that is right to a hundredth without a gyroscopic term; then a few
+# steps, and beginnings so many times as long each. The longest one is half of the file.
+_FEWEST_ROWS: Final = 2
 _FIRST_ROWS: Final = 5
 _LONGER: Final = 8
 _FEW_ROWS: Final = 12
@@ -118,7 +120,7 @@ def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
         if all(isinstance(value, Fraction) for rows in groups for value in rows[k])
     ]
     longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
-    lengths, length = [], _FIRST_ROWS
+    lengths, length = [_FEWEST_ROWS] if longest > _FEWEST_ROWS else [], _FIRST_ROWS
     while length < longest:
         lengths.append(length)
         length *= _LONGER
