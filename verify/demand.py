@@ -189,6 +189,12 @@ def _time_shift(verdict: Verdict) -> str:
         return ""
     if verdict.shift == "none":
         return "no shift of time explains the error"
+    if verdict.trend is not None:
+        pace = "slow" if verdict.trend > 0 else "fast"
+        return (
+            f"a drifting shift: the clock runs {pace} by {_short(abs(verdict.trend))} of the time; "
+            f"{_short(verdict.remains)}{_unit(verdict)} remains"
+        )
     way = "late" if verdict.time_shift > 0 else "early"
     return (
         f"a {verdict.shift} shift; the best constant one, {_short(abs(verdict.time_shift))} {way}, "

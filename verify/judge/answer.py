@@ -18,6 +18,8 @@ from mpmath import mp
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.judge.conventions.search import Conventions, Finding, conventions, is_far
+from verify.judge.conventions.worlds import World
+from verify.judge.gyroscopic import gyroscopic_cause
 from verify.judge.inputs import input_rounding
 from verify.judge.judgement import Judgement, unjudged
 from verify.judge.partial import partial_judgement
@@ -107,10 +109,9 @@ def judge_file(
     notes = tuple(_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     scene = replace(scene, track=scene.track & _tracked(groups))
-    findings: tuple[Finding, ...] = ()
+    found = Conventions((), World(scene), {})
     try:
         found = conventions(compared, scene, rung)
-        findings = found.findings
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found)
         notes += (*_no_start(answer.scene, answer.times), *_no_end(answer.scene, answer.times))
@@ -118,9 +119,14 @@ def judge_file(
         judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt))
-    if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
+    if "omega" in failed and (cause := gyroscopic_cause(compared, scene, rung, found)):
+        notes += (cause,)
+    if failed:
         notes += (*_cut_off(file, rung), *_single_precision(file, rung))
-    return FileJudgement(judged.verdicts, judged.record, file, findings, accept_conventions, notes)
+    return FileJudgement(
+        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes
+    )
 
 
 def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Conventions) -> Judgement:
@@ -285,8 +291,7 @@ class _Answer:
             R = _attitudes(scene, rung, times, bits)
             with mp.workprec(bits):
                 for name, reading in accepted.readings.items():
-                    read = reading.read(quantities.pop(name), R)
-                    quantities["attitude" if name == "quaternion" else name] = read
+                    quantities[name] = reading.read(quantities[name], R)
         return cls(scene, times, quantities)
 
     def sides(self) -> list[_Answer]:

@@ -44,6 +44,7 @@ from verify.judge.rounding_class import (
     paired,
     told,
 )
+from verify.judge.unit_quaternion import UNIT_QUATERNION
 from verify.judge.verdict import Status, Verdict, exit_status
 from verify.scenes.limit import Limit
 from verify.scenes.regular_file import read_bytes
@@ -76,13 +77,17 @@ class Held:
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     """Hold every row made against the row of the baseline; rungs that a machine lacks are left out.
 
-    A row that is gone, a verdict that is worse and an error beyond ten times the larger of what it was
-    and half of what is attainable are regressions: below that, roundings drawn anew may explain it.
+    A row that is gone, a verdict that is worse, a quaternion that is no unit quaternion any more, and an
+    error beyond ten times the larger of what it was and half of what is attainable are regressions: below
+    that, roundings drawn anew may explain it.
     """
     rows = paired(baseline, made)
     regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
     undecided: list[Departure] = []
-    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in rows.extra]
+    # This row is there only where it fails: of a sound run no baseline has one.
+    spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
+    other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
+    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
     changes += _machines(rows.absent)
     for old, new in rows.shared:
         other = list(_other_question(old, new))
@@ -91,6 +96,7 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         regressions += grown
         # Of a verdict that is worse the other numbers are the consequence.
         changes += [] if other or grown else departures(old, new)
+    regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
 
 

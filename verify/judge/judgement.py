@@ -21,7 +21,8 @@ from verify.judge.errors import Errors, state_errors
 from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
-from verify.judge.shift import Shift, time_shifts
+from verify.judge.shift import Kind, Shift, time_shifts
+from verify.judge.unit_quaternion import unit_quaternion
 from verify.judge.verdict import Status, Verdict, exit_status
 from verify.models.problem import Problem
 from verify.scenes.mpfr import in_mpfr
@@ -149,6 +150,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 )
                 for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
             ]
+            gated += _lengths(run, base)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
     return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
 
@@ -174,8 +176,20 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
         time_shift=shift.time_shift,
         residual=shift.residual,
         shift=shift.kind.value,
+        trend=shift.trend if shift.kind is Kind.DRIFTING else None,
+        remains=None if shift.kind is Kind.NONE else shift.remains,
     )
     return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+
+
+def _lengths(run: _Run, base: Floor) -> list[Gated]:
+    """The row of quaternions that are no unit quaternions; none where they are."""
+    quaternions = run.trajectory.quantities.get("quaternion")
+    failed = None if quaternions is None else unit_quaternion(quaternions, base)
+    if failed is None:
+        return []
+    errors, attainable, finding = failed
+    return [(_verdict(run, errors, attainable, finding), _gate(errors, attainable))]
 
 
 def _conserved(

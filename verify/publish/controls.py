@@ -261,12 +261,13 @@ def sheet(sights: Iterable[Sight]) -> str:
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
     for name, verdict in sight.verdicts.items():
-        twin = sight.sound[name]
+        # A sound quaternion is a unit one, and has no row that says so.
+        twin = sight.sound.get(name)
         yield verdict.row() | {
             "defect": sight.name,
             "seen": "yes" if sight.is_seen_by(name) else "no",
             "error_over_bound": sight.over_bound(name),
             "twin": sight.twin,
-            "twin_verdict": twin.verdict.value,
-            "twin_ratio": twin.ratio,
+            "twin_verdict": None if twin is None else twin.verdict.value,
+            "twin_ratio": None if twin is None else twin.ratio,
         }

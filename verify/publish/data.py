@@ -31,7 +31,7 @@ RECORDS: Final = "records"
 _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 # What the numbers do not depend on: it may differ where verdicts.json may not.
 _MACHINE = ("processor", "command")
-_SHIFT = ("time_shift", "residual", "shift")
+_SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
