@@ -106,10 +106,12 @@ def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[
         if flow is None:
             return Box(point, identity(len(point)), fresh)
         moved = flow.at(arb(1)) * box.axes
-        units = _units(point, fresh, spans)
-        axes, inverse = _frame(moved, box.radius, units)
-        radius = magnitudes(inverse * moved) * box.radius + magnitudes(inverse) * fresh
-        return Box(point, axes, magnitudes(radius))
+        # Where the tube has no width, the component is that of the polynomial, whatever the start.
+        free = [i for i, width in enumerate(tube.width.entries()) if not width.is_zero()]
+        axes, inverse = _frame(moved, box.radius, _units(point, fresh, spans), free)
+        spread = magnitudes(inverse * moved) * box.radius + magnitudes(inverse) * fresh
+        radius = [spread[i, 0] if i in free else fresh[i, 0] for i in range(len(point))]
+        return Box(point, axes, magnitudes(column(radius)))
 
 
 def within(box: Box, state: Series, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
@@ -153,47 +155,42 @@ def exponent(value: arb) -> int:
     return int(power) + int(mantissa).bit_length()
 
 
-def _frame(moved: arb_mat, radius: arb_mat, units: list[arb]) -> tuple[arb_mat, arb_mat]:
+def _frame(
+    moved: arb_mat, radius: arb_mat, units: list[arb], free: list[int]
+) -> tuple[arb_mat, arb_mat]:
     """Exact axes near those that the flow makes of the old ones, orthogonal in units; their inverse.
 
-    Any invertible axes are sound. The longest edge comes first, so that it keeps its direction.
+    Any invertible axes are sound. The longest edge comes first, so that it keeps its direction. A
+    component that is not ``free`` keeps an axis of its own, and no rounding of the others reaches it.
     """
-    n = len(units)
-    middles = [[(moved[i, j] / units[i]).mid() for i in range(n)] for j in range(n)]
-    lengths = [
-        _dot(direction, direction).sqrt() * r
-        for direction, r in zip(middles, radius.entries(), strict=True)
-    ]
-    order = sorted(range(n), key=lambda j: -_logarithm(lengths[j]))
+    edges = [[(moved[i, j] / units[i]).mid() for i in free] for j in range(len(units))]
+    lengths = [_dot(edge, edge).sqrt() * r for edge, r in zip(edges, radius.entries(), strict=True)]
     columns: list[list[arb]] = []
-    for j in order:
-        direction = middles[j]
+    for j in sorted(range(len(edges)), key=lambda j: -_logarithm(lengths[j])):
+        direction = edges[j]
         # Twice: one pass leaves what cancels in nearly parallel edges.
         for _ in range(2):
             for other in columns:
                 share = _dot(direction, other).mid()
                 direction = [(d - share * o).mid() for d, o in zip(direction, other, strict=True)]
         length = _dot(direction, direction).sqrt().mid()
-        if not length > 0:
-            return _plain(units)
-        columns.append([(d / length).mid() for d in direction])
-    turned = arb_mat(n, n, [columns[j][i] for i in range(n) for j in range(n)])
+        if length > 0 and len(columns) < len(free):
+            columns.append([(d / length).mid() for d in direction])
+    count = len(columns)
+    turned = arb_mat(count, len(free), [c for direction in columns for c in direction]).transpose()
     try:
-        back = turned.inv()
+        back = turned.inv() if count == len(free) else None
     except ZeroDivisionError:
-        return _plain(units)
-    if not all(entry.is_finite() for entry in back.entries()):
-        return _plain(units)
-    axes = arb_mat(n, n, [units[i] * turned[i, j] for i in range(n) for j in range(n)])
-    # Units are powers of two: nothing is rounded here.
-    inverse = arb_mat(n, n, [back[i, j] / units[j] for i in range(n) for j in range(n)])
+        back = None
+    if back is None or not all(entry.is_finite() for entry in back.entries()):
+        return identity(len(units)), identity(len(units))
+    axes, inverse = identity(len(units)), identity(len(units))
+    for row, i in enumerate(free):
+        for place, j in enumerate(free):
+            # Units are powers of two: nothing is rounded here.
+            axes[i, j] = units[i] * turned[row, place]
+            inverse[i, j] = back[row, place] / units[j]
     return axes, inverse
-
-
-def _plain(units: list[arb]) -> tuple[arb_mat, arb_mat]:
-    """The coordinate axes, always valid and only wider."""
-    one = identity(len(units))
-    return one, one
 
 
 def _dot(a: Sequence[arb], b: Sequence[arb]) -> arb:
