@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from time import monotonic
+from typing import TYPE_CHECKING, Final
 
 from verify.cli.streams import say
 
@@ -15,6 +18,8 @@ if TYPE_CHECKING:
 
 # Nobody needs to be told that something takes less than this, in seconds.
 _PATIENCE = 1.0
+# To it every room says how far long work has come.
+PROGRESS: Final = logging.getLogger("verify.progress")
 
 
 @contextmanager
@@ -52,19 +57,61 @@ def _counting(total: int) -> Callable[[Job], None]:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """A spinner while one long thing is computed; one line where stderr is no terminal."""
-    if sys.stderr.isatty():
-        from rich.text import Text
+    """A spinner with the latest news while one long thing is computed.
 
-        from verify.cli.console import EscapingConsole
+    Where stderr is no terminal, lines with the news, each after twice the time of the one before.
+    """
+    with _news() as latest:
+        if sys.stderr.isatty():
+            from rich.console import Console
+            from rich.text import Text
 
-        with EscapingConsole(stderr=True).status(Text(what)):
+            with (
+                Console(stderr=True).status(Text(what)) as spinner,
+                _repeated(lambda: _PATIENCE, lambda: spinner.update(Text(f"{what}: {latest()}"))),
+            ):
+                yield
+            return
+        began = monotonic()
+        with _repeated(
+            lambda: max(_PATIENCE, monotonic() - began), lambda: say(f"{what}: {latest()}")
+        ):
             yield
-        return
-    notice = threading.Timer(_PATIENCE, say, [f"{what}: computing"])
-    notice.daemon = True
-    notice.start()
+
+
+@contextmanager
+def _news() -> Iterator[Callable[[], str]]:
+    """The latest message of whatever room computes, or that something is computed."""
+    messages = deque(["computing"], maxlen=1)
+
+    class Latest(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            messages.append(record.getMessage())
+
+    handler = Latest(logging.INFO)
+    level = PROGRESS.level
+    PROGRESS.addHandler(handler)
+    PROGRESS.setLevel(logging.INFO)
+    try:
+        yield lambda: messages[-1]
+    finally:
+        PROGRESS.removeHandler(handler)
+        PROGRESS.setLevel(level)
+
+
+@contextmanager
+def _repeated(wait: Callable[[], float], tell: Callable[[], None]) -> Iterator[None]:
+    """Call ``tell`` again and again, after ``wait()`` seconds each time, until the block ends."""
+    ended = threading.Event()
+
+    def repeat() -> None:
+        while not ended.wait(wait()):
+            tell()
+
+    thread = threading.Thread(target=repeat, daemon=True)
+    thread.start()
     try:
         yield
     finally:
-        notice.cancel()
+        ended.set()
+        thread.join()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Decimal, localcontext
@@ -41,6 +42,8 @@ _MOST_STEPS: Final = 1_000_000
 _LOST: Final = -10
 _SHRUNK: Final = -20
 _SEVERAL: Final = 16
+# Whoever waits for the answer may listen.
+_progress: Final = logging.getLogger("verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
 
@@ -139,6 +142,9 @@ class Course:
             place = None if place is None or step.leg is None else step.leg.carried(place)
             largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
             now, length = now + step.length, 2 * step.length
+            if _progress.isEnabledFor(logging.INFO):
+                done = float(100 * now / last)
+                _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
             lengths.append(abs(step.length))
             if pending:
                 self._watch(box, largest, lengths, now, last)
