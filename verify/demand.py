@@ -14,7 +14,6 @@ Tolerance = float | Mapping[str, float] | None
 Only = str | Collection[str] | None
 
 CONSERVED: Final = "conserved"
-_STATE: Final = frozenset({"omega", "impulse", "attitude", "centre"})
 # As the judge has it: a truth wider than this share of a bound cannot decide.
 _TRUTH_SHARE: Final = 16
 
@@ -40,7 +39,7 @@ class Demand:
 
     @property
     def is_conserved(self) -> bool:
-        return self.verdict.quantity not in _STATE
+        return self.verdict.is_conserved
 
     @property
     def is_met(self) -> bool:

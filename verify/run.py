@@ -6,9 +6,11 @@ The module is callable, so that `verify.run(scene, solver, rung)` is this chain.
 from __future__ import annotations
 
 from dataclasses import replace
+from time import perf_counter
 
 from verify.callable_module import make_callable
 from verify.judge.costs import SOLVING, Costs, total
+from verify.judge.initial import with_initial
 from verify.judge.judgement import Judgement, judgement, unjudged
 from verify.judge.verdict import Status
 from verify.models.problem import NotRepresentable, pose
@@ -17,7 +19,8 @@ from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.registry import solver_named
-from verify.solvers.solver import Solver
+from verify.solvers.solver import Lack, Solver
+from verify.solvers.trajectory import Outcome
 
 
 def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64") -> Judgement:
@@ -25,7 +28,7 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
 
     The scene is a Scene, a path or the name of a shipped scene; the solver a Solver or a name such as
     ``taylor?tol=1e-9`` or ``process:./mine``; the rung a Rung or ``f32 f64 f80 f128 mpN``. The Judgement
-    has a Verdict for each tracked and each conserved quantity. That a solver fails, or that this machine
+    has a Verdict on the start and for each tracked and each conserved quantity. That a solver fails, or that this machine
     lacks a rung, is a verdict.
 
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
@@ -35,17 +38,21 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
     solver = solver_named(solver) if isinstance(solver, str) else solver
     rung = rung_named(rung) if isinstance(rung, str) else rung
     if missing := solver.unavailable(rung):
-        return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing)
+        lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
+        return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing, lack)
     try:
         problem = pose(scene, rung)
     except NotRepresentable as reason:
         return unjudged(scene, solver, rung, Status.REFUSED, str(reason))
     if unsuited := solver.unsuited(problem):
-        return unjudged(scene, solver, rung, Status.UNAVAILABLE, unsuited)
+        return unjudged(scene, solver, rung, Status.UNAVAILABLE, unsuited, Outcome.UNSUITED)
     costs = Costs()
+    began = perf_counter()
     with costs.of(SOLVING):
         trajectory = solver.solve(problem)
-    found = judgement(problem, solver, trajectory)
+    seconds = perf_counter() - began
+    found = judgement(problem, solver, trajectory, seconds)
+    found = with_initial(found, float(problem.given.clock.start))
     return replace(found, costs=total([costs.seconds, found.costs]))
 
 

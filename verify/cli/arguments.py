@@ -173,6 +173,12 @@ def _add_check(found: Any) -> None:
         help="correct what was found out (order of the quaternion, axes, units, time, ...) and judge "
         "the rest; without it the file is judged as it stands",
     )
+    verb.add_argument(
+        "--partial",
+        action="store_true",
+        help="judge what the file has, without undecided for tracked columns or a part of the span that "
+        "it lacks",
+    )
     ci.add_options(verb)
 
 

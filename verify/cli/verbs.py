@@ -195,7 +195,7 @@ def check(options: argparse.Namespace) -> Answer:
     scene, file = _scene_and_file(options.scene, options.file)
     asked = outputs(options)
     with working(f"check {options.file}"):
-        judged = judge_file(file, scene, rung(name), options.accept_conventions)
+        judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
     text = partial(check_text, judged, scene.name, name)
     again = [v for v in asked.baseline or () if _run_of(v) == _run_of(judged.verdicts[0])]
     to_ci = tell(asked, judged.verdicts, exit_status(judged.verdicts), again)
