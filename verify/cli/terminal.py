@@ -75,6 +75,8 @@ def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
         print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
     print_line(console, f"\n{counts}{_as_expected(verdicts, held)}")
+    if why := held.unjudged(verdicts):
+        print_line(console, f"nothing was judged: {why}")
     return text_of(console)
 
 

@@ -60,12 +60,14 @@ def run(options: argparse.Namespace) -> Answer:
     verdicts = [verdict for result in results for verdict in result.verdicts]
     held = hold(verdicts)
     status, messages = held.exit_status(verdicts), []
+    if status == WRONG_CALL:
+        messages.append(f"nothing was judged: {held.unjudged(verdicts)}")
     if folder is not None:
         try:
-            messages = [_write_reports(folder, results)]
+            messages.append(_write_reports(folder, results))
         except (OSError, ValueError) as error:
             # A run that took hours is shown in any case.
-            messages = [f"expected to write the reports, got {error} @ --out {folder}"]
+            messages.append(f"expected to write the reports, got {error} @ --out {folder}")
             status = WRONG_CALL
     found: dict[str, Any] = {
         "verdicts": [held.row(v) for v in verdicts],

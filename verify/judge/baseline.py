@@ -43,7 +43,7 @@ from verify.judge.rounding_class import (
     paired,
     told,
 )
-from verify.judge.verdict import Status, Verdict, exit_status
+from verify.judge.verdict import COMPLETE, Status, Verdict, exit_status
 
 _TEXTS: Final = ("scene", "solver", "rung", "setting", "quantity", "outcome", "unit")
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
@@ -75,7 +75,7 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     A row that is gone, a verdict that is worse and an error beyond ten times the larger of what it was
     and half of what is attainable are regressions: below that, roundings drawn anew may explain it.
     """
-    rows = paired(baseline, made)
+    rows = paired(_compared(baseline), _compared(made))
     regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
     undecided: list[Departure] = []
     changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in rows.extra]
@@ -88,6 +88,11 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         # Of a verdict that is worse the other numbers are the consequence.
         changes += [] if other or grown else departures(old, new)
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
+
+
+def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
+    """All rows but that of the extent of an answer, which its own call has asked for or not."""
+    return (verdict for verdict in verdicts if verdict.quantity != COMPLETE)
 
 
 def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:

@@ -79,13 +79,9 @@ def complete_verdict(
 ) -> Verdict:
     """The row that says what was not judged: undecided, or vacuous where a part was asked for."""
     status = Status.VACUOUS if partial else Status.UNDECIDED
-    mend = (
-        "as --partial asks"
-        if partial
-        else "--partial judges the rest alone, and "
-        f"`question {scene.name} --csv` prints the header and the times of a whole file"
-    )
-    because = f"not judged: {', '.join(lack)}; {mend}"
+    whole = f"`question {scene.name} --csv` prints the header and the times of a whole file"
+    asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
+    because = f"not judged: {', '.join(lack)}; {whole}; {asked}"
     solver = Recorded({}, setting=file)
     (row,) = unjudged(scene, solver, rung, status, because, Outcome.FINISHED).verdicts
     return replace(row, quantity=COMPLETE, roundoff=float(rung.unit_roundoff))
