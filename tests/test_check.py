@@ -22,8 +22,7 @@ from verify.cli import main
 from verify.exact.route import solution
 from verify.judge.answer import FileJudgement
 from verify.judge.inputs import input_rounding
-from verify.judge.verdict import INITIAL, Status
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import INITIAL, Status, Verdict
 from verify.models.problem import adopt, pose
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody

@@ -6,7 +6,7 @@ exit status, and what was foreseen and did not come, or came unforeseen, is a mi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -28,8 +28,8 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
 
     The scene is a Scene, a path or the name of a shipped scene; the solver a Solver or a name such as
     ``taylor?tol=1e-9`` or ``process:./mine``; the rung a Rung or ``f32 f64 f80 f128 mpN``. The Judgement
-    has a Verdict on the start and for each tracked and each conserved quantity. That a solver fails, or that this machine
-    lacks a rung, is a verdict.
+    has a Verdict on the start and for each tracked and each conserved quantity. That a solver fails, or
+    that this machine lacks a rung, is a verdict.
 
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
     no solver or no rung. What the rung cannot hold is a verdict, not an error.

@@ -15,6 +15,11 @@ INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
 
 
+def is_conserved(quantity: str) -> bool:
+    """Whether a row of this name is that of a conserved quantity."""
+    return quantity not in (*STATES, INITIAL, COMPLETE)
+
+
 class Status(StrEnum):
     """What a gate said. Only PASS is green."""
 
@@ -70,7 +75,7 @@ class Verdict:
     @property
     def is_conserved(self) -> bool:
         """Whether the row is that of a conserved quantity."""
-        return self.quantity not in (*STATES, INITIAL, COMPLETE)
+        return is_conserved(self.quantity)
 
     @property
     def is_waived(self) -> bool:

@@ -152,12 +152,13 @@ class Outside(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
-            return Trajectory(Outcome.NOT_STARTED, detail=reason)
+            outcome = reason.outcome if isinstance(reason, Lack) else Outcome.NOT_STARTED
+            return Trajectory(outcome, detail=str(reason))
         try:
             environment = _prepare(self.entrant, _log.warning)
         except NotMade:
-            detail = self.unavailable(problem.rung)
-            return Trajectory(Outcome.NO_PACKAGE, detail=detail)
+            # Remembered, so that it is the reason of what is unavailable from here on.
+            return self.solve(problem)
         command = shlex.join([*_interpreter(environment), *self._script_and_arguments()])
         return process.Process(f"{process.PREFIX}{command}", self.time_limit).solve(problem)
 
