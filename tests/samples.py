@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.scenes.bodies import Clebsch, ImmersedBody
-from verify.scenes.motion import Impulse, Quaternion, Spin
+from verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
+from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
+from verify.scenes.scene import Scene
 from verify.scenes.tensors import Matrix, Vector
 
 
@@ -33,6 +34,14 @@ QUATERNION: Quaternion = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
 OMEGA = vector("0.3", 1, "0.2")
 SPIN = Spin(OMEGA, QUATERNION)
 IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
+
+
+def one_instant(body: Body, start: State, *track: str) -> Scene:
+    """A scene of these, at one instant."""
+    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
+    clock = Clock(Fraction(0), (Fraction(1),))
+    return Scene("test", "test", model, frozenset(track), body, start, clock)
+
 
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.
 THREE_INSTANTS = """

@@ -147,10 +147,10 @@ def test_a_float_reads_the_text_as_the_number() -> None:
 
 
 def test_the_document_has_the_keys_of_the_contract(exact: Asked) -> None:
-    """scene, route, digits, regime and rows; a row has t, what is tracked, and radius."""
+    """scene, route, evidence, digits, regime and rows; a row has t, what is tracked, and radius."""
     found = exact("euler/generic", "--at", "10", "--digits", "12")
     assert exact.status == 0
-    assert list(found) == ["scene", "route", "digits", "regime", "rows"]
+    assert list(found) == ["scene", "route", "evidence", "digits", "regime", "rows"]
     assert (found["scene"], found["route"], found["digits"]) == ("euler/generic", "arb", 12)
     (row,) = found["rows"]
     assert list(row) == ["t", "omega", "radius"]
@@ -280,17 +280,30 @@ def test_a_time_that_is_no_number_is_a_wrong_call(exact: Asked, at: str) -> None
 # What there is not.
 
 
-def test_without_a_closed_form_the_answer_says_so_and_the_exit_is_3(exact: Asked) -> None:
-    """`regime` is "no closed form" and there are no rows, until the route is taylor."""
-    found = exact("euler/constant-moment", "--at", "1")
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_a_closed_form_that_is_missing_is_said_and_the_exit_is_3(exact: Asked, route: str) -> None:
+    """`regime` is "no closed form" and there are no rows; the text names the route that has some."""
+    found = exact("euler/constant-moment", "--at", "1", "--route", route)
     assert exact.status == 3
     assert found["regime"] == "no closed form"
     assert found["rows"] == []
     assert "--route taylor" in exact.error
-    found = exact("euler/constant-moment", "--at", "1", "--route", "taylor")
+
+
+def test_without_a_closed_form_the_answer_is_enclosed_by_taylor_series(exact: Asked) -> None:
+    """Nobody has to ask for the route: the exit is 0, and the radius is proven."""
+    found = exact("euler/constant-moment", "--at", "1")
     assert exact.status == 0
     assert (found["regime"], found["route"]) == ("no closed form", "taylor")
+    assert found["evidence"] == "proven"
     assert len(found["rows"]) == 1
+
+
+def test_only_balls_are_called_proven(exact: Asked) -> None:
+    """The second formulas settle a number by agreement, and say so."""
+    routes = ("arb", "mpmath", "taylor")
+    said = {r: exact("euler/generic", "--at", "1", "--route", r)["evidence"] for r in routes}
+    assert said == {"arb": "proven", "mpmath": "agreed", "taylor": "proven"}
 
 
 def test_a_motion_that_does_not_settle_is_undecided(exact: Asked) -> None:

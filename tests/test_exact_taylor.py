@@ -12,7 +12,6 @@ import pytest
 from mpmath import libmp, mp, mpf
 from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
-from verify.exact.recursion import STEP_DIGITS
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.exact.taylor import TaylorSolution, arcs
@@ -201,17 +200,6 @@ def test_a_quaternion_stands_for_a_direction() -> None:
     assert [float(entry) for entry in turn[:, 0]] == [0, 1, 0]
 
 
-@pytest.mark.parametrize("digits", [32, 35, 52, 72])
-def test_compared_evaluations_differ_in_order_and_step(digits: int) -> None:
-    """Two evaluations that are compared share neither precision nor order nor the ratio of both."""
-    problem = TaylorSolution(euler(RigidBody(TENSOR)))._problem
-    one, other = problem.grid(digits), problem.grid(digits + STEP_DIGITS)
-    assert one.bits < other.bits
-    assert one.order != other.order
-    # A step is radius / 2^(bits/order): unequal ratios make unequal steps.
-    assert one.orders_per_bit != other.orders_per_bit
-
-
 def test_small_blocks_are_resolved() -> None:
     """A motion 10^-30 of the usual size has as many significant digits."""
     small = tuple(entry / 10**30 for entry in OMEGA)
@@ -278,31 +266,6 @@ def test_both_routes_agree(scene: Scene) -> None:
             assert largest(closed[name] - taylor[name]) <= 2 * mpf(10) ** -40 * largest(
                 taylor[name]
             )
-
-
-@pytest.mark.parametrize("tracked", [("attitude",), ("attitude", "centre")])
-def test_the_constancy_of_the_impulse_leads_the_frame(tracked: tuple[str, ...]) -> None:
-    """R and the centre from R x = const, R y + c x R x = const are those of R' = R [Omega]x, c' = R U."""
-    times = [Fraction(-2), Fraction(1, 3), Fraction(9)]
-    led = TaylorSolution(kirchhoff(GENERAL, *tracked))
-    assert led._is_guided
-    plain = TaylorSolution(kirchhoff(GENERAL, *tracked))
-    plain.__dict__["_is_guided"] = False
-    one, other = led.motion(times, 40), plain.motion(times, 40)
-    assert set(one.quantities) == set(other.quantities)
-    with mp.workdps(60):
-        for name, values in one.quantities.items():
-            assert largest(values - other[name]) <= 2 * mpf(10) ** -40 * largest(values)
-
-
-def test_what_no_impulse_can_lead_is_integrated_as_it_stands() -> None:
-    """Under loads, without impulse, or with one too small to divide by, R and the centre are states."""
-    tiny = Impulse(vector("1e-12", 0, 0), vector("0.3", 0, 1), QUATERNION)
-    none = Impulse(vector(0, 0, 0), vector("0.3", 0, 1), QUATERNION)
-    for body, start in ((LOADED, None), (GENERAL, tiny), (GENERAL, none)):
-        given = kirchhoff(body, "attitude", "centre")
-        posed = given if start is None else replace(given, initial=start)
-        assert not TaylorSolution(posed)._is_guided
 
 
 def test_a_couple_that_vanishes_for_the_body_leaves_y_exactly() -> None:

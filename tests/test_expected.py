@@ -252,13 +252,13 @@ def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.setattr(verbs, "_judge", lambda *call: asked.append(call) or [])
     assert main(["run", "extremes"]) == 3
     names = library.named("extremes")
-    assert asked.pop() == (list(names), "taylor", ["f64"], {}, False)
+    assert asked.pop() == (list(names), "taylor", ["f64"], {}, False, None)
     (scene, rung), why = next(iter(shipped().left_out.items()))
     assert main(["run", "extremes", "--rung", rung]) == 3
     assert (scene, rung) in asked.pop()[3]
     assert f"not run: {scene} on {rung}: {why}" in capsys.readouterr().err
     assert main(["run", scene, "--rung", rung]) == 3
-    assert asked.pop() == ([scene], "taylor", [rung], {}, False)
+    assert asked.pop() == ([scene], "taylor", [rung], {}, False, None)
     assert main(["run", "extremes", scene, "--rung", rung]) == 3
     assert (scene, rung) not in asked.pop()[3]
 

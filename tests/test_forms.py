@@ -243,5 +243,5 @@ def test_rate_that_is_not_finite_is_infinite(bad: float) -> None:
     """A state that is no number has no step: the rate is infinite, whatever the equations."""
     for name in ("euler/generic", "euler/with-attitude", "kirchhoff/screw"):
         problem = pose(load(name), rung("f64"))
-        state = [bad, *[1.0] * (len(problem.initial) - 1)]
+        state = [bad, *[1.0] * (len(problem.initial_momenta) - 1)]
         assert Linearised(problem).fastest(state) == np.inf

@@ -210,7 +210,7 @@ def test_drifts_have_their_sign() -> None:
     """A momentum that is larger by 2^-20 has T and H2 larger by 2^-19 + 2^-40; one smaller, smaller."""
     problem = question("euler/generic", lanes=2).problems[0]
     for factor in (1 + Fraction(1, 2**20), 1 - Fraction(1, 2**20)):
-        state = tuple(factor * value for value in problem.initial)
+        state = tuple(factor * value for value in problem.initial_momenta)
         found = by_name(problem, [state], 1.0)
         for name in ("T", "H2"):
             # Drifts are relative to the larger of both values, as a gate has them.

@@ -48,8 +48,8 @@ def with_fates(until: int) -> tuple[list[Problem], list[bool]]:
     for k, problem in enumerate(problems("euler/generic", "f64")):
         lives.append(k % 3 == 0 or 2 + k > until)
         first = Fraction(-1 if k % 3 == 0 else 1, 2 + k)
-        start = rung("f64").round(first), *problem.initial[1:]
-        found.append(replace(problem, initial=start).with_equations(blowing_up))
+        start = rung("f64").round(first), *problem.initial_momenta[1:]
+        found.append(replace(problem, initial_momenta=start).with_equations(blowing_up))
     return found, lives
 
 
@@ -113,9 +113,9 @@ def test_a_lane_that_is_not_finite_stops_no_other() -> None:
     assert [found[i] for i in living] == list(expected)
     for i in living:
         # The exact H1 is 1/(1/H1(0) - t).
-        exact = 1 / (1 / asked[i].initial[0] - 10)
+        exact = 1 / (1 / asked[i].initial_momenta[0] - 10)
         assert abs(found[i].state[0] / exact - 1) <= 2.0**-53 * 200 * abs(
-            exact / asked[i].initial[0]
+            exact / asked[i].initial_momenta[0]
         )
 
 
@@ -143,10 +143,10 @@ def test_a_lost_lane_stays_lost_and_the_others_go_on() -> None:
 def test_a_lane_that_would_never_end_is_not_begun(on: str, size: int, outcome: Outcome) -> None:
     """A state so large that its steps would take years is taken out, with the reason."""
     asked = problems("euler/generic", on, 6)
-    large = replace(asked[2], initial=(Fraction(size),) * 3)
+    large = replace(asked[2], initial_momenta=(Fraction(size),) * 3)
     ensemble = Ensemble([*asked[:2], large, *asked[3:]])
     found = ensemble.advance(ensemble.start(), ends(asked))
-    assert found[2] == Lane(Fraction(0), large.initial, outcome=outcome)
+    assert found[2] == Lane(Fraction(0), large.initial_momenta, outcome=outcome)
     sound = Ensemble(asked)
     expected = sound.advance(sound.start(), ends(asked))
     assert [found[i] == expected[i] for i in range(6)] == [True, True, False, True, True, True]
@@ -158,13 +158,13 @@ def test_no_step_is_longer_than_the_cap() -> None:
     unstable = [
         replace(
             problem,
-            initial=tuple(
+            initial_momenta=tuple(
                 value if i == place else problem.rung.round(value * Fraction(1, 10**12))
-                for i, value in enumerate(problem.initial)
+                for i, value in enumerate(problem.initial_momenta)
             ),
         )
         for problem in asked
-        for place in [int(np.argmax([abs(value) for value in problem.initial]))]
+        for place in [int(np.argmax([abs(value) for value in problem.initial_momenta]))]
     ]
     ensemble = Ensemble(unstable)
     for lane in ensemble.advance(ensemble.start(), ends(asked)):

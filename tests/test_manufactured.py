@@ -174,7 +174,7 @@ def test_the_rounded_problem_is_exactly_manufactured(name: str, step: str) -> No
     """Parameters and start are numbers of the rung, and the motion begins at the start, exactly."""
     problem = pose(load(name), rung(step))
     given = problem.given
-    assert all(problem.rung.holds(v) for v in (*problem.parameters, *problem.initial))
+    assert all(problem.rung.holds(v) for v in (*problem.parameters, *problem.initial_momenta))
     initial = given.initial
     start = initial.omega if isinstance(given.body, RigidBody) else initial.linear + initial.angular
     assert start == motion_of(given).start

@@ -105,9 +105,9 @@ class ClockOff(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         start = [
             value + self.by * (state == "u1")
-            for state, value in zip(problem.form.states, problem.initial, strict=True)
+            for state, value in zip(problem.form.states, problem.initial_momenta, strict=True)
         ]
-        return Taylor().solve(replace(problem, initial=tuple(start)))
+        return Taylor().solve(replace(problem, initial_momenta=tuple(start)))
 
 
 @pytest.mark.parametrize("name", [EULER, pytest.param(KIRCHHOFF, marks=pytest.mark.slow)])
@@ -177,7 +177,7 @@ class Forced(Solver):
             clock = self.clock(problem, t, since)
             return np.array(rates(t, [*z, *clock])[:state_size])
 
-        z = np.array([float(v) for v in problem.initial[:state_size]])
+        z = np.array([float(v) for v in problem.initial_momenta[:state_size]])
         t, rows = 0.0, []
         h = float(problem.times[-1]) / self.steps
         for end in map(float, problem.times):

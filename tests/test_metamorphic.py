@@ -428,7 +428,7 @@ def test_binary_units_change_no_bit(name: str, model: str) -> None:
     A problem is posed in units of its own, also powers of two: the solver sees the same numbers.
     """
     here, there = (solve(s, name) for s in (SCENES[model], BINARY.of_scene(SCENES[model])))
-    assert here.problem.initial == there.problem.initial
+    assert here.problem.initial_momenta == there.problem.initial_momenta
     assert here.problem.parameters == there.problem.parameters
     assert same_bits(here.motion, BINARY.undone(there.motion))
     assert not same_bits(here.motion, ODD.undone(there.motion))
@@ -700,7 +700,7 @@ def in_21_coefficients(posed: Problem) -> Problem:
     form = replace(form, parameters=form.entering())
     parameters = tuple(numbers[name] for name in form.parameters)
     initial = tuple(known[name] for name in states)
-    return replace(posed, form=form, parameters=parameters, initial=initial)
+    return replace(posed, form=form, parameters=parameters, initial_momenta=initial)
 
 
 def answered(posed: Problem) -> Run:

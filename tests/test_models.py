@@ -198,7 +198,7 @@ def test_clebsch_without_couple_has_y3_as_a_parameter() -> None:
 def test_posed_data_are_numbers_of_the_rung_and_an_exact_body(name: str, rung_name: str) -> None:
     """Every number handed to a solver is held by its rung, and `given` is the body they define."""
     problem = pose(load(name), rung(rung_name))
-    held = (*problem.parameters, *problem.initial, *problem.times)
+    held = (*problem.parameters, *problem.initial_momenta, *problem.times)
     assert all(problem.rung.holds(value) for value in held)
     units, parameter = problem.units, problem.parameter
     if isinstance(problem.given.body, RigidBody):
@@ -230,7 +230,7 @@ def test_the_fastest_rate_is_of_order_one_however_far_apart_the_moments_are(rati
     moments = tensors.diagonal((Fraction(ratio), Fraction(1), Fraction(9, 10)))
     scene = replace(load("euler/generic"), body=RigidBody(moments))
     problem = pose(scene, rung("f64"))
-    found = Linearised(problem).fastest([float(value) for value in problem.initial])
+    found = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
     assert 2**-3 <= found <= 2**2
 
 
@@ -249,9 +249,9 @@ def test_units_are_chosen_so_that_a_rescaled_scene_is_the_same_problem(exponent:
         ),
     )
     one, other = pose(scene, rung("f64")), pose(faster, rung("f64"))
-    assert (one.parameters, one.initial, one.times) == (
+    assert (one.parameters, one.initial_momenta, one.times) == (
         other.parameters,
-        other.initial,
+        other.initial_momenta,
         other.times,
     )
 
@@ -294,3 +294,19 @@ def test_rest_and_zero_impulse_are_posed() -> None:
     rest = replace(scene, initial=Impulse((Fraction(0),) * 3, (Fraction(0),) * 3))
     for posed in (pose(still, rung("f64")), pose(rest, rung("f64"))):
         assert all(posed.rung.holds(value) for value in posed.parameters)
+
+
+def test_the_two_starts_of_a_problem_cannot_be_confused() -> None:
+    """One is named for its momenta, I omega; the other is omega; and `initial` alone is neither."""
+    problem = pose(load("euler/generic"), rung("f64"))
+    given = problem.given
+    assert isinstance(given.body, RigidBody)
+    assert isinstance(given.initial, Spin)
+    H = tensors.apply(given.body.inertia, given.initial.omega)
+    assert H != given.initial.omega
+    assert tuple(problem.units.momentum * value for value in problem.initial_momenta) == H
+    assert not hasattr(problem, "initial")
+    with pytest.raises(
+        AttributeError, match=r"expected problem\.given\.initial .* or problem\.initi"
+    ):
+        problem.initial  # noqa: B018 (to ask for it is what is tested)

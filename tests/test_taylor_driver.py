@@ -8,7 +8,6 @@ import sys
 import time
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import heyoka as hy
 import numpy as np
@@ -31,8 +30,7 @@ from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback
 from verify.solvers.taylor import driver
-from verify.solvers.taylor.cache import processor_key, use_own_cache
-from verify.solvers.taylor.driver import Taylor, compiled
+from verify.solvers.taylor.driver import Taylor
 from verify.solvers.taylor.numbers import arithmetic
 from verify.solvers.trajectory import Outcome
 
@@ -233,45 +231,6 @@ def test_runs_are_repeatable_whatever_ran_before() -> None:
     first = Taylor().solve(problem).quantities["omega"]
     Taylor().solve(pose(load("euler/about-max-axis"), rung("f64")))
     assert np.array_equal(first, Taylor().solve(problem).quantities["omega"])
-
-
-def test_compiled_code_is_kept_apart_by_processor(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The disk cache is a folder named for this processor, inside the user's cache or the one named."""
-    before = hy.llvm_state.get_diskcache_path()
-    monkeypatch.setenv("HEYOKA_CACHE_DIR", str(tmp_path))
-    use_own_cache()
-    assert Path(hy.llvm_state.get_diskcache_path()) == tmp_path / processor_key()
-    hy.llvm_state.set_diskcache_path(str(before))
-
-
-def test_the_disk_cache_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Asked for again, the cache that is in use stays as it is: opening it reads all of it."""
-    before = hy.llvm_state.get_diskcache_path()
-    monkeypatch.setenv("HEYOKA_CACHE_DIR", str(tmp_path))
-    use_own_cache()
-    # heyoka goes back to its own limit whenever it opens a cache.
-    hy.llvm_state.set_diskcache_limit(1)
-    use_own_cache()
-    assert hy.llvm_state.get_diskcache_limit() == 1
-    hy.llvm_state.set_diskcache_path(str(before))
-
-
-def test_code_for_mpfr_numbers_is_not_stored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What no other process would find is not kept on disk; what one would find is."""
-    before = hy.llvm_state.get_diskcache_path()
-    monkeypatch.setenv("HEYOKA_CACHE_DIR", str(tmp_path))
-    hy.llvm_state.clear_memcache()
-    stored = []
-    for name in ("mp237", "f64"):
-        problem = pose(load("euler/generic"), rung(name))
-        compiled.__wrapped__(problem.form, problem.rung, None)
-        stored.append(hy.llvm_state.get_diskcache_size() > 0)
-    hy.llvm_state.set_diskcache_path(str(before))
-    assert stored == [False, True]
 
 
 def _answer(problem: Problem) -> object:

@@ -20,7 +20,7 @@ from verify.controls.traps.trap import Case, Trap, shown
 from verify.models.problem import pose
 from verify.publish import traps as published
 from verify.scenes.precision import rung
-from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.cache import heyoka_cache_off
 from verify.solvers.taylor.driver import Taylor
 from verify.solvers.taylor.plain import numbers, outcomes
 from verify.solvers.taylor.plain.body import Plain
@@ -291,7 +291,7 @@ def test_tolerance_of_zero_is_refused_here() -> None:
 
 def test_stored_code_is_found_without_naming_a_processor() -> None:
     """The key has versions alone, and is read without leaving the cache elsewhere than before."""
-    use_own_cache()
+    heyoka_cache_off()
     before = hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_enabled()
     (found,) = cases("S12")
     assert re.fullmatch(r"HEYOKA_VERSION=[\d.]+;LLVM_VERSION=[\d.]+", found.said)

@@ -1,18 +1,24 @@
 """A run of several scenes that was interrupted goes on where it was, with the same verdicts."""
 
+import hashlib
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from verify import standard, unfinished
+from verify import standard
+from verify import unfinished as module
 from verify.job import Job, jobs
 from verify.run import run
+from verify.solvers.solver import Callback
+from verify.unfinished import unfinished
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
 
@@ -20,33 +26,178 @@ SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/sw
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's cache of the test's own; heyoka's compiled code stays where it is."""
-    monkeypatch.setattr(unfinished, "user_cache_path", lambda name: tmp_path / name)
+    monkeypatch.setattr(module, "user_cache_path", lambda name: tmp_path / name)
     return tmp_path
 
 
+def files(cache: Path) -> list[Path]:
+    return sorted(cache.rglob("*.judged"))
+
+
+ASKED = jobs(["euler/rest", "euler/generic"], "taylor", ["f64", "f80"])
+
+
 def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
-    """Of the same scene, solver and rungs, and of these alone."""
-    (job,) = jobs(["euler/rest"], "taylor", ["f64"])
-    assert unfinished.kept(job) is None
-    found = [run("euler/rest")]
-    unfinished.keep(job, found)
-    again = unfinished.kept(job)
-    assert again is not None
-    assert [one.verdicts for one in again] == [one.verdicts for one in found]
-    for other in (
-        Job("euler/generic", job.solver, job.rungs),
-        Job(job.scene, "taylor?tol=1e-9", job.rungs),
-        Job(job.scene, job.solver, ("f32",)),
-    ):
-        assert unfinished.kept(other) is None
+    """Verdicts, records and costs come back as they were, of this job and no other."""
+    job = ASKED[1]
+    found = [
+        run("euler/generic"),
+        run("kirchhoff/whole-motion"),
+        run("euler/generic", "scipy:RK45?rtol=1e-3"),
+        run("euler/generic", Callback(lambda problem: [[float("nan")] * 3] * len(problem.times))),
+        run("euler/generic", Callback(lambda problem: 1 / 0)),
+    ]
+    with unfinished(ASKED, None, resume=False) as store:
+        assert store is not None
+        assert store.recall(job) is None
+        store.keep(job, found)
+        again = store.recall(job)
+        # Equal, NaN included: repr shows every digit of a double.
+        assert repr(again) == repr(found)
+        for other in (
+            Job("euler/rest", job.solver, job.rungs),
+            Job(job.scene, "taylor?tol=1e-9", job.rungs),
+            Job(job.scene, job.solver, ("f32",)),
+        ):
+            assert store.recall(other) is None
+
+
+def kept(resume: bool, asked: list[Job] = ASKED, out: Path | None = None) -> int:
+    """Count the jobs that a run would find finished."""
+    with unfinished(asked, out, resume) as store:
+        return sum(store.recall(job) is not None for job in asked) if store else 0
+
+
+def keep(out: Path | None = None) -> None:
+    with unfinished(ASKED, out, resume=False) as store:
+        assert store is not None
+        for job in ASKED:
+            store.keep(job, [run(job.scene)])
+
+
+def test_a_run_begins_anew_unless_it_is_resumed(cache: Path) -> None:
+    """The same run with --resume finds everything; a run without removes it."""
+    keep()
+    assert kept(resume=True) == kept(resume=True) == 2
+    assert kept(resume=False) == 0
+    assert kept(resume=True) == 0
+
+
+def test_another_run_touches_nothing(
+    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Other scenes, another solver, another --out, another folder: each is a run of its own."""
+    keep()
+    keep(tmp_path / "out")
+    content = {file: file.read_bytes() for file in files(cache)}
+    assert len(content) == 4
+    others = [ASKED[:1], jobs(SCENES, "taylor", ["f64"]), jobs(SCENES[:2], "scipy:RK45", ["f64"])]
+    for asked in others:
+        assert kept(False, asked) == kept(True, asked) == 0
+    assert kept(True, out=tmp_path / "elsewhere") == 0
+    assert kept(False, out=tmp_path / "elsewhere") == 0
+    (tmp_path / "below").mkdir()
+    with monkeypatch.context() as moved:
+        moved.chdir(tmp_path / "below")
+        assert kept(True) == kept(False) == 0
+    assert {file: file.read_bytes() for file in files(cache)} == content
+    assert kept(True) == kept(True, out=tmp_path / "out") == 2
+
+
+def test_the_same_run_twice_at_once_keeps_apart(cache: Path) -> None:
+    """The second has no store, and leaves that of the first as it is."""
+    with unfinished(ASKED, None, resume=False) as first:
+        assert first is not None
+        first.keep(ASKED[0], [run("euler/rest")])
+        for resume in (True, False):
+            with unfinished(ASKED, None, resume) as second:
+                assert second is None
+        assert first.recall(ASKED[0]) is not None
 
 
 def test_other_code_takes_up_nothing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A judgement by another text of this package is not this one's."""
-    (job,) = jobs(["euler/rest"], "taylor", ["f64"])
-    unfinished.keep(job, [run("euler/rest")])
-    monkeypatch.setattr(unfinished, "_package", lambda: "another")
-    assert unfinished.kept(job) is None
+    keep()
+    monkeypatch.setattr(module, "_package", lambda: "another")
+    assert kept(resume=True) == 0
+
+
+def test_another_program_takes_up_nothing(cache: Path, tmp_path: Path) -> None:
+    """A program that has changed since is another solver, though its name is the same."""
+    program = tmp_path / "simulator"
+    program.write_text("#!/bin/sh\nexit 1\n")
+    program.chmod(0o755)
+    asked = jobs(SCENES[:2], f"process:sh {program} --fast", ["f64"])
+    with unfinished(asked, None, resume=False) as store:
+        assert store is not None
+        store.keep(asked[0], [run(asked[0].scene, asked[0].solver)])
+    assert kept(True, asked) == 1
+    program.write_text("#!/bin/sh\nexit 2\n")
+    assert kept(True, asked) == 0
+
+
+def _truncated(content: bytes) -> bytes:
+    return content[: len(content) // 2]
+
+
+def _one_digit(content: bytes) -> bytes:
+    """Still JSON, and another number."""
+    before, mark, after = content.partition(b'"max": ')
+    assert mark
+    return before + mark + b"1" + after
+
+
+def _pickled(content: bytes) -> bytes:
+    """A pickle that fails the test if it is loaded."""
+    return pickle.dumps(_Trap())
+
+
+def _pickled_with_digest(content: bytes) -> bytes:
+    data = pickle.dumps(_Trap())
+    return hashlib.sha256(data).hexdigest().encode() + b"\n" + data
+
+
+class _Trap:
+    def __reduce__(self) -> Any:
+        return pytest.fail, ("it was unpickled",)
+
+
+def _misshapen(content: bytes) -> bytes:
+    data = b'[{"verdicts": [{"scene": 1}], "record": null, "costs": {}}]'
+    return hashlib.sha256(data).hexdigest().encode() + b"\n" + data
+
+
+DAMAGES = [
+    lambda content: b"",
+    _truncated,
+    _one_digit,
+    _pickled,
+    _pickled_with_digest,
+    _misshapen,
+    lambda content: bytes(len(content)),
+]
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=range(len(DAMAGES)))
+def test_a_damaged_entry_is_run_again_with_a_warning(
+    cache: Path,
+    damage: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """It is no judgement, runs nothing, and does not stop the run."""
+    keep()
+    with unfinished(ASKED, None, resume=True) as store:
+        assert store is not None
+        file = store._file(ASKED[1])
+        file.write_bytes(damage(file.read_bytes()))
+        judged: list[str] = []
+        monkeypatch.setattr(standard, "_run", lambda job: judged.append(job.scene) or [])
+        for job in ASKED:
+            standard._run_or_recall(store, job)
+    assert judged == ["euler/generic"]
+    (warning,) = caplog.messages
+    assert warning == (f"taylor-verify: warning: damaged, and run again: euler/generic @ {file}")
 
 
 def test_a_cache_that_cannot_be_written_keeps_nothing(
@@ -54,23 +205,16 @@ def test_a_cache_that_cannot_be_written_keeps_nothing(
 ) -> None:
     """The run goes on without."""
     (tmp_path / "taylor-verify").write_text("in the way")
-    monkeypatch.setattr(unfinished, "user_cache_path", lambda name: tmp_path / name)
-    (job,) = jobs(["euler/rest"], "taylor", ["f64"])
-    unfinished.keep(job, [])
-    assert unfinished.kept(job) is None
-    unfinished.forget()
+    monkeypatch.setattr(module, "user_cache_path", lambda name: tmp_path / name)
+    with unfinished(ASKED, None, resume=True) as store:
+        assert store is None
 
 
-def test_what_is_kept_is_not_run_again(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is recalled, until it is forgotten."""
+def test_a_finished_run_leaves_nothing(cache: Path) -> None:
+    """Neither its entries nor its folder nor its lock."""
     asked = jobs(["euler/rest", "euler/spherical"], "taylor", ["f64"])
-    first = standard._run_or_recall(asked[0])
-    monkeypatch.setattr(standard, "_run", lambda job: pytest.fail(f"{job.scene} was run again"))
-    assert [one.verdicts for one in standard._run_or_recall(asked[0])] == [
-        one.verdicts for one in first
-    ]
-    unfinished.forget()
-    assert not unfinished.folder().exists()
+    standard.run_all(asked, lambda job: None, workers=1)
+    assert [file for file in cache.rglob("*") if file.is_file()] == []
 
 
 # A result so long that its worker is still writing it when the run is interrupted.
@@ -128,7 +272,7 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
         start_new_session=True,
     ) as working:
         deadline = time.monotonic() + 60
-        while not list(place.glob("*.pickle")) and time.monotonic() < deadline:
+        while not files(place) and time.monotonic() < deadline:
             time.sleep(0.01)
         os.killpg(working.pid, signal.SIGINT)
         try:
@@ -143,10 +287,11 @@ def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     assert "of 4 scenes are finished and kept, nothing is written" in error or (
         error == "taylor-verify: interrupted\n"
     )
-    kept = len(list(place.glob("*.pickle")))
+    kept = len(files(place))
     assert kept >= 1
     done = subprocess.run([*command, "--resume"], capture_output=True, text=True, env=environment)
     assert done.returncode == 0, done.stderr
     found = {row["scene"] for row in json.loads(done.stdout)["verdicts"]}
     assert found == set(SCENES)
-    assert not place.exists()
+    assert files(place) == []
+    assert list(place.iterdir()) == []

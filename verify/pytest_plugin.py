@@ -16,7 +16,9 @@
     only       the quantities that are judged, or "conserved" for all that are
 
 and the fixtures return the Judgement. Whatever is not a pass fails the test, undecided and vacuous
-too, and so does a test that asks for a fixture and judges nothing with it.
+too, and so does a test that asks for a fixture and judges nothing with it. A solver that raises, or
+calls `sys.exit` with any code, has failed. `os._exit`, or a crash in compiled code, ends the whole
+session, and nothing inside it can help: such a solver is judged as a program, ``process:COMMAND``.
 
 Nothing of verify but this module is imported before a scene is named, and nothing heavy before one is
 run: the plugin is loaded in every session of an environment that has it.
@@ -149,7 +151,7 @@ def verify_scene(request: pytest.FixtureRequest) -> SceneGate:
 
 def _judgement(
     scene: Scene | Path | str, solve: Solve, rung: str
-) -> tuple[Judgement, Exception | None]:
+) -> tuple[Judgement, BaseException | None]:
     """The judgement, and what a callable raised if it did: its traceback is worth more than a row."""
     __tracebackhide__ = True
     from verify.run import run
@@ -159,13 +161,13 @@ def _judgement(
     from verify.solvers.registry import solver_named
     from verify.solvers.solver import Callback, Solver
 
-    raised: list[Exception] = []
+    raised: list[BaseException] = []
 
     def answer(problem: Any) -> Any:
         assert callable(solve)
         try:
             return solve(problem)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raised.append(error)
             raise
 

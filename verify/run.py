@@ -19,7 +19,7 @@ from verify.scenes.precision import rung as rung_named
 from verify.scenes.reader import load
 from verify.scenes.scene import Scene
 from verify.solvers.registry import solver_named
-from verify.solvers.solver import Lack, Solver
+from verify.solvers.solver import Lack, Solver, raised
 from verify.solvers.trajectory import Outcome
 
 
@@ -49,7 +49,11 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
     costs = Costs()
     began = perf_counter()
     with costs.of(SOLVING):
-        trajectory = solver.solve(problem)
+        try:
+            trajectory = solver.solve(problem)
+        except SystemExit as end:
+            # A solver of one's own: its end is a failed run, and not the end of the caller.
+            trajectory = raised(end)
     seconds = perf_counter() - began
     found = judgement(problem, solver, trajectory, seconds)
     found = with_initial(found, float(problem.given.clock.start))

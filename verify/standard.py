@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verify.job import Job
 from verify.parallel import Failed, available_cores, fault, on_all_cores
-from verify.unfinished import forget, keep, kept
+from verify.unfinished import Unfinished, unfinished
 
 if TYPE_CHECKING:
     from verify.judge.judgement import Judgement
 
 Finished = Callable[[Job], None]
 
-# What a run takes, in that of one state in closed form: a recursion as many times as much, and so many
+# What a run takes, in that of one state in closed form: Taylor series as many times as much, and so many
 # radians as much as one more.
-_RECURSION = 10
+_TAYLOR = 10
 _RADIANS_PER_STATE = 1e5
 
 
@@ -29,12 +31,17 @@ class Interrupted(KeyboardInterrupt):
 
 
 def run_all(
-    asked: Sequence[Job], finished: Finished, workers: int | None = None, resume: bool = False
+    asked: Sequence[Job],
+    finished: Finished,
+    workers: int | None = None,
+    resume: bool = False,
+    out: Path | None = None,
 ) -> list[Judgement]:
     """Every job's judgements, rung by rung; ``finished`` is told of each job as it ends.
 
-    What an interrupted run had finished is not run again if ``resume`` is asked for: of several jobs
-    each is kept as it ends, until all have. An interrupt is raised as Interrupted.
+    Of several jobs each is kept as it ends, until all have, in a folder of this run into ``out``. What
+    the same run had finished before an interrupt is not run again if ``resume`` is asked for. An
+    interrupt is raised as Interrupted.
 
     One job runs in this process, several in as many as there are cores: heyoka's compiled
     integrators and the truth's big integers both hold the interpreter. Raises Failed for a job that
@@ -45,8 +52,6 @@ def run_all(
         found = _run(job)
         finished(job)
         return found
-    if not resume:
-        forget()
     ended: list[Job] = []
 
     def ends(job: Job) -> None:
@@ -54,20 +59,24 @@ def run_all(
         finished(job)
 
     workers = min(workers or available_cores(), len(asked))
-    try:
-        results = on_all_cores(_run_or_recall, asked, _expense, ends, workers)
-    except KeyboardInterrupt as interrupt:
-        raise Interrupted(len(ended), len(asked)) from interrupt
-    forget()
+    with unfinished(asked, out, resume) as store:
+        try:
+            work = partial(_run_or_recall, store)
+            results = on_all_cores(work, asked, _expense, ends, workers)
+        except KeyboardInterrupt as interrupt:
+            raise Interrupted(len(ended) if store else 0, len(asked)) from interrupt
+        if store:
+            store.forget()
     return [judgement for result in results for judgement in result]
 
 
-def _run_or_recall(job: Job) -> list[Judgement]:
-    """One of several: kept as soon as it is finished, and not run again if it is kept."""
-    found = kept(job)
+def _run_or_recall(store: Unfinished | None, job: Job) -> list[Judgement]:
+    """Run a job of several, unless it is in the store, and store it as soon as it is finished."""
+    found = store.recall(job) if store else None
     if found is None:
         found = _run(job)
-        keep(job, found)
+        if store:
+            store.keep(job, found)
     return found
 
 
@@ -93,7 +102,7 @@ def _expense(job: Job) -> float:
     """The longest first, so that no core is left with one at the end.
 
     What is tracked tells, and whether the truth, or the flow between two samples of a loaded body, is
-    a closed form or a recursion, which is many times as dear; of long runs the radians. The scene is
+    a closed form or Taylor series, which are many times as dear; of long runs the radians. The scene is
     read again for it, which costs a millisecond.
     """
     from verify.scenes.bodies import RigidBody
@@ -106,4 +115,4 @@ def _expense(job: Job) -> float:
     states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
     spin = max(map(abs, start.omega)) if isinstance(start, Spin) else 0
     radians = float(spin * abs(scene.clock.elapsed[-1]))
-    return -states * (1 if has_closed_form else _RECURSION) - radians / _RADIANS_PER_STATE
+    return -states * (1 if has_closed_form else _TAYLOR) - radians / _RADIANS_PER_STATE

@@ -1,65 +1,165 @@
-"""What a run of many scenes has finished so far, kept apart so that an interrupted one can go on.
+"""The finished jobs of a run of many scenes, stored so that the run can go on after an interrupt.
 
-Each job's judgements are a file of their own in the user's cache, written whole or not at all, named by
-all that they depend on: scene, solver, rungs, versions and the text of this package. Nothing of it is
-read unless it is asked for, and it is removed when a run has come to its end.
+A run, its folder of reports included, has a folder of its own in the user's cache, which no other run
+reads or writes: a lock says who is in it. Each job's judgements are a file, written whole or not at
+all: the digest of the rest, then JSON, which runs nothing when it is read. The name of a file is made of
+all that its judgements depend on: scene, solver, rungs, versions and the text of this package.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
+import logging
 import os
-import pickle
+import shlex
 import shutil
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 from platformdirs import user_cache_path
+
+from verify.folder_lock import Occupied, alone_in
 
 if TYPE_CHECKING:
     from verify.job import Job
     from verify.judge.judgement import Judgement
 
-
-def folder() -> Path:
-    return user_cache_path("taylor-verify") / "unfinished"
-
-
-def forget() -> None:
-    """Remove what is kept; a cache that cannot be changed is left alone."""
-    shutil.rmtree(folder(), ignore_errors=True)
+_SUFFIX: Final = ".judged"
+_log = logging.getLogger(__name__)
 
 
-def kept(job: Job) -> list[Judgement] | None:
-    """The judgements of a job that was finished before; None of one that was not."""
-    try:
-        content = _file(job).read_bytes()
-    except OSError:
-        return None
-    # Of our own writing, in the user's own cache.
-    found: list[Judgement] = pickle.loads(content)
-    return found
+@dataclass(frozen=True)
+class Unfinished:
+    """The store of one run."""
+
+    folder: Path
+
+    def recall(self, job: Job) -> list[Judgement] | None:
+        """The judgements of a job that was finished before; None if it is to be run.
+
+        A file that was damaged since is removed, with a warning.
+        """
+        file = self._file(job)
+        try:
+            return _read(file.read_bytes())
+        except OSError:
+            return None
+        except (LookupError, TypeError, ValueError):
+            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.scene, file)
+            with suppress(OSError):
+                file.unlink()
+            return None
+
+    def keep(self, job: Job, judgements: Sequence[Judgement]) -> None:
+        """Store the judgements of a job; where nothing can be written, nothing is stored."""
+        with suppress(OSError):
+            handle, name = tempfile.mkstemp(dir=self.folder)
+            with open(handle, "wb") as file:
+                file.write(_written(judgements))
+            os.replace(name, self._file(job))
+
+    def forget(self) -> None:
+        """Remove everything."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _file(self, job: Job) -> Path:
+        from verify.judge.provenance import versions
+        from verify.scenes.reader import load
+
+        depends = (load(job.scene).digest, job, _programs(job.solver), versions(), _package())
+        return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
 
 
-def keep(job: Job, judgements: list[Judgement]) -> None:
-    """Store the judgements of a job; where the cache cannot be written, nothing is kept."""
-    with suppress(OSError):
-        folder().mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=folder())
-        with open(handle, "wb") as file:
-            pickle.dump(judgements, file)
-        os.replace(name, _file(job))
+@contextmanager
+def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator[Unfinished | None]:
+    """The store of a run, empty unless it is to be resumed.
+
+    None where the user's cache cannot be written, and where the same run is going on elsewhere.
+    """
+    place = os.path.abspath(out) if out is not None else None
+    run = _digest(repr((list(asked), os.getcwd(), place)).encode())
+    store = Unfinished(user_cache_path("taylor-verify") / "unfinished" / run[:32])
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(alone_in(store.folder))
+            if not resume:
+                for file in store.folder.glob(f"*{_SUFFIX}"):
+                    file.unlink()
+        except (Occupied, OSError):
+            yield None
+            return
+        yield store
 
 
-def _file(job: Job) -> Path:
-    from verify.judge.provenance import versions
-    from verify.scenes.reader import load
+# The files.
 
-    depends = (load(job.scene).digest, job.scene, job.solver, job.rungs, versions(), _package())
-    return folder() / f"{hashlib.sha256(repr(depends).encode()).hexdigest()}.pickle"
+
+def _written(judgements: Sequence[Judgement]) -> bytes:
+    rows = [
+        {
+            "verdicts": [vars(verdict) for verdict in judgement.verdicts],
+            "record": judgement.record and judgement.record.document(),
+            "costs": dict(judgement.costs),
+        }
+        for judgement in judgements
+    ]
+    # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
+    text = json.dumps(rows).encode()
+    return _digest(text).encode() + b"\n" + text
+
+
+def _read(content: bytes) -> list[Judgement]:
+    """The judgements as they were; LookupError, TypeError or ValueError for any other content."""
+    from verify.judge.judgement import Judgement
+
+    digest, _, text = content.partition(b"\n")
+    if digest != _digest(text).encode():
+        raise ValueError("expected the digest of the content")
+    return [
+        Judgement(
+            tuple(_verdict(row) for row in judgement["verdicts"]),
+            None if judgement["record"] is None else _record(judgement["record"]),
+            costs=judgement["costs"],
+        )
+        for judgement in json.loads(text)
+    ]
+
+
+def _verdict(row: dict[str, Any]) -> Any:
+    from verify.judge.verdict import Status, Verdict
+
+    return Verdict(**{**row, "verdict": Status(row["verdict"])})
+
+
+def _record(document: dict[str, Any]) -> Any:
+    from verify.judge.record import GateRecord, Record
+
+    gates = tuple(GateRecord(**_with_tuples(gate)) for gate in document["gates"])
+    return Record(**{**_with_tuples(document), "gates": gates})
+
+
+def _with_tuples(document: dict[str, Any]) -> dict[str, Any]:
+    return {k: tuple(v) if isinstance(v, list) else v for k, v in document.items()}
+
+
+# What a judgement depends on.
+
+
+def _programs(solver: str) -> list[str]:
+    """The digests of the files that a command names: a program that has changed is another solver."""
+    from verify.solvers.registry import PROCESS
+
+    if not solver.startswith(PROCESS):
+        return []
+    words = shlex.split(solver.removeprefix(PROCESS))
+    files = [Path(place) for word in words if (place := shutil.which(word) or word)]
+    return [_digest(file.read_bytes()) for file in files if file.is_file()]
 
 
 @cache
@@ -70,3 +170,7 @@ def _package() -> str:
     for file in sorted(package.rglob("*.py")):
         digest.update(str(file.relative_to(package)).encode() + file.read_bytes())
     return digest.hexdigest()
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

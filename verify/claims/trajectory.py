@@ -1,4 +1,4 @@
-"""Trajectories for claims that are about orbits: the Taylor recursion on the equations of motion.
+"""Trajectories for claims that are about orbits: Taylor series of the equations of motion, in balls.
 
 It shares no closed form with the text, and is settled to the digits asked for.
 """

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from verify.cli import ci, claims, question, tradeoff, verbs
+from verify.cli import ci, claims, publishing, question, tradeoff, verbs
 from verify.cli.answer import Answer
 
 _DEFAULT_DIGITS = 30
@@ -155,8 +155,8 @@ def _add_exact(found: Any) -> None:
     verb.add_argument(
         "--route",
         choices=("arb", "mpmath", "taylor"),
-        help="default: arb, the closed form in balls; mpmath, the same by other formulas; taylor "
-        "needs no closed form",
+        help="arb, the closed form in balls (default where there is one); mpmath, the same by other "
+        "formulas; taylor, Taylor series in balls (default elsewhere)",
     )
 
 
@@ -262,9 +262,9 @@ def _add_claims(found: Any) -> None:
 
 def _add_publish(found: Any) -> None:
     what = "rebuild the tables from verdicts and records"
-    verb = _verb(found, "publish", what, "publish --from reports/local", verbs.publish)
+    verb = _verb(found, "publish", what, "publish --from reports/local", publishing.publish)
     verb.add_argument(
-        "--from", dest="folder", default="reports", metavar="DIR", help="default: reports"
+        "--from", dest="folder", metavar="DIR", help="default: reports of the checkout around"
     )
     made = verb.add_mutually_exclusive_group()
     made.add_argument(

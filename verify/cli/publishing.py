@@ -1,15 +1,65 @@
-"""What `publish` computes or measures anew before it writes."""
+"""The verb `publish`: what it computes or measures anew, and the pages it makes."""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from verify.cli.answer import Answer, WrongCall, files_written
+from verify.cli.folders import alone_in, reports_folder, writable
 from verify.cli.streams import say
 
 # The rung on which the extremes are published, as `make verify` runs them.
 _ON = "f64"
+
+
+def publish(options: argparse.Namespace) -> Answer:
+    """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
+    from verify.cli.claims import publish_claims
+    from verify.cli.growth_publish import publish_growth
+    from verify.publish import report
+
+    anew: dict[str, Callable[[Path], Answer]] = {
+        "reference": references,
+        "portraits": portraits,
+        "gallery": gallery,
+        "controls": controls,
+        "claims": publish_claims,
+        "prices": prices,
+        "reach": reach,
+        "tradeoff": partial(tradeoff, outside=options.outside),
+        "extremes": extremes,
+        "paper": paper,
+        "worst": partial(worst, seconds=options.seconds, seed=options.seed),
+        "growth": partial(publish_growth, periods=options.periods, long=options.long),
+    }
+    # These make their pages from what the folder holds; all others put something into it.
+    measured = anew.keys() - {"gallery", "paper"}
+    folder = reports_folder(
+        options.folder, measures=any(getattr(options, option) for option in measured)
+    )
+    for option, write in anew.items():
+        if getattr(options, option):
+            place = writable(folder, "--from")
+            with alone_in(place, "--from"):
+                return write(place)
+    if options.periods is not None or options.long:
+        raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
+    if options.site is not None:
+        return site(folder, str(writable(options.site, "--site")))
+    if options.outside:
+        raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
+    try:
+        with alone_in(Path(folder) if Path(folder).is_dir() else None, "--from"):
+            return files_written(report.publish(folder))
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected what `run --out {folder}` writes, got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(str(error)) from error
 
 
 def references(folder: Path) -> Answer:

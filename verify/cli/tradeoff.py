@@ -8,7 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
-from verify.cli.verbs import known_rungs, read_scenes, read_time, writable
+from verify.cli.folders import alone_in, writable
+from verify.cli.verbs import known_rungs, read_scenes, read_time
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,7 +39,7 @@ def tradeoff(options: argparse.Namespace) -> Answer:
         _make_environments()
     found: list[dict[str, Any]] = []
     missed: list[str] = []
-    with cold_caches():
+    with alone_in(place), cold_caches():
         for scene in read_scenes(list(dict.fromkeys(options.scenes))):
             with working(f"tradeoff {scene.name}"):
                 trade = trade_off(scene, asked(scene), options.repeats, options.seed)
@@ -49,9 +50,9 @@ def tradeoff(options: argparse.Namespace) -> Answer:
                     document["recommendation"], because = _recommended(trade, target)
                     missed += because
                 found.append(document)
-    messages = list(missed)
-    if place is not None:
-        messages += [f"wrote {path}" for path in _draw(found, place)]
+        messages = list(missed)
+        if place is not None:
+            messages += [f"wrote {path}" for path in _draw(found, place)]
     status = UNDECIDED if missed else PASS
     return Answer(status, {"scenes": found}, partial(tradeoff_text, found), messages)
 

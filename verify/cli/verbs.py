@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, files_written
+from verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
+from verify.cli.folders import IN_A_CHECKOUT, alone_in, writable
 from verify.cli.streams import say
 
 if TYPE_CHECKING:
@@ -39,10 +40,6 @@ def list_all(options: argparse.Namespace) -> Answer:
 
 def run(options: argparse.Namespace) -> Answer:
     """The whole chain for some scenes, or for the standard set."""
-    from verify.cli.ci import outputs, tell
-    from verify.cli.terminal import verdicts_text
-    from verify.expected import hold
-    from verify.judge.verdict import summary
     from verify.scenes.expected import left_out
     from verify.scenes.library import named, names
     from verify.scenes.precision import LADDER
@@ -54,9 +51,26 @@ def run(options: argparse.Namespace) -> Answer:
     scenes = list(dict.fromkeys(options.scenes)) or list(names())
     read_scenes(scenes)
     folder = writable(options.out) if options.out is not None else None
+    with alone_in(folder):
+        return _run(options, scenes, rungs, without, folder)
+
+
+def _run(
+    options: argparse.Namespace,
+    scenes: Sequence[str],
+    rungs: Sequence[str],
+    without: Mapping[tuple[str, str], str],
+    folder: Path | None,
+) -> Answer:
+    """Run scenes that are known to be sound, into a folder that nobody else writes to."""
+    from verify.cli.ci import outputs, tell
+    from verify.cli.terminal import verdicts_text
+    from verify.expected import hold
+    from verify.judge.verdict import summary
+
     published = _published(options, rungs) if options.against is not None else None
     asked = outputs(options)
-    results = _judge(scenes, options.solver, rungs, without, options.resume)
+    results = _judge(scenes, options.solver, rungs, without, options.resume, folder)
     verdicts = [verdict for result in results for verdict in result.verdicts]
     held = hold(verdicts)
     status, messages = held.exit_status(verdicts), []
@@ -105,7 +119,8 @@ def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdic
         verdicts = report.load(options.against)
     except FileNotFoundError as error:
         raise WrongCall(
-            f"expected a folder of `run --out`, got no such file @ --against {error.filename}"
+            f"expected a folder of `run --out`, got no such file @ --against {error.filename}; "
+            f"{IN_A_CHECKOUT}"
         ) from error
     except ValueError as error:
         raise WrongCall(f"{error} (--against)") from error
@@ -156,18 +171,19 @@ def exact(options: argparse.Namespace) -> Answer:
     from verify.exact.route import solution
     from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 
-    route = options.route or "arb"
     try:
         with working(f"exact {scene.name}"):
             scene = formed_to(scene, options.digits)
-            found = solution(scene, route)
+            found = solution(scene, options.route)
             printed = document(scene, found, times, options.digits)
     except NoClosedForm as reason:
-        because = f"no closed form: {reason}; use --route taylor @ {scene.name}"
-        return _without_rows(scene, options.digits, route, NO_CLOSED_FORM, because)
+        because = (
+            f"no closed form: {reason}; leave out --route, or use --route taylor @ {scene.name}"
+        )
+        return _without_rows(scene, options.digits, options.route, NO_CLOSED_FORM, because)
     except Unsettled as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
-        return _without_rows(scene, options.digits, route, found.regime, because)
+        return _without_rows(scene, options.digits, found.route, found.regime, because)
     return Answer(PASS, printed, partial(exact_text, printed))
 
 
@@ -241,47 +257,6 @@ def explain(options: argparse.Namespace) -> Answer:
     return Answer(PASS, found, partial(explanation_text, found))
 
 
-def publish(options: argparse.Namespace) -> Answer:
-    """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
-    from verify.cli import publishing
-    from verify.cli.claims import publish_claims
-    from verify.cli.growth_publish import publish_growth
-    from verify.publish import report
-
-    anew: dict[str, Callable[[Path], Answer]] = {
-        "reference": publishing.references,
-        "portraits": publishing.portraits,
-        "gallery": publishing.gallery,
-        "controls": publishing.controls,
-        "claims": publish_claims,
-        "prices": publishing.prices,
-        "reach": publishing.reach,
-        "tradeoff": partial(publishing.tradeoff, outside=options.outside),
-        "extremes": publishing.extremes,
-        "paper": publishing.paper,
-        "worst": partial(publishing.worst, seconds=options.seconds, seed=options.seed),
-        "growth": partial(publish_growth, periods=options.periods, long=options.long),
-    }
-    for option, write in anew.items():
-        if getattr(options, option):
-            return write(writable(options.folder, "--from"))
-    if options.periods is not None or options.long:
-        raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
-    if options.site is not None:
-        return publishing.site(options.folder, str(writable(options.site, "--site")))
-    if options.outside:
-        raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
-    try:
-        return files_written(report.publish(options.folder))
-    except FileNotFoundError as error:
-        raise WrongCall(
-            f"expected what `run --out {options.folder}` writes, got no such file "
-            f"@ {error.filename}"
-        ) from error
-    except ValueError as error:
-        raise WrongCall(str(error)) from error
-
-
 # What the verbs share.
 
 
@@ -291,6 +266,7 @@ def _judge(
     rungs: Sequence[str],
     left_out: Iterable[tuple[str, str]] = (),
     resume: bool = False,
+    out: Path | None = None,
 ) -> list[Judgement]:
     from verify.cli.progress import advancing
     from verify.job import jobs
@@ -304,7 +280,7 @@ def _judge(
         if job.rungs
     ]
     with advancing(len(asked)) as finished:
-        return run_all(asked, finished, resume=resume)
+        return run_all(asked, finished, resume=resume, out=out)
 
 
 def _no_text() -> str:
@@ -357,27 +333,6 @@ def read_time(text: str) -> Fraction:
         return exact_number(text)
     except ValueError as error:
         raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
-
-
-def writable(folder: str, option: str = "--out") -> Path:
-    """The folder, tried out before hours of work end in a refusal to write, and not yet made."""
-    import tempfile
-    from pathlib import Path
-
-    path = Path(folder)
-    try:
-        if not folder:
-            raise NotADirectoryError(0, "an empty name")
-        with tempfile.TemporaryFile(dir=_nearest_existing(path)):
-            return path
-    except OSError as error:
-        raise WrongCall(
-            f"expected a folder that can be written, got {folder!r} ({error.strerror}) @ {option}"
-        ) from error
-
-
-def _nearest_existing(path: Path) -> Path:
-    return next(folder for folder in (path, *path.absolute().parents) if folder.exists())
 
 
 def _write_reports(folder: Path, results: Sequence[Judgement]) -> str:

@@ -106,7 +106,7 @@ def in_21_coefficients(problem: Problem) -> Problem:
         problem,
         form=form,
         parameters=tuple(known[name] for name in form.parameters),
-        initial=tuple(known[name] for name in states),
+        initial_momenta=tuple(known[name] for name in states),
     )
 
 

@@ -78,7 +78,7 @@ class FixedStep(Solver):
         began = perf_counter()
         given = problem.parameter
         body = Body((float(given["K11"]), float(given["K22"]), float(given["K33"])))
-        state: State = tuple(float(value) for value in problem.initial)
+        state: State = tuple(float(value) for value in problem.initial_momenta)
         rows = [state]
         for before, after in pairwise(float(t) for t in problem.times):
             h = (after - before) / self.steps_per_sample

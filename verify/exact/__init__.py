@@ -24,11 +24,12 @@ def exact(
     """The exact motion at absolute times, to ``digits`` significant digits of every vector.
 
     Times are Fractions, integers or decimal text, in the scene's unit; the initial state is at the
-    scene's start. The Motion has a row for each time, in body axes but for ``centre``, and a proven or
-    settled ``radius``. ``route`` is ``arb`` (closed form in balls), ``mpmath`` (closed form by other
-    formulas) or ``taylor`` (recursion); by default ``arb`` where there is a closed form, else
-    ``taylor``. The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics
-    48 (3), (4); the formulas of a closed form are named in exact.euler and exact.kirchhoff.
+    scene's start. The Motion has a row for each time, in body axes but for ``centre``, and a ``radius``:
+    proven, or for ``mpmath`` that to which two precisions agree. ``route`` is ``arb`` (closed form in
+    balls), ``mpmath`` (closed form by other formulas) or ``taylor`` (Taylor series in balls); by default
+    ``arb`` where there is a closed form, else ``taylor``. The equations are Heinbockel (2.2.72) and
+    Encyclopaedia Britannica, hydromechanics 48 (3), (4); the formulas of a closed form are named in
+    exact.euler and exact.kirchhoff.
 
     Raises scenes.faults.Refused for a scene that cannot be read, exact.solution.NoClosedForm where the
     route asks for a closed form that is missing, exact.solution.Unsettled where the digits cannot be

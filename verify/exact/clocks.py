@@ -1,4 +1,4 @@
-"""The loads of a manufactured motion for the Taylor recursion: cosines and sines carried as variables.
+"""The loads of a manufactured motion as a quadratic system: cosines and sines carried as variables.
 
 The equations z' = N(z) become z' = N(z) + z*' - N(z*), N quadratic and z* a linear form of the clock w:
 
@@ -14,14 +14,15 @@ from fractions import Fraction
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from flint import arb, fmpq
 from mpmath import mp
 
-from verify.exact.recursion import Polynomial
 from verify.scenes.bodies import Body, RigidBody
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.precision import exact_value, floor_log2
 from verify.scenes.tensors import Vector
 
+Polynomial = Mapping[tuple[int, int], Fraction]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # A float64 has less.
@@ -45,6 +46,16 @@ def at(motion: Manufactured, elapsed: Fraction, digits: int) -> Vector:
             c, s = mp.cos_sin(mp.convert(angle))
             found += [exact_value(c), exact_value(s)]
     return tuple(found)
+
+
+def balls_at(motion: Manufactured, elapsed: Fraction) -> list[arb]:
+    """The clock at a time since the start in balls, at the ambient precision."""
+    found = [arb(1)]
+    for wave in motion.waves:
+        angle = wave.frequency * elapsed
+        s, c = arb(fmpq(angle.numerator, angle.denominator)).sin_cos()
+        found += [c, s]
+    return found
 
 
 def floats(motion: Manufactured | None, times: Sequence[Fraction]) -> Floats:

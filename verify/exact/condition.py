@@ -32,7 +32,7 @@ FloatArray = np.ndarray[Any, np.dtype[np.float64]]
 
 # (e, digits): momenta are changed by 10^-e of their size. The first attempt is for regular orbits. A
 # perturbed orbit may lie 10^-e beside a degenerate one, where a closed form can lose 3e digits; the
-# Taylor recursion loses none.
+# Taylor route loses none.
 _CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440), (250, 1100))
 _TAYLOR_DIGITS: Final = ((12, 32), (30, 70), (60, 130))
 # Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
@@ -92,7 +92,7 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
 
 
 def differs_dearly(scene: Scene) -> bool:
-    """Whether differences of the motion would be of recursions, or of quadratures.
+    """Return True if each difference of the motion would cost a Taylor integration or quadratures.
 
     One integration along it costs less. A start beside it may leave the closed form: a motion in a plane
     leaves the plane, Weber's loses FG = 0, and a manufactured one has its closed form from one start only.

@@ -50,6 +50,7 @@ def document(
     return {
         "scene": scene.name,
         "route": found.route,
+        "evidence": found.evidence,
         "digits": digits,
         "regime": _regime(scene, found),
         "rows": rows,

@@ -1,7 +1,7 @@
 """How fast an exact motion moves: its first and second time derivatives, from its own equations.
 
-The equations are those of exact.taylor, z' = c + sum of products of two variables, so that
-z'' = sum of (first' second + first second'). No difference of two motions is taken.
+The equations are those of exact.enclosure.system, z' = c + z.Q z/2, so that z'' = z.Q z'. No difference
+of two motions is taken.
 """
 
 from __future__ import annotations
@@ -16,14 +16,16 @@ import numpy as np
 from mpmath import mp
 
 from verify.exact import clocks
-from verify.exact.recursion import Combination
-from verify.exact.taylor import posed
+from verify.exact.enclosure.system import posed
+from verify.exact.units import units
 from verify.scenes.motion import Motion
+from verify.scenes.precision import power_of_two
 from verify.scenes.scene import Scene
+from verify.scenes.tensors import Matrix
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# The order of the states in exact.taylor.
+# Blocks of the state, then attitude and centre.
 _STATES: Final = {
     "euler": ("omega", "attitude"),
     "kirchhoff": ("linear_impulse", "angular_impulse", "attitude", "centre"),
@@ -53,84 +55,109 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     ``elapsed`` are the times of its rows since the start, the scene's own unless they are given; loads
     that change with time, those of a manufactured motion, ask for them.
     """
-    flow = _flow(scene)
-    names = [name for name in _STATES[scene.model] if name in motion.quantities]
-    states = [motion[name].reshape(len(motion.radius), -1) for name in names]
-    units = flow.exponents[: sum(block.shape[1] for block in states)]
-    z = _floats(np.concatenate(states, axis=1), units)
+    scale, names = units(scene), _STATES[scene.model]
+    exponents = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=False))
+    values = {
+        name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
+    }
+    blocks = [values[name] for name in names[: len(scale.blocks)]]
     manufactured = scene.body.manufactured
     if manufactured is not None:
         times = scene.clock.elapsed if elapsed is None else elapsed
-        z = np.concatenate([z, clocks.floats(manufactured, times)], axis=1)
+        blocks.append(clocks.floats(manufactured, times))
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
-        velocity, acceleration = flow.derivatives(z)
-    places, first = {}, 0
-    for name, block in zip(names, states, strict=True):
-        places[name] = slice(first, first + block.shape[1])
-        first += block.shape[1]
+        found = _flow(scene).derivatives(np.concatenate(blocks, axis=1), values.get("attitude"))
+    velocity, acceleration = (_by_name(derivatives, names) for derivatives in found)
     return Rates(
-        velocity={n: velocity[:, p].reshape(motion[n].shape) for n, p in places.items()},
-        acceleration={n: acceleration[:, p].reshape(motion[n].shape) for n, p in places.items()},
-        units={name: units[place.start] for name, place in places.items()},
-        time=flow.time,
+        velocity={name: velocity[name] for name in values},
+        acceleration={name: acceleration[name] for name in values},
+        units={name: exponents[name] for name in values},
+        time=scale.time,
     )
+
+
+def _by_name(derivatives: Sequence[Floats], names: Sequence[str]) -> dict[str, Floats]:
+    """The derivatives of the state apart, by block."""
+    state, *frame = derivatives
+    count = len(names) - 2 if len(names) > 2 else 1
+    blocks = [state[:, 3 * k : 3 * k + 3] for k in range(count)]
+    return dict(zip(names, [*blocks, *frame], strict=False))
 
 
 @dataclass(frozen=True)
 class _Flow:
-    """z' = constant + weights (v[first] v[second]), v being the states and then the forms."""
+    """z' = constant + z.hessian z/2, Omega = spin z, U = velocity z: all of it in units, as float64."""
 
     constant: Floats
-    forms: Floats
-    first: tuple[int, ...]
-    second: tuple[int, ...]
-    weights: Floats
-    exponents: tuple[int, ...]
-    time: int
+    hessian: Floats
+    spin: Floats
+    velocity: Floats
 
-    def derivatives(self, z: Floats) -> tuple[Floats, Floats]:
-        """z' and z'' at every row of z."""
-        v = self._with_forms(z)
-        a, b = v[:, self.first], v[:, self.second]
-        velocity = self.constant + (a * b) @ self.weights.T
-        dv = self._with_forms(velocity)
-        acceleration = (dv[:, self.first] * b + a * dv[:, self.second]) @ self.weights.T
-        return velocity, acceleration
+    def derivatives(self, z: Floats, attitude: Floats | None) -> tuple[list[Floats], list[Floats]]:
+        """First and second derivatives of the state, then of the attitude and of the centre.
 
-    def _with_forms(self, z: Floats) -> Floats:
-        return np.concatenate([z, z[:, : self.forms.shape[1]] @ self.forms.T], axis=1)
+        ``z`` has the shape (times, n), ``attitude`` (times, 3, 3); without it there is the state alone.
+        """
+        rate = self.constant + np.einsum("iab,ta,tb->ti", self.hessian, z, z) / 2
+        second = np.einsum("iab,ta,tb->ti", self.hessian, z, rate)
+        firsts, seconds = [rate], [second]
+        if attitude is None:
+            return firsts, seconds
+        spin, spun = _cross_matrices(z @ self.spin.T), _cross_matrices(rate @ self.spin.T)
+        turning = attitude @ spin
+        firsts.append(turning)
+        seconds.append(turning @ spin + attitude @ spun)
+        if len(self.velocity):
+            speed, pushed = z @ self.velocity.T, rate @ self.velocity.T
+            firsts.append(np.einsum("tij,tj->ti", attitude, speed))
+            seconds.append(
+                np.einsum("tij,tj->ti", turning, speed) + np.einsum("tij,tj->ti", attitude, pushed)
+            )
+        return firsts, seconds
+
+
+def _cross_matrices(vectors: Floats) -> Floats:
+    """[v]x of every row, so that [v]x w = v x w."""
+    x, y, z = vectors.T
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    matrices: Floats = np.moveaxis(np.array(rows), 2, 0)
+    return matrices
 
 
 @lru_cache(maxsize=16)
 def _flow(scene: Scene) -> _Flow:
-    problem = posed(scene)
-    size = len(problem.start)
-    constant, weights = np.zeros(size), np.zeros((size, len(problem.products)))
-    constant[: len(problem.constant)] = [float(c) for c in problem.constant]
-    for row, (places, combination) in zip(weights, problem.rates, strict=True):
-        row[list(places)] = _coefficients(combination)
+    system, scale = posed(scene), units(scene)
+    n, time = system.size, power_of_two(scale.time)
+    # The clock of a manufactured motion is of size one.
+    blocks = [*scale.blocks, *[0] * (len(system.blocks) - len(scale.blocks))]
+    unit = [power_of_two(e) for e, span in zip(blocks, system.spans, strict=True) for _ in span]
     return _Flow(
-        constant=constant,
-        forms=np.array([_coefficients(form) for form in problem.forms]).reshape(
-            len(problem.forms), -1 if problem.forms else 0
+        constant=np.array(
+            [float(c * time / one) for c, one in zip(system.constant, unit, strict=True)]
         ),
-        first=tuple(a for a, _ in problem.products),
-        second=tuple(b for _, b in problem.products),
-        weights=weights,
-        exponents=problem.units.variables,
-        time=problem.units.time,
+        hessian=np.array(
+            [
+                float(c * unit[place // n] * unit[place % n] * time / one) if c else 0.0
+                for row, one in zip(system.hessian, unit, strict=True)
+                for place, c in enumerate(row)
+            ]
+        ).reshape(n, n, n),
+        spin=_form(system.spin, unit, time),
+        velocity=_form(system.velocity, unit, time / power_of_two(scale.centre)),
     )
 
 
-def _coefficients(combination: Combination) -> list[float]:
-    # The numerators may be gmpy2's, whose quotients are no floats.
-    return [int(numerator) / combination.denominator for numerator in combination.numerators]
+def _form(rows: Matrix, unit: Sequence[Fraction], factor: Fraction) -> Floats:
+    """A linear form of the state in units."""
+    entries = [[float(c * one * factor) for c, one in zip(row, unit, strict=True)] for row in rows]
+    return np.array(entries).reshape(len(rows), len(unit))
 
 
-def _floats(states: np.ndarray[Any, Any], exponents: tuple[int, ...]) -> Floats:
-    """The states in their units; a double holds these, whatever the size of the units."""
-    if max(abs(e) for e in exponents) <= _MODERATE:
-        counted: Floats = np.ldexp(states.astype(float), [-e for e in exponents])
+def _floats(values: np.ndarray[Any, Any], exponent: int) -> Floats:
+    """The values in units of 2^exponent; a double holds these, whatever the size of the units."""
+    if abs(exponent) <= _MODERATE:
+        counted: Floats = np.ldexp(values.astype(float), -exponent)
         return counted
-    columns = [[mp.ldexp(v, -e) for v in c] for c, e in zip(states.T, exponents, strict=True)]
-    return np.array(columns, dtype=object).T.astype(float)
+    scaled = [mp.ldexp(value, -exponent) for value in values.flat]
+    return np.array(scaled, dtype=object).reshape(values.shape).astype(float)

@@ -34,7 +34,7 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     """The exact solution of a scene: balls where every tracked quantity has a closed form, else Taylor.
 
     With ``route="arb"`` or ``"mpmath"`` only a closed form is accepted, and NoClosedForm is raised
-    where it is missing; ``route="taylor"`` takes the Taylor recursion in any case.
+    where it is missing; ``route="taylor"`` takes Taylor series in any case.
     """
     if route == "taylor":
         return TaylorSolution(scene)

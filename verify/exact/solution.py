@@ -20,8 +20,7 @@ Quantities = Mapping[str, np.ndarray[Any, Any]]
 NO_CLOSED_FORM: Final = "no closed form"
 
 _FIRST_GUARD_DIGITS = 3
-# Two evaluations that are compared differ by this much in precision; each route makes sure that they
-# differ in more than that (the Taylor recursion in order and step) and never coincide.
+# Two evaluations that are compared differ by this much in precision.
 SETTLING_STEP_DIGITS: Final = 12
 # The precision rises by so many of these steps, attempt by attempt, until two evaluations agree: odd
 # numbers, so that what an evaluation does at every other step only, the next one does not.
@@ -49,7 +48,7 @@ class Solution(ABC):
     """The exact motion of one scene.
 
     ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
-    ``route`` is the arithmetic: ``arb`` or ``mpmath`` (closed forms), or ``taylor``.
+    ``route`` is ``arb`` or ``mpmath`` (closed forms), or ``taylor`` (enclosed Taylor series).
     ``by_quadrature`` says that every instant costs an integral: what needs a motion at hundreds of
     digits, or many of them, has a cheaper way than differences of this one.
     """
@@ -57,6 +56,11 @@ class Solution(ABC):
     regime: str
     route: str
     by_quadrature: bool = False
+
+    @property
+    def evidence(self) -> str:
+        """``proven`` where the radius is a bound; ``agreed`` where two precisions agree to that much."""
+        return "agreed" if self.route == "mpmath" else "proven"
 
     @abstractmethod
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
@@ -74,27 +78,21 @@ class Solution(ABC):
 
 
 class Settled(Solution):
-    """A solution that is believed when two evaluations at different precisions agree.
-
-    These differ by ``step_digits`` at least.
-    """
-
-    step_digits: int = SETTLING_STEP_DIGITS
+    """A solution that is believed when two evaluations at different precisions agree."""
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion to ``digits`` significant digits of every vector and matrix.
 
-        Two evaluations at different precisions (for the Taylor route also orders and steps) must
-        agree to the digits asked for; until they do, both precisions rise. The difference is the error
-        of the poorer one; the better one is returned.
+        Two evaluations at different precisions must agree to the digits asked for; until they do,
+        both precisions rise. The difference is the error of the poorer one; the better one is returned.
 
         Raises Unsettled when some hundreds of digits do not suffice.
         """
         working = digits + _FIRST_GUARD_DIGITS
         poorer = self.evaluate(elapsed, working)
         for rise in _RISES:
-            finer = working + rise * self.step_digits
+            finer = working + rise * SETTLING_STEP_DIGITS
             better = self.evaluate(elapsed, finer)
             with mp.workdps(finer):
                 radii = _differences(poorer, better)

@@ -1,6 +1,7 @@
-"""The truth where no closed form is known: the equations of both texts, and their Taylor recursion.
+"""The truth where no closed form is known: the equations of both texts, enclosed by Taylor series.
 
-The right-hand sides are written here from the texts and share nothing with models.
+A motion is a set of balls that is proven to contain it (exact.enclosure): the rounding of the data and of
+every operation, the truncation of each series, and what the motion makes of all these are bounded.
 """
 
 from __future__ import annotations
@@ -9,90 +10,125 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, final
+from math import ceil, log2
+from typing import Any, Final, final
 
 import numpy as np
-from mpmath import mp
+from flint import arb, ctx
+from mpmath import mp, mpf
 
 from verify.exact import clocks
-from verify.exact.guided import crosswise, placed
-from verify.exact.recursion import (
-    STEP_DIGITS,
-    Equations,
-    Polynomial,
-    Problem,
-    Units,
-    exponent,
-    first_width,
-    leap,
-    march,
-    problem,
-)
+from verify.exact.balls import balls, max_or_nan, midpoint, upper
+from verify.exact.enclosure.course import Coarse, Course, Row
+from verify.exact.enclosure.placing import Place, norm
+from verify.exact.enclosure.system import System, moving, posed
+from verify.exact.enclosure.tube import BOUND_BITS
 from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import NO_CLOSED_FORM, Quantities, Settled
-from verify.scenes import tensors
-from verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from verify.scenes.motion import Impulse, Motion, Spin, State
+from verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
+from verify.scenes.motion import Impulse, Motion, State
 from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
 
-Triple = tuple[int, int, int]
+_GUARD_BITS: Final = 40
+_MORE_BITS: Final = 16
+_ATTEMPTS: Final = 24
+# Beyond twice the bits of the digits asked for: what a motion may lose.
+_MOST_BITS: Final = 10_000
+# A vector that may be zero has no relative digits. If it is smaller than this, in bits beyond the digits
+# asked for, beside its own largest size, its error is told absolutely.
+_NEGLIGIBLE_BITS: Final = 200
 
-# Most have one.
-_STEPS_OF_AN_ARC = 8
-# A clock is so much sharper than the arc that it drives that its rounding is none of the arc's.
-_CLOCK_DIGITS = 10
-# What a division by the impulse may cost the centre.
-_MOST_LOST_BITS = 20
 
-
-@final
 @dataclass(frozen=True)
-class TaylorSolution(Settled):
-    """The motion of any scene, free or loaded, by recursion on the equations of motion."""
+class _Enclosing(Solution):
+    """Motions in balls, at whatever precision makes them narrow enough."""
 
     scene: Scene
 
     route = "taylor"
     regime = NO_CLOSED_FORM
-    step_digits = STEP_DIGITS
 
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The tracked quantities at these times, any order and either sign, to about ``digits``.
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+        """A row of balls for each time, at ``bits`` bits, which are the ambient precision already."""
+        raise NotImplementedError
 
-        The absolute error of a vector is that many digits below the smallest block of the initial
-        state, times what the orbit makes of a rounding. Raises Unsettled when the span would take
-        more than a million steps.
+    @final
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The midpoints, and the proven radius of every vector and matrix relative to its norm.
+
+        Raises Unsettled where more than a million steps, or ten thousand bits more than the digits
+        take, would be needed.
         """
-        problem = self._problem
-        grid = problem.grid(digits)
+        target = ceil(digits * log2(10))
+        bits, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
+        for _ in range(_ATTEMPTS):
+            if bits > most_bits:
+                break
+            try:
+                with ctx.workprec(bits):
+                    rows = self.rows(elapsed, bits, most_bits)
+                motion, missing = self._measured(rows, target)
+            except Coarse as reason:
+                bits = reason.bits
+                continue
+            if missing <= 0:
+                return motion
+            bits += min(missing + _MORE_BITS, bits)
+        raise Unsettled(
+            f"the enclosure of the motion does not shrink to {digits} digits with {most_bits} bits"
+        )
+
+    @final
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The midpoints of the motion."""
+        return self.motion(elapsed, digits).quantities
+
+    def _measured(self, rows: Sequence[Row], target: int) -> tuple[Motion, int]:
+        """The motion, and how many bits its widest vector lacks."""
+        quantities, radii, missing = {}, {}, 0
+        widest = [mpf(0)] * len(rows)
+        for name, vectors in self._vectors(rows).items():
+            widths = []
+            for vector, largest in vectors:
+                width, lacking = _width(list(np.ravel(vector)), largest, target)
+                widths.append(width)
+                missing = max(missing, lacking)
+            values = np.array([vector for vector, _ in vectors], dtype=object)
+            quantities[name] = np.frompyfunc(midpoint, 1, 1)(values)
+            radii[name] = np.array(widths, dtype=object)
+            widest = [max_or_nan(a, b) for a, b in zip(widest, widths, strict=True)]
+        return Motion(quantities, np.array(widest, dtype=object), radii), missing
+
+    def _vectors(self, rows: Sequence[Row]) -> dict[str, list[tuple[Any, float]]]:
+        """Each tracked quantity at each time as balls, with log2 of its largest size so far."""
+        found: dict[str, list[tuple[Any, float]]] = {}
+        names = ("omega",) if self.scene.model == "euler" else ("linear_impulse", "angular_impulse")
+        for k, name in enumerate(names):
+            found[name] = [(row.state[3 * k : 3 * k + 3], row.largest[k]) for row in rows]
+        if self.scene.track:
+            found["attitude"] = [([row.turn[i : i + 3] for i in (0, 3, 6)], 0.0) for row in rows]
+        if "centre" in self.scene.track:
+            found["centre"] = [(row.centre, row.largest[-1]) for row in rows]
+        return found
+
+
+@final
+@dataclass(frozen=True)
+class TaylorSolution(_Enclosing):
+    """The motion of any scene, free or loaded, in balls that are proven to contain it."""
+
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+        start, place = balls(self._system.start), _place(self.scene, self.scene.initial)
+        course = Course.of(self._system, start, place, bits, most_bits)
         later = sorted({t for t in elapsed if t > 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
-        states = {Fraction(0): grid.integers(problem.start)}
+        rows = {Fraction(0): course.first_row()}
         for times in filter(None, (later, earlier)):
-            width = first_width(problem, times[-1], grid)
-            states.update(march(problem, times, grid, width))
-        rows = [problem.reals(states[t], grid) for t in elapsed]
-        if not self._is_guided:
-            return _quantities(self.scene, rows)
-        with mp.workprec(grid.bits):
-            return _guided_quantities(self.scene, elapsed, rows)
+            rows.update(course.rows(times))
+        return [rows[t] for t in elapsed]
 
     @cached_property
-    def _is_guided(self) -> bool:
-        """Whether the impulse leads the frame: it is constant in space, and not too small to divide by."""
-        start, body = self.scene.initial, self.scene.body
-        if not (isinstance(start, Impulse) and isinstance(body, ImmersedBody)):
-            return False
-        if not (self.scene.track and body.is_free and any(start.linear)):
-            return False
-        units = _kirchhoff_units(body, start.linear + start.angular)
-        impulse, moment, speed = units.variables[0], exponent(start.angular), units.variables[6]
-        return moment is None or moment <= impulse + speed + units.time + _MOST_LOST_BITS
-
-    @cached_property
-    def _problem(self) -> Problem:
-        return _guided_problem(self.scene) if self._is_guided else posed(self.scene)
+    def _system(self) -> System:
+        return posed(self.scene)
 
 
 def arcs(
@@ -104,9 +140,9 @@ def arcs(
 ) -> Motion:
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
-    Settled to ``digits`` by the agreement of two evaluations, as Solution.motion is, and raises
-    Unsettled likewise. The loads of a manufactured motion change with time: there each arc has to say
-    when it begins, ``begins`` since the start of the scene. Elsewhere that changes nothing.
+    Enclosed to ``digits``, as Solution.motion is, and raises Unsettled likewise. The loads of a
+    manufactured motion change with time: there each arc has to say when it begins, ``begins`` since the
+    start of the scene. Elsewhere that changes nothing.
     """
     if scene.body.manufactured is not None and len(begins) != len(starts):
         raise ValueError(
@@ -118,275 +154,52 @@ def arcs(
 
 @final
 @dataclass(frozen=True)
-class _Arcs(Settled):
+class _Arcs(_Enclosing):
     """Many short motions of one body, each from a state of its own, and by the clock from its time."""
 
-    scene: Scene
     starts: tuple[State, ...]
     begins: tuple[Fraction, ...]
 
-    route = "taylor"
-    regime = NO_CLOSED_FORM
-    step_digits = STEP_DIGITS
-
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        ends: list[list[Any]] = []
-        for posed_arc, clock, span in zip(
-            self._problems, self._clocks(digits), elapsed, strict=True
-        ):
-            grid = posed_arc.grid(digits, _STEPS_OF_AN_ARC)
-            # The clock, in units of one, comes last.
-            arc = (
-                replace(posed_arc, start=posed_arc.start[: -len(clock)] + clock)
-                if clock
-                else posed_arc
-            )
-            ends.append(arc.reals(leap(arc, span, grid), grid))
-        return _quantities(self.scene, ends)
-
-    def _clocks(self, digits: int) -> list[Vector]:
-        """The clock of a manufactured motion where each arc begins, to more digits than the arc has."""
-        motion = self.scene.body.manufactured
-        if motion is None:
-            return [()] * len(self.starts)
-        return [clocks.at(motion, begin, digits + _CLOCK_DIGITS) for begin in self.begins]
+    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+        manufactured = self.scene.body.manufactured
+        whole = Course.of(self._system, (), None, bits, most_bits)
+        rows = []
+        for k, (start, span) in enumerate(zip(self.starts, elapsed, strict=True)):
+            state = balls(moving(start))
+            if manufactured is not None:
+                state += clocks.balls_at(manufactured, self.begins[k])
+            arc = replace(whole, start=state, place=_place(self.scene, start))
+            rows.append(next(arc.rows([span]))[1] if span else arc.first_row())
+        return rows
 
     @cached_property
-    def _problems(self) -> list[Problem]:
-        """One for every start, all in the units of the scene's own, the clock as at the start."""
-        whole = posed(self.scene)
-        return [whole.begun(_start(replace(self.scene, initial=start))) for start in self.starts]
+    def _system(self) -> System:
+        return posed(self.scene)
 
 
-# The equations.
+def _place(scene: Scene, initial: State) -> Place | None:
+    """The frame at the start in balls, at the ambient precision; None where it is not tracked."""
+    if not scene.track:
+        return None
+    centre = initial.centre if "centre" in scene.track and isinstance(initial, Impulse) else None
+    return Place.of(rotation_matrix(initial.attitude), centre)
 
 
-def _euler(body: RigidBody, with_attitude: bool) -> Equations:
-    """omega' = K((I omega) x omega + M); each row r of R obeys r' = r x omega.
+def _width(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:
+    """A bound of the error of a vector relative to its norm, and how many bits it lacks.
 
-    The clock of a manufactured motion comes last.
+    Absolute where the vector is zero, or may be zero and is negligible beside its own ``largest`` size.
     """
-    omega: Triple = (0, 1, 2)
-    inertia, inverse = body.inertia, body.inverse_inertia
-    torque: list[Polynomial] = []
-    for j, k in ((1, 2), (2, 0), (0, 1)):
-        forward = {(i, k): inertia[j][i] for i in omega}
-        backward = {(i, j): -inertia[k][i] for i in omega}
-        torque.append(_sum(forward, backward))
-    right = [_sum(*(_times(c, p) for c, p in zip(row, torque, strict=True))) for row in inverse]
-    right = _driven(right, body, 3 + 9 * with_attitude)
-    if with_attitude:
-        right[3:3] = [p for row in _rows_from(3) for p in _cross(row, omega)]
-    return Equations(tensors.apply(inverse, body.moment), (), tuple(right))
-
-
-def _kirchhoff(body: ImmersedBody, with_attitude: bool, with_centre: bool) -> Equations:
-    """Hydromechanics 48 (3), (4), (5); R' = R [Omega]x row by row, centre' = R U; last the clock."""
-    clock = 6 + 9 * with_attitude + 3 * with_centre
-    size = clock + clocks.count(body.manufactured)
-    velocity: Triple = (size, size + 1, size + 2)
-    omega: Triple = (size + 3, size + 4, size + 5)
-    right = _driven(_impulse_rates(body), body, clock)
-    frame: list[Polynomial] = []
-    if with_attitude:
-        frame += [p for row in _rows_from(6) for p in _cross(row, omega)]
-    if with_centre:
-        frame += [_dot(row, velocity) for row in _rows_from(6)]
-    right[6:6] = frame
-    # Only R and the centre ask for U and Omega themselves.
-    forms = body.energy_matrix if with_attitude else ()
-    return Equations(body.force + body.couple, forms, tuple(right))
-
-
-def _driven(free: list[Polynomial], body: Body, clock: int) -> list[Polynomial]:
-    """The rates with the loads of a manufactured motion, if there is one, and then those of its clock."""
-    motion = body.manufactured
-    if motion is None:
-        return free
-    driven = [_sum(p, q) for p, q in zip(free, clocks.loads(free, motion, clock), strict=True)]
-    return driven + clocks.rates(motion, clock)
-
-
-def _impulse_rates(body: ImmersedBody) -> list[Polynomial]:
-    """x x Omega, and y x Omega + x x U, in products of x and y alone.
-
-    With U and Omega put in, what cancels in exact coefficients is gone: where x x U vanishes for a
-    whole body, y stays a zero that no rounding disturbs.
-    """
-    velocity, omega = body.energy_matrix[:3], body.energy_matrix[3:]
-    turned = zip(_cross_form(3, omega), _cross_form(0, velocity), strict=True)
-    return _cross_form(0, omega) + [_sum(p, q) for p, q in turned]
-
-
-def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
-    """The vector of the states ``first``, ... times a linear form of all six, given by its rows."""
-    entries = [[(i, c) for i, c in enumerate(row) if c] for row in rows]
-    forward = [{(first + j, i): c for i, c in entries[k]} for j, k in ((1, 2), (2, 0), (0, 1))]
-    backward = [{(first + k, i): -c for i, c in entries[j]} for j, k in ((1, 2), (2, 0), (0, 1))]
-    return [_sum(p, q) for p, q in zip(forward, backward, strict=True)]
-
-
-def _euler_units(body: RigidBody, start: Vector) -> Units:
-    """omega by its size, or what the moment makes of it; time by omega, or the fastest of its waves."""
-    spun, motion = tensors.apply(body.inverse_inertia, body.moment), body.manufactured
-    if motion is None:
-        omega = _largest(exponent(start[:3]), _halved(exponent(spun)), default=0)
-        return Units((omega,) * 3 + (0,) * (len(start) - 3), -omega)
-    omega = _largest(exponent(motion.reach), default=0)
-    rate = _largest(omega, clocks.exponent(motion), default=0)
-    return Units((omega,) * 3 + (0,) * (len(start) - 3), -rate)
-
-
-def _kirchhoff_units(body: ImmersedBody, start: Vector) -> Units:
-    """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
-    x, y, force, couple = start[:3], start[3:6], body.force, body.couple
-    a, b, c = body.linear, body.coupling, body.angular
-    spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
-    pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
-    omega = _largest(
-        exponent(tensors.apply(tensors.transpose(b), x)),
-        exponent(tensors.apply(c, y)),
-        _halved(exponent(spun)),
-        default=0,
-    )
-    time = -omega
-    velocity = _largest(
-        exponent(tensors.apply(a, x)),
-        exponent(tensors.apply(b, y)),
-        _later(exponent(pushed), time),
-        default=omega,
-    )
-    if body.manufactured is not None:
-        time = -_largest(omega, clocks.exponent(body.manufactured), default=0)
-    linear = _largest(exponent(x), _later(exponent(force), time), default=0)
-    angular = _largest(
-        exponent(y), _later(exponent(couple), time), default=linear + velocity + time
-    )
-    angular = max(angular, linear + velocity + time)
-    sizes: tuple[int, ...] = (linear,) * 3 + (angular,) * 3 + (0,) * 9 + (velocity + time,) * 3
-    clock = (0,) * clocks.count(body.manufactured)
-    sizes = sizes[: len(start) - len(clock)] + clock
-    return Units(sizes + (velocity,) * 3 + (omega,) * 3, time)
-
-
-def _halved(exponent: int | None) -> int | None:
-    return None if exponent is None else exponent // 2
-
-
-def _later(exponent: int | None, time: int) -> int | None:
-    """The size of what grows at this rate, after one unit of time."""
-    return None if exponent is None else exponent + time
-
-
-def _largest(*exponents: int | None, default: int) -> int:
-    return max((e for e in exponents if e is not None), default=default)
-
-
-def _rows_from(first: int) -> tuple[Triple, Triple, Triple]:
-    """The variables of the three rows of R."""
-    a, b, c = ((i, i + 1, i + 2) for i in range(first, first + 9, 3))
-    return a, b, c
-
-
-def _cross(a: Triple, b: Triple) -> list[Polynomial]:
-    one = Fraction(1)
-    return [_sum({(a[j], b[k]): one}, {(a[k], b[j]): -one}) for j, k in ((1, 2), (2, 0), (0, 1))]
-
-
-def _dot(a: Triple, b: Triple) -> Polynomial:
-    return {pair: Fraction(1) for pair in zip(a, b, strict=True)}
-
-
-def _times(factor: Fraction, polynomial: Polynomial) -> Polynomial:
-    return {pair: factor * coefficient for pair, coefficient in polynomial.items()}
-
-
-def _sum(*polynomials: Polynomial) -> Polynomial:
-    """The sum; a b and b a are one product, and what cancels is gone."""
-    total: dict[tuple[int, int], Fraction] = {}
-    for polynomial in polynomials:
-        for (a, b), coefficient in polynomial.items():
-            pair = (min(a, b), max(a, b))
-            total[pair] = total[pair] + coefficient if pair in total else coefficient
-    return {pair: coefficient for pair, coefficient in total.items() if coefficient}
-
-
-def posed(scene: Scene) -> Problem:
-    """The scene's equations and initial state, in units of their size."""
-    start, body = _start(scene), scene.body
-    if isinstance(body, RigidBody):
-        return problem(_euler(body, bool(scene.track)), _euler_units(body, start), start, moving=3)
-    equations = _kirchhoff(body, bool(scene.track), "centre" in scene.track)
-    motion = body.manufactured
-    # What a manufactured motion reaches, not where it begins, is the size of its impulses.
-    units = _kirchhoff_units(body, start if motion is None else motion.reach + start[6:])
-    variables = units.variables[: len(start) + len(equations.forms)]
-    return problem(equations, Units(variables, units.time), start, moving=6)
-
-
-def _guided_problem(scene: Scene) -> Problem:
-    """x, y, a row across x, and int x.U: what guided.placed makes attitude and centre of."""
-    start, body = scene.initial, scene.body
-    assert isinstance(start, Impulse)
-    assert isinstance(body, ImmersedBody)
-    x, row = (0, 1, 2), (6, 7, 8)
-    velocity, omega = (10, 11, 12), (13, 14, 15)
-    right = _impulse_rates(body) + _cross(row, omega) + [_dot(x, velocity)]
-    equations = Equations(body.force + body.couple, body.energy_matrix, tuple(right))
-    moving = start.linear + start.angular
-    units = _kirchhoff_units(body, moving)
-    across = crosswise(start)
-    linear, speed = units.variables[0], units.variables[6]
-    sizes = units.variables[:6] + (exponent(across) or 0,) * 3 + (linear + speed + units.time,)
-    return problem(
-        equations,
-        Units(sizes + units.variables[6:], units.time),
-        moving + across + (Fraction(0),),
-        moving=6,
-    )
-
-
-def _start(scene: Scene) -> Vector:
-    """The initial state in the order of the equations, exactly."""
-    initial = scene.initial
-    if isinstance(initial, Spin):
-        moving: Vector = initial.omega
-    else:
-        moving = initial.linear + initial.angular
-    if scene.track:
-        moving += tuple(entry for row in rotation_matrix(initial.attitude) for entry in row)
-    if "centre" in scene.track and isinstance(initial, Impulse):
-        moving += initial.centre
-    motion = scene.body.manufactured
-    return moving if motion is None else moving + clocks.at(motion, Fraction(0), 0)
-
-
-# The answer.
-
-
-def _guided_quantities(
-    scene: Scene, elapsed: Sequence[Fraction], states: Sequence[Sequence[Any]]
-) -> Quantities:
-    z = np.array(states, dtype=object)
-    start = scene.initial
-    assert isinstance(start, Impulse)
-    found = placed(start, z)
-    at_start = [k for k, t in enumerate(elapsed) if t == 0]
-    # As told: a centre at the origin has no digits but exact ones.
-    found["centre"][at_start] = [mp.convert(c) for c in start.centre]
-    if "centre" not in scene.track:
-        del found["centre"]
-    return {"linear_impulse": z[:, :3], "angular_impulse": z[:, 3:6], **found}
-
-
-def _quantities(scene: Scene, states: Sequence[Sequence[Any]]) -> Quantities:
-    z = np.array(states, dtype=object).reshape(len(states), len(_start(scene)))
-    if scene.model == "euler":
-        parts, used = {"omega": z[:, :3]}, 3
-    else:
-        parts, used = {"linear_impulse": z[:, :3], "angular_impulse": z[:, 3:6]}, 6
-    if scene.track:
-        parts["attitude"] = z[:, used : used + 9].reshape(len(z), 3, 3)
-    if "centre" in scene.track:
-        parts["centre"] = z[:, used + 9 : used + 12]
-    return parts
+    with ctx.workprec(BOUND_BITS):
+        error = norm([arb(entry.rad()) for entry in vector])
+        size = sum((entry * entry for entry in vector), arb(0)).nonnegative_part().sqrt().lower()
+        if error.is_zero():
+            return mpf(0), 0
+        if not error.is_finite():
+            return mp.inf, target
+        if size > 0:
+            width = upper(error / size)
+            return width, int(mp.mag(width)) + target
+        width = upper(error)
+        missing = int(mp.mag(width)) + target + _NEGLIGIBLE_BITS - int(max(largest, -1e9))
+        return width, missing

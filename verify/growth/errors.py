@@ -70,7 +70,7 @@ def lane_errors(
     so long to compare with, and the drifts alone are told.
     """
     reached = [state for state in states if state is not None]
-    rows = [problem.initial, *reached]
+    rows = [problem.initial_momenta, *reached]
     trajectory = Trajectory(Outcome.FINISHED, from_scaled(problem, rows))
     # Products of two numbers of the rung are exact in this, and sums of them nearly so.
     with mp.workprec(2 * problem.rung.bits + _MORE_BITS):

@@ -78,7 +78,7 @@ class Question:
         if found is not None:
             return float(found.value)
         problem = pose(self.scene, self.rung)
-        rate = Linearised(problem).fastest([float(value) for value in problem.initial])
+        rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
         return 2 * pi / rate * float(problem.units.time)
 
     @cached_property
@@ -131,7 +131,7 @@ class Question:
     def _fingerprint(self) -> str:
         found = hashlib.sha256()
         for problem in self.problems:
-            numbers = (*problem.parameters, *problem.initial, *problem.times)
+            numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
             found.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
         for stops, _ in self.pieces:
             found.update(_line(stops).encode())

@@ -39,7 +39,7 @@ _SPARE_BITS: Final = 128
 _FLOAT32_BITS: Final = 24
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING_BITS: Final = 18
-# How far a Taylor recursion is sent for a file.
+# How far the Taylor route is sent for a file.
 _MOST_SPANS: Final = 100
 _MODELS: Final = {
     "euler": ("omega", "quaternion", "attitude"),

@@ -136,7 +136,7 @@ def _at_samples(at_nodes: Floats, nodes: Sequence[int], samples: int) -> Floats:
 
 
 def _motion(scene: Scene, digits: int) -> Motion:
-    """The exact motion; beside a degenerate orbit, where a closed form may not settle, by recursion."""
+    """The exact motion; beside a degenerate orbit, where a closed form may not settle, by Taylor series."""
     elapsed = scene.clock.elapsed
     try:
         found = solution(scene).evaluate(elapsed, digits)

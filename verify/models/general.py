@@ -44,7 +44,7 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
         problem,
         form=form,
         parameters=tuple(numbers[name] for name in names),
-        initial=tuple(known.get(name, Fraction(0)) for name in states),
+        initial_momenta=tuple(known.get(name, Fraction(0)) for name in states),
         replaced=(),
         because=(),
     )

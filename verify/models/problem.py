@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import NoReturn
 
 from mpmath import mp
 
@@ -38,10 +39,12 @@ class NotRepresentable(Exception):
 class Problem:
     """What a solver is asked: equations, parameters, initial state and times, all on one rung.
 
-    ``parameters``, ``initial`` and ``times`` (elapsed since the initial state) are numbers of the
-    rung, held exactly, in ``units``; they stand in the order of ``form``. ``given`` is the same body,
-    start and instants in the scene's own units. ``replaced`` are coefficients of the body in whose
-    place others stand in the equations, and ``because`` says which equations were chosen, and why.
+    ``given`` is what most solvers want: the body, the start (``given.initial.omega``) and the instants
+    in the scene's own units. ``parameters``, ``initial_momenta`` and ``times`` (elapsed since the
+    initial state) are the same as numbers of the rung, held exactly, in ``units`` and in the order of
+    ``form``, whose states are momenta: I omega and not omega, or both impulses, then the attitude and
+    the centre as far as they are tracked. ``replaced`` are coefficients of the body in whose place
+    others stand in the equations, and ``because`` says which equations were chosen, and why.
     """
 
     scene: Scene
@@ -49,11 +52,19 @@ class Problem:
     form: Form
     units: Units
     parameters: tuple[Fraction, ...]
-    initial: tuple[Fraction, ...]
+    initial_momenta: tuple[Fraction, ...]
     times: Sequence[Fraction]
     given: Scene
     replaced: tuple[tuple[str, Fraction], ...] = ()
     because: tuple[str, ...] = ()
+
+    @property
+    def initial(self) -> NoReturn:
+        """Not an attribute, for it could be either of two: the error says where they are."""
+        raise AttributeError(
+            "expected problem.given.initial (omega or the impulses, in the scene's units) or "
+            "problem.initial_momenta (I omega or the impulses, in problem.units), got problem.initial"
+        )
 
     @property
     def parameter(self) -> Mapping[str, Fraction]:
@@ -66,7 +77,7 @@ class Problem:
     @property
     def state(self) -> Mapping[str, Fraction]:
         """The initial state by name, in the units of the problem."""
-        return dict(zip(self.form.states, self.initial, strict=True))
+        return dict(zip(self.form.states, self.initial_momenta, strict=True))
 
     def with_equations(self, equations: Equations) -> Problem:
         """The same data under other equations in the same states, as the negative controls need."""
@@ -98,7 +109,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         form=form,
         units=units,
         parameters=tuple(numbers[name] for name in form.parameters),
-        initial=tuple(numbers[name] for name in form.states),
+        initial_momenta=tuple(numbers[name] for name in form.states),
         times=times,
         given=replace(scene, body=data.body, initial=data.initial, clock=clock),
         replaced=_not_entering(data.choice.replaced, form),

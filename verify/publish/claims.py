@@ -37,9 +37,9 @@ _INTRODUCTION: Final = (
 )
 _HOW: Final = (
     "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero or "
-    "it does not. What is claimed of orbits is held to trajectories of 30 to 60 digits from a Taylor "
-    "recursion that shares no closed form with the texts. Every entry also has mutations, the statement "
-    "with a sign, a factor or an index changed, that its check rejects."
+    "it does not. What is claimed of orbits is held to trajectories of 30 to 60 digits, enclosed "
+    "by Taylor series that share no closed form with the texts. Every entry also has mutations, the "
+    "statement with a sign, a factor or an index changed, that its check rejects."
 )
 _REMAKE: Final = (
     "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "

@@ -63,7 +63,7 @@ class ClosedForm(Solver):
             return f"{self.name} is made for a body without a moment"
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
-        if not any(problem.initial):
+        if not any(problem.initial_momenta):
             return f"{self.name} is made for a body that turns"
         if not _has_distinct_moments(body.inverse_inertia):
             return f"{self.name} is made for three distinct principal moments"
@@ -99,7 +99,7 @@ def _momenta(problem: Problem) -> Floats:
     from scipy.special import ellipj, ellipkinc
 
     k, axes = _principal(np.array(Body.of(problem).K))
-    h = axes.T @ [float(value) for value in problem.initial]
+    h = axes.T @ [float(value) for value in problem.initial_momenta]
     if _encircles_last(k, h):
         k, h, axes = k[::-1], h[::-1], axes[:, ::-1]
     if np.linalg.det(axes) < 0:

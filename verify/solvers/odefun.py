@@ -93,7 +93,7 @@ class _Run:
         state = mp.odefun(
             self._rates(),
             mp.zero,
-            [held_exactly(value) for value in problem.initial],
+            [held_exactly(value) for value in problem.initial_momenta],
             tol=None if asked.tol is None else mp.mpf(asked.tol.numerator) / asked.tol.denominator,
             degree=asked.degree,
         )

@@ -1,25 +1,30 @@
 """A solver that is a program of one's own, in any language: `--solver "process:./my_simulator"`.
 
-The program is asked and answers as verify/solvers/protocol.py says. It is stopped, with all the
-processes it started, when its time is up or when it says more than any answer needs; whatever it
-does, the run ends with an outcome.
+The program is asked and answers as verify/solvers/protocol.py says. It is stopped when its time is up
+or when it says more than any answer needs; whatever it does, the run ends with an outcome. With it
+end all the processes it started, also those that left its session: verify/solvers/supervisor.py stands
+between, and does so even if this process is killed. Where the system cannot do that (Linux can), a
+process that left the session goes on, and the detail of the outcome says that it may.
 """
 
 from __future__ import annotations
 
 import json
+import logging
 import os
 import selectors
 import shlex
 import signal
+import socket
 import subprocess
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
+from pathlib import Path
 from time import monotonic, perf_counter
-from typing import Any, Final, final
+from typing import Any, Final, NamedTuple, final
 
 from verify.models.problem import Problem
 from verify.solvers import protocol
@@ -31,8 +36,12 @@ LIMIT_VARIABLE: Final = "TAYLOR_VERIFY_TIME_LIMIT"
 # Seconds for one scene: a hundred times what rk4.py takes for any shipped one at a step of 0.02.
 DEFAULT_LIMIT: Final = 300.0
 
-# How often a program is looked at that has ended but whose own children hold its output open.
+_SUPERVISOR: Final = Path(__file__).with_name("supervisor.py")
+_log = logging.getLogger(__name__)
+# How long output is listened to after the last word of the supervisor: until then all of it was there.
 _GLANCE = 0.05
+# Seconds for the supervisor to end what is left, which it gives up after five itself.
+_PATIENCE = 10.0
 _CHUNK = 2**16
 _KEPT_OF_STDERR = 2**13
 _LINES_SHOWN, _LINE_SHOWN = 5, 300
@@ -65,7 +74,8 @@ class Process(Solver):
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
-            return _trajectory(ended.answer, problem, seconds)
+            found = _trajectory(ended.answer, problem, ended.seconds)
+            return replace(found, detail=ended.left)
         except protocol.Misanswer as fault:
             outcome, what = Outcome.MISANSWERED, str(fault)
         except protocol.NotFinite as fault:
@@ -129,16 +139,22 @@ def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
 
 @dataclass(frozen=True)
 class _Ended:
-    """How a program ended, what it answered, and the last of what it had to say on stderr."""
+    """The end of a program: its outcome, its answer, and the last of its words on stderr.
+
+    ``seconds`` it ran; ``left`` says which of its processes are not known to have ended.
+    """
 
     outcome: Outcome
     what: str = ""
     answer: bytes = b""
     stderr: bytes = b""
+    seconds: float = 0.0
+    left: str = ""
 
     def detail(self) -> str:
         said = _last_lines(self.stderr)
-        return "; ".join(part for part in (self.what, said and f"stderr: {said}") if part)
+        parts = (self.what, self.left, said and f"stderr: {said}")
+        return "; ".join(part for part in parts if part)
 
 
 def _last_lines(stderr: bytes) -> str:
@@ -150,63 +166,133 @@ def _last_lines(stderr: bytes) -> str:
 
 def _converse(command: Sequence[str], asked: bytes, limit: float, longest: int) -> _Ended:
     """Start a program, ask it, and have its answer or the outcome; it never outlives the call."""
+    # Isolated and without site: no variable meant for the program has an effect on the supervisor.
+    supervisor = [sys.executable, "-I", "-S", str(_SUPERVISOR)]
+    ours, theirs = socket.socketpair()
     try:
-        # A session of its own, so that all it starts can be ended with it.
         process = subprocess.Popen(
-            command,
+            [*supervisor, str(theirs.fileno()), *command],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
+            pass_fds=[theirs.fileno()],
             start_new_session=True,
             bufsize=0,
         )
     except (OSError, ValueError) as error:
+        ours.close()
         reason = getattr(error, "strerror", None) or str(error)
         return _Ended(Outcome.NOT_STARTED, f"{command[0]}: {reason}")
-    talk = _Talk(process, asked)
-    try:
-        with _ending_with_us(process):
-            outcome, what = talk.listen(monotonic() + limit, longest)
     finally:
-        _end(process)
+        theirs.close()
+    talk = _Talk(process, ours, asked)
+    try:
+        outcome, what = talk.listen(monotonic() + limit, longest)
+    finally:
+        report = talk.end()
     if outcome is Outcome.TIMED_OUT:
         what = f"{limit:g} seconds, settable by {LIMIT_VARIABLE}"
-    elif outcome is Outcome.FINISHED and process.returncode:
-        outcome, what = Outcome.CRASHED, _status(process.returncode)
-    return _Ended(outcome, what, bytes(talk.answer), bytes(talk.stderr))
+    elif outcome is Outcome.FINISHED:
+        if report.refused:
+            return _Ended(Outcome.NOT_STARTED, f"{command[0]}: {report.refused}")
+        if report.status:
+            outcome, what = Outcome.CRASHED, _status(report.status)
+    if report.is_certain:
+        _log.warning("taylor-verify: warning: %s @ %s", report.left, shlex.join(command))
+    return _Ended(
+        outcome, what, bytes(talk.answer), bytes(talk.stderr), report.seconds, report.left
+    )
+
+
+class _Report(NamedTuple):
+    """The words of the supervisor, read: see there."""
+
+    refused: str = ""
+    program: int = 0
+    status: int = 0
+    seconds: float = 0.0
+    left: str = ""
+    is_certain: bool = False
+    is_lost: bool = False
+
+    @classmethod
+    def read(cls, text: bytes) -> _Report:
+        words = [line.split(" ", 1) for line in text.decode(errors="replace").splitlines()]
+        said = {word: rest[0] for word, *rest in words if rest}
+        if "refused" in said:
+            return cls(refused=said["refused"])
+        program = int(said.get("started", 0))
+        if "ended" not in said:
+            # The program, or somebody else, has killed it.
+            return cls(program=program, status=-signal.SIGKILL, left=_UNKNOWN, is_lost=True)
+        status, seconds, left = said["ended"].split()
+        return cls("", program, int(status), float(seconds), *_left(left))
+
+
+_UNKNOWN: Final = "processes that have left its session, if any, could not be ended"
+
+
+def _left(numbers: str) -> tuple[str, bool]:
+    """A sentence about the processes that are left, and whether it is known that there are any."""
+    if numbers == "none":
+        return "", False
+    if numbers == "unknown":
+        return _UNKNOWN, False
+    return f"processes that could not be ended: {numbers}", True
 
 
 class _Talk:
-    """The three pipes of a running program; none of them is ever waited for alone."""
+    """The pipes of a running program and the link to its supervisor; none is waited for alone."""
 
-    def __init__(self, process: subprocess.Popen[bytes], asked: bytes) -> None:
-        self.process = process
+    def __init__(self, process: subprocess.Popen[bytes], link: socket.socket, asked: bytes) -> None:
+        self.process, self.link = process, link
         self.unsaid = memoryview(asked)
-        self.answer, self.stderr = bytearray(), bytearray()
+        self.answer, self.stderr, self.report = bytearray(), bytearray(), bytearray()
+        self.has_ended = False
 
     def listen(self, deadline: float, longest: int) -> tuple[Outcome, str]:
-        """Until the program has ended, or was too long about it or too long in it."""
-        process = self.process
+        """Exchange question and answer until the program ends, its time is up, or it says too much."""
         with selectors.DefaultSelector() as waiting:
             self._register(waiting)
             while waiting.get_map():
                 left = deadline - monotonic()
                 if left <= 0:
                     return Outcome.TIMED_OUT, ""
-                ready = waiting.select(min(left, _GLANCE))
+                ready = waiting.select(min(left, _GLANCE) if self.has_ended else left)
                 for key, _ in ready:
                     if not key.data():
                         waiting.unregister(key.fileobj)
-                        key.fileobj.close()  # type: ignore[union-attr]
+                        if key.fileobj is not self.link:
+                            key.fileobj.close()  # type: ignore[union-attr]
                 if len(self.answer) > longest:
                     return Outcome.MISANSWERED, f"more than {longest} bytes on standard output"
-                if not ready and process.poll() is not None:
+                if not ready and self.has_ended:
                     break
-        try:
-            process.wait(max(0.0, deadline - monotonic()))
-        except subprocess.TimeoutExpired:
-            return Outcome.TIMED_OUT, ""
         return Outcome.FINISHED, ""
+
+    def end(self) -> _Report:
+        """Have the supervisor end what is left of the program and of all it started."""
+        try:
+            self.link.settimeout(_PATIENCE)
+            with suppress(OSError):
+                # The sign to end everything; after its own end nobody hears it.
+                self.link.shutdown(socket.SHUT_WR)
+                while read := self.link.recv(_CHUNK):
+                    self.report += read
+        finally:
+            self.link.close()
+        report = _Report.read(bytes(self.report))
+        if report.is_lost and report.program:
+            # Without its supervisor the program would go on.
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(report.program, signal.SIGKILL)
+        self.process.kill()
+        self.process.wait()
+        for pipe in (self.process.stdin, self.process.stdout, self.process.stderr):
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
+        return report
 
     def _register(self, waiting: selectors.BaseSelector) -> None:
         for pipe, event, act in (
@@ -217,6 +303,8 @@ class _Talk:
             assert pipe is not None
             os.set_blocking(pipe.fileno(), False)
             waiting.register(pipe, event, act)
+        self.link.setblocking(False)
+        waiting.register(self.link, selectors.EVENT_READ, self._supervise)
 
     # Each of these returns whether its pipe is still of use.
 
@@ -237,6 +325,12 @@ class _Talk:
         self.answer += read or b""
         return read != b""
 
+    def _supervise(self) -> bool:
+        read = _read(self.link)
+        self.report += read or b""
+        self.has_ended = read == b""
+        return not self.has_ended
+
     def _overhear(self) -> bool:
         read = _read(self.process.stderr)
         self.stderr += read or b""
@@ -250,42 +344,6 @@ def _read(pipe: Any) -> bytes | None:
         return os.read(pipe.fileno(), _CHUNK)
     except BlockingIOError:
         return None
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Kill what is left of the program and of all it started, and leave no zombie."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    for pipe in (process.stdin, process.stdout, process.stderr):
-        if pipe is not None:
-            with suppress(OSError):
-                pipe.close()
-
-
-@contextmanager
-def _ending_with_us(process: subprocess.Popen[bytes]) -> Iterator[None]:
-    """Let a SIGTERM, with which a pool ends its workers, end the program first.
-
-    Nothing else of this process would run any more. A handler that is there already is left alone.
-    """
-    is_main = threading.current_thread() is threading.main_thread()
-    if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        yield
-        return
-
-    def end_both(number: int, frame: object) -> None:
-        del frame
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-        signal.signal(number, signal.SIG_DFL)
-        os.kill(os.getpid(), number)
-
-    signal.signal(signal.SIGTERM, end_both)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _status(returncode: int) -> str:

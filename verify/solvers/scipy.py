@@ -119,7 +119,7 @@ class _Run:
         from scipy import integrate
 
         times = [float(t) for t in self.problem.times]
-        start = [float(value) for value in self.problem.initial]
+        start = [float(value) for value in self.problem.initial_momenta]
         with warnings.catch_warnings():
             # LSODA tells of a failure in a warning too; the outcome has it.
             warnings.simplefilter("ignore")

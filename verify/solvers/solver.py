@@ -89,7 +89,8 @@ class Callback(Solver):
     """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
-    is. A Python or NumPy number, a Fraction or an mpf is taken exactly.
+    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. An exception is a failed run,
+    and so is `sys.exit` with any code; an interrupt stays an interrupt.
     """
 
     answer: Callable[[Problem], Any]
@@ -100,8 +101,8 @@ class Callback(Solver):
         began = perf_counter()
         try:
             states = np.asarray(self.answer(problem))
-        except Exception as error:  # a stranger's code: whatever it raises is its outcome
-            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
+        except (Exception, SystemExit) as error:  # a stranger's code: what it raises is its outcome
+            return raised(error)
         seconds = perf_counter() - began
         layout = columns(problem)
         expected = (len(problem.times), sum(width for _, width in layout))
@@ -118,6 +119,12 @@ class Callback(Solver):
             for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
         }
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
+
+
+def raised(error: BaseException) -> Trajectory:
+    """The trajectory of a solver that ended with an error, a `sys.exit` included."""
+    detail = f"{type(error).__name__}: {error}".removesuffix(": ")
+    return Trajectory(Outcome.RAISED, detail=detail)
 
 
 def columns(problem: Problem) -> list[tuple[str, int]]:

@@ -61,7 +61,7 @@ class Truth:
             self._motion, self._start = self._evaluate(closed=False)
 
     def _evaluate(self, closed: bool) -> tuple[Motion, Motion]:
-        """The motion at the samples and at the start; beside a degenerate orbit, by recursion."""
+        """The motion at the samples and at the start; beside a degenerate orbit, by Taylor series."""
         exact = solution(self._given) if closed else TaylorSolution(self._given)
         motion = exact.motion(self._given.clock.elapsed, self._digits)
         return motion, exact.motion([Fraction(0)], self._digits + _MORE_DIGITS)

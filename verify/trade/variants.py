@@ -111,5 +111,5 @@ def _with_y3(rung: Rung) -> Problem:
         problem,
         form=replace(problem.form, states=states, parameters=parameters),
         parameters=tuple(known[name] for name in parameters),
-        initial=(*problem.initial, known["y3"]),
+        initial_momenta=(*problem.initial_momenta, known["y3"]),
     )

@@ -1,6 +1,6 @@
 """The axial movement of Clebsch's body when A > 0: the separatrix, and what is near it.
 
-Trajectories of the Taylor recursion; kappa, lambda, A, B, C as in axial.py, y = x3 - F.
+Trajectories of the Taylor route; kappa, lambda, A, B, C as in axial.py, y = x3 - F.
 """
 
 from __future__ import annotations

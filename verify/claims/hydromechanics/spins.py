@@ -1,6 +1,6 @@
 """The axial movement of Clebsch's body disturbed: how far its axis tilts, and how often it nutates.
 
-Trajectories of the Taylor recursion; kappa, lambda, A as in axial.py. The tilt is |xi|/F, the sine of
+Trajectories of the Taylor route; kappa, lambda, A as in axial.py. The tilt is |xi|/F, the sine of
 the angle between the axis and F; the start has y = x, so that eta = xi.
 """
 

@@ -11,7 +11,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any, Final
 
-from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.cache import heyoka_cache_off
 
 DOCS: Final = "https://bluescarni.github.io/heyoka.py"
 
@@ -81,8 +81,8 @@ class Trap:
     script: str = ""
 
     def measured(self) -> list[Case]:
-        """The cases, with what heyoka compiles for them kept where the driver keeps its own."""
-        use_own_cache()
+        """Return the cases, measured without heyoka's own disk cache, as the driver works."""
+        heyoka_cache_off()
         return self.cases()
 
     def row(self) -> dict[str, Any]:

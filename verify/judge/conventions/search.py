@@ -53,7 +53,7 @@ _GUARD_DIGITS: Final = 3
 _SPARE_BITS: Final = 96
 # The relative error of a shift that is a double.
 _FLOAT_NOISE: Final = 2.0**-50
-# A Taylor recursion is not sent further than this many spans of the scene for a hypothesis.
+# The Taylor route is not sent further than this many spans of the scene for a hypothesis.
 _MOST_SPANS: Final = 10
 
 
@@ -306,7 +306,7 @@ class _Search:
 
 
 def is_far(scene: Scene, times: Iterable[Fraction], spans: int = _MOST_SPANS) -> bool:
-    """Whether a Taylor recursion would have to go so many spans of the scene."""
+    """Return True if the Taylor route would have to go so many spans of the scene."""
     span = max(abs(t) for t in scene.clock.elapsed)
     reach = max(abs(t - scene.clock.start) for t in times)
     return reach > spans * span and solution(scene).route == "taylor"

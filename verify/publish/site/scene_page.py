@@ -270,7 +270,7 @@ def _values_are(document: Document) -> str:
         return ""
     radii = [float(row["radius"]) for row in document["rows"] if row.get("radius")]
     route = {"arb": "ball arithmetic", "mpmath": "the second closed form"}.get(
-        document.get("route", ""), "a Taylor recursion that agrees with itself at two precisions"
+        document.get("route", ""), "Taylor series in ball arithmetic"
     )
     error = f"; no row is off by more than {figure(max(radii))} of itself" if radii else ""
     return (

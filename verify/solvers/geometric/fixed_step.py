@@ -162,7 +162,7 @@ class _Course:
 
     def _follow(self) -> None:
         body = Body.of(self.problem)
-        start = [float(value) for value in self.problem.initial]
+        start = [float(value) for value in self.problem.initial_momenta]
         H: Vector = (start[0], start[1], start[2])
         q: Quaternion | None = (start[3], start[4], start[5], start[6]) if start[3:] else None
         axes = None

@@ -1,64 +1,69 @@
-"""Where heyoka keeps compiled code: with the user's other caches, one folder per processor type.
+"""Compiled integrators on disk: with the user's other caches, one folder per processor type.
 
-heyoka's key for compiled code does not name the processor, so a cache carried to another machine
-(a home directory on a network, a CI cache, a container layer) could run instructions that the
-processor does not have. The folder's name does.
+heyoka has a disk cache of its own, which is switched off. Its database has no checksum: a damaged one
+raises, or ends the process by a signal. Its key does not name the processor, so that a cache carried
+to another machine could run instructions that the processor does not have.
+
+Here an integrator is a file: the SHA-256 of the rest, then heyoka's own serialisation of the
+integrator, machine code included. A file is whole or absent, since it is moved into its place, so any
+number of processes may share a folder. A file is read only if nobody but its reader could write it.
 """
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
+import logging
 import os
+import pickle
 import platform
+import shutil
+import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any, Final
 
 import heyoka as hy
+import numpy as np
 from platformdirs import user_cache_path
 
-_SQLITE = b"SQLite format 3\0"
-# In bytes. The standard set fills a quarter of it; what a process pays to open it grows with its size.
-_LARGEST_CACHE = 2**28
+CACHE_VARIABLE: Final = "HEYOKA_CACHE_DIR"
+# In bytes. The standard set fills a quarter of it; the least recently used files go first.
+_LARGEST_CACHE: Final = 2**28
+_DIGEST_SIZE: Final = hashlib.sha256().digest_size
+_log = logging.getLogger(__name__)
 
 
-def use_own_cache() -> None:
-    """Point heyoka's disk cache at this processor's folder, or run uncached where none can be made.
+def stored(make: Callable[..., Any], system: Any, **options: Any) -> Any:
+    """Return ``make(system, **options)``, from the disk where an earlier process has stored it.
 
-    HEYOKA_CACHE_DIR, where set, is the folder in which the processor's own is made.
+    Arrays among the options are starting values: they have no part in the compiled code.
     """
-    # heyoka prints its warnings on stdout, which belongs to the command's own output.
+    heyoka_cache_off()
+    file = cache_folder() / _name(make, system, options)
+    integrator = _read(file)
+    if integrator is None:
+        integrator = make(system, **options)
+        _write(file, integrator)
+    return integrator
+
+
+def heyoka_cache_off() -> None:
+    """Switch heyoka's own disk cache off, and its warnings, which it prints on stdout."""
     hy.set_logger_level_error()
-    base = os.environ.get("HEYOKA_CACHE_DIR")
-    parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
-    folder = parent / processor_key()
-    # Not said twice: heyoka reads the whole database whenever it is told where it lies.
-    if hy.llvm_state.get_diskcache_enabled() and hy.llvm_state.get_diskcache_path() == folder:
-        return
-    if _is_writable(folder):
-        _remove_if_broken(folder / "cache.db")
-        hy.llvm_state.set_diskcache_path(str(folder))
-        hy.llvm_state.set_diskcache_limit(_LARGEST_CACHE)
-    else:
-        hy.llvm_state.set_diskcache_enabled(False)
-
-
-@contextlib.contextmanager
-def unstored() -> Iterator[None]:
-    """Inside, heyoka stores nothing.
-
-    For MPFR numbers: their compiled code is stored under a key that depends on where the process has
-    its memory, so that it is never found again, and the database would grow with every run.
-    """
-    enabled = hy.llvm_state.get_diskcache_enabled()
     hy.llvm_state.set_diskcache_enabled(False)
-    try:
-        yield
-    finally:
-        hy.llvm_state.set_diskcache_enabled(enabled)
 
 
+def cache_folder() -> Path:
+    """The folder of this processor type, inside the user's cache or the one HEYOKA_CACHE_DIR names."""
+    base = os.environ.get(CACHE_VARIABLE)
+    parent = Path(base) if base else user_cache_path("taylor-verify") / "heyoka"
+    return parent / processor_key()
+
+
+@lru_cache(maxsize=1)
 def processor_key() -> str:
     """A name that differs between processors with different instruction sets."""
     features = _processor_features()
@@ -76,19 +81,119 @@ def _processor_features() -> str:
     return "\n".join(sorted({line for line in lines if line.startswith(wanted)}))
 
 
-def _remove_if_broken(database: Path) -> None:
-    """heyoka leaves a file that is no database where it is, and compiles everything anew for ever."""
-    with contextlib.suppress(OSError):
-        with database.open("rb") as file:
-            header = file.read(len(_SQLITE))
-        if header and header != _SQLITE:
-            database.unlink()
+def _name(make: Callable[..., Any], system: Any, options: dict[str, Any]) -> str:
+    """A file name that differs wherever the compiled code could."""
+    described = {
+        name: value.shape if isinstance(value, np.ndarray) else value
+        for name, value in options.items()
+    }
+    asked = pickle.dumps((make.__name__, system, sorted(described.items())))
+    return hashlib.sha256(_build() + asked).hexdigest()
 
 
-def _is_writable(folder: Path) -> bool:
+@lru_cache(maxsize=1)
+def _build() -> bytes:
+    """A text for this installation of heyoka: another build of one version may link otherwise."""
+    installed = os.stat(hy.__file__)
+    python = platform.python_version()
+    return f"{hy.__version__} {installed.st_mtime_ns} {installed.st_size} {python}".encode()
+
+
+def _read(file: Path) -> Any:
+    """The integrator in a file; None where there is none, or none that can be trusted."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
+        number = file.parent.stat().st_ino
+        content = _own_bytes(file)
     except OSError:
-        return False
+        return None
+    if content is None:
+        return None
+    digest, data = content[:_DIGEST_SIZE], content[_DIGEST_SIZE:]
+    if digest != hashlib.sha256(data).digest():
+        _set_aside(file.parent, number)
+        return None
+    try:
+        integrator = pickle.loads(data)
+    except Exception as error:  # whole, but of a library that has changed: it is made anew
+        _log.debug("%s cannot be loaded: %s", file, error)
+        return None
+    with suppress(OSError):
+        # The files in use are the youngest, whatever filesystem keeps no times of access.
+        os.utime(file)
+    return integrator
+
+
+def _own_bytes(file: Path) -> bytes | None:
+    """The content of a plain file that this user alone could write; None of any other file."""
+    # Without waiting: what lies here could be a pipe.
+    handle = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+    with open(handle, "rb") as opened:
+        about = os.fstat(handle)
+        is_own = not hasattr(os, "geteuid") or about.st_uid == os.geteuid()
+        is_closed = not about.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+        return opened.read() if stat.S_ISREG(about.st_mode) and is_own and is_closed else None
+
+
+def _set_aside(folder: Path, number: int) -> None:
+    """Move a damaged folder, told by its inode number, out of the way, with one warning.
+
+    Where one file is damaged, the others are suspect. Of several processes that meet the damage one
+    moves the folder, and that one warns. An earlier folder set aside is removed.
+    """
+    target = folder.with_name(f"{folder.name}.damaged-{number}")
+    try:
+        if folder.stat().st_ino != number:
+            return
+        for earlier in folder.parent.glob(f"{folder.name}.damaged-*"):
+            shutil.rmtree(earlier, ignore_errors=True)
+        folder.rename(target)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        _warn_once(f"damaged compiled code cannot be moved away ({error.strerror}) @ {folder}")
+    else:
+        _warn_once(f"damaged compiled code is set aside, and compiled anew @ {target}")
+
+
+@cache
+def _warn_once(message: str) -> None:
+    _log.warning("taylor-verify: warning: %s", message)
+
+
+def _write(file: Path, integrator: Any) -> None:
+    """Store an integrator for other processes; where nothing can be written, nothing is stored."""
+    data = pickle.dumps(integrator, protocol=pickle.HIGHEST_PROTOCOL)
+    try:
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=file.parent)
+        try:
+            with open(handle, "wb") as opened:
+                opened.write(hashlib.sha256(data).digest() + data)
+            os.replace(name, file)
+        except BaseException:
+            os.unlink(name)
+            raise
+        _prune(file.parent)
+    except OSError as error:
+        _log.debug("nothing is stored in %s: %s", file.parent, error)
+
+
+def _prune(folder: Path) -> None:
+    """Remove the least recently used files beyond the size that a cache may have."""
+    files = [(about.st_mtime_ns, about.st_size, path) for path, about in _files(folder)]
+    size = sum(length for _, length, _ in files)
+    for _, length, path in sorted(files):
+        if size <= _LARGEST_CACHE:
+            return
+        with suppress(FileNotFoundError):
+            os.unlink(path)
+        size -= length
+
+
+def _files(folder: Path) -> list[tuple[str, os.stat_result]]:
+    files = []
+    for entry in os.scandir(folder):
+        # Another process may remove it at the same moment.
+        with suppress(FileNotFoundError):
+            files.append((entry.path, entry.stat()))
+    return files

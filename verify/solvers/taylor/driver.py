@@ -12,7 +12,6 @@ an endless or a broken run             the number of steps is bounded and the ou
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -30,7 +29,7 @@ from verify.models.problem import Problem
 from verify.models.rates import Linearised
 from verify.scenes.precision import Rung
 from verify.solvers.solver import Solver
-from verify.solvers.taylor.cache import unstored, use_own_cache
+from verify.solvers.taylor.cache import heyoka_cache_off, stored
 from verify.solvers.taylor.name import named_at, tolerance
 from verify.solvers.taylor.numbers import Arithmetic, arithmetic, unavailable
 from verify.solvers.trajectory import Outcome, Postponed, Trajectory
@@ -139,7 +138,6 @@ def compiled(
     Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
     computes does not depend on ``is_long``, which tells what pays.
     """
-    use_own_cache()
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
     states = hy.make_vars(*form.states)
@@ -153,18 +151,20 @@ def compiled(
         for state, rate in zip(states, rates, strict=True)
     ]
     passed = len(form.parameters) if literals is None else 0
-    with nullcontext() if numbers.is_found_again else unstored():
-        return hy.taylor_adaptive(
-            system,
-            state=np.array([zero] * len(states), dtype=numbers.fp_type),
-            time=zero,
-            pars=np.array([zero] * passed, dtype=numbers.fp_type),
-            fp_type=numbers.fp_type,
-            compact_mode=numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
-            opt_level=3 if is_long else 0,
-            # heyoka takes 0 for the machine epsilon of the type.
-            tol=zero if tolerance is None else numbers.number(rung.round(tolerance)),
-        )
+    options = {
+        "state": np.array([zero] * len(states), dtype=numbers.fp_type),
+        "time": zero,
+        "pars": np.array([zero] * passed, dtype=numbers.fp_type),
+        "fp_type": numbers.fp_type,
+        "compact_mode": numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
+        "opt_level": 3 if is_long else 0,
+        # heyoka takes 0 for the machine epsilon of the type.
+        "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
+    }
+    if numbers.is_found_again:
+        return stored(hy.taylor_adaptive, system, **options)
+    heyoka_cache_off()
+    return hy.taylor_adaptive(system, **options)
 
 
 def _propagate(
@@ -177,10 +177,10 @@ def _propagate(
     numbers = arithmetic(problem.rung)
     zero = numbers.array([Fraction(0)])
     integrator.time = zero[0]
-    integrator.state[:] = numbers.array(problem.initial)
+    integrator.state[:] = numbers.array(problem.initial_momenta)
     integrator.pars[:] = numbers.array(problem.parameters)
     linearised = Linearised(problem)
-    rate = linearised.fastest([float(value) for value in problem.initial])
+    rate = linearised.fastest([float(value) for value in problem.initial_momenta])
     if not isfinite(rate):
         return Outcome.NON_FINITE, 0, [], 0.0
     # In these units the motion is of size one, also one that is at rest when it begins.

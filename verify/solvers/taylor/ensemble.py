@@ -28,7 +28,7 @@ from verify.models.form import Form
 from verify.models.problem import Problem
 from verify.models.rates import Linearised
 from verify.scenes.precision import Rung
-from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.cache import stored
 from verify.solvers.taylor.driver import LONGEST_STEP, compiled
 from verify.solvers.taylor.numbers import arithmetic, unavailable
 from verify.solvers.trajectory import Outcome
@@ -90,7 +90,7 @@ class Ensemble:
 
     def start(self) -> tuple[Lane, ...]:
         """Every lane at its initial state."""
-        return tuple(Lane(Fraction(0), problem.initial) for problem in self.problems)
+        return tuple(Lane(Fraction(0), problem.initial_momenta) for problem in self.problems)
 
     def advance(self, lanes: Sequence[Lane], until: Sequence[Fraction]) -> tuple[Lane, ...]:
         """Every lane that goes on, at its time in ``until``: numbers of the rung, in its own units.
@@ -264,7 +264,6 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     """One compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance)
-    use_own_cache()
     numbers = arithmetic(rung)
     states = hy.make_vars(*form.states)
     rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
@@ -276,7 +275,8 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     def empty(*shape: int) -> Array:
         return np.zeros((*shape, width), dtype=numbers.fp_type)
 
-    return hy.taylor_adaptive_batch(
+    return stored(
+        hy.taylor_adaptive_batch,
         system,
         state=empty(len(states)),
         time=empty(),

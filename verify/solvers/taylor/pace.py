@@ -31,9 +31,9 @@ class Pace:
         values = problem.parameters if literals else None
         self._integrator: Any = compiled(problem.form, problem.rung, tolerance, values)
         self._zero, self._end = numbers.array([Fraction(0), problem.rung.round(span)])
-        self._start = numbers.array(problem.initial)
+        self._start = numbers.array(problem.initial_momenta)
         self._parameters = numbers.array(() if literals else problem.parameters)
-        rate = Linearised(problem).fastest([float(value) for value in problem.initial])
+        rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
         self._longest = numbers.double(LONGEST_STEP / rate)
 
     @property

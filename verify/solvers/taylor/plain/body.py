@@ -20,7 +20,7 @@ from verify.scenes.bodies import RigidBody
 from verify.scenes.motion import Spin
 from verify.scenes.precision import Rung, held_exactly
 from verify.solvers.solver import Solver
-from verify.solvers.taylor.cache import use_own_cache
+from verify.solvers.taylor.cache import heyoka_cache_off
 from verify.solvers.taylor.numbers import arithmetic, unavailable
 from verify.solvers.trajectory import Outcome, Trajectory
 
@@ -89,7 +89,7 @@ class Plain(Solver):
         return unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
-        use_own_cache()
+        heyoka_cache_off()
         began = perf_counter()
         body, start = problem.given.body, problem.given.initial
         assert isinstance(body, RigidBody)

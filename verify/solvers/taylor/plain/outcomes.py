@@ -81,8 +81,8 @@ def cache_key() -> str:
             hy.taylor_adaptive([(hy.make_vars("x"), hy.expression(0.25))], [0.0])
             return stored_key(Path(folder, "cache.db"))
         finally:
-            hy.llvm_state.set_diskcache_path(before)
             hy.llvm_state.set_diskcache_enabled(enabled)
+            hy.llvm_state.set_diskcache_path(before)
 
 
 def stored_by(processes: int) -> int:

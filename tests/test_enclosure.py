@@ -1,0 +1,319 @@
+"""The Taylor route returns balls that contain the motion, however small what drives it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import pytest
+from flint import arb, arb_mat, ctx
+from mpmath import mp, mpf
+from samples import GENERAL, LOADED, QUATERNION, one_instant, vector
+
+from verify.exact.balls import ball, balls
+from verify.exact.enclosure import box, course, placing, tube
+from verify.exact.enclosure.course import Course, Row
+from verify.exact.enclosure.placing import Place
+from verify.exact.enclosure.system import posed
+from verify.exact.rotation import rotation_matrix
+from verify.exact.solution import Unsettled
+from verify.exact.taylor import TaylorSolution
+from verify.scenes import tensors
+from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.motion import Impulse, Spin, State
+from verify.scenes.scene import Scene
+from verify.scenes.tensors import ZERO_MATRIX, diagonal
+
+TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
+
+
+# Contained: every motion that begins in a box of starts ends in the balls of that box.
+
+
+WIDE = Fraction(1, 10**6)
+TURN = rotation_matrix(QUATERNION)
+CASES = {
+    "euler": (
+        one_instant(
+            RigidBody(diagonal(vector(1, 2, 3))),
+            Spin(vector("0.3", 1, "0.2"), QUATERNION),
+            "attitude",
+        ),
+        6,
+    ),
+    "one axis": (
+        one_instant(
+            RigidBody(diagonal(vector(2, 1, 1))), Spin(vector(0, 0, 1), QUATERNION), "attitude"
+        ),
+        2,
+    ),
+    "kirchhoff": (
+        one_instant(
+            GENERAL,
+            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
+            "attitude",
+            "centre",
+        ),
+        4,
+    ),
+    "loaded": (
+        one_instant(
+            LOADED,
+            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
+            "attitude",
+            "centre",
+        ),
+        -3,
+    ),
+}
+
+
+def moved(start: State, signs: Sequence[int], size: Fraction) -> State:
+    """The start with each component of the momenta moved by the size, in the direction of its sign."""
+    if isinstance(start, Spin):
+        return replace(
+            start, omega=tuple(w + s * size for w, s in zip(start.omega, signs, strict=True))
+        )
+    both = zip(start.linear + start.angular, signs, strict=True)
+    z = tuple(value + sign * size for value, sign in both)
+    return replace(start, linear=z[:3], angular=z[3:])
+
+
+def enclosed(asked: Scene, time: Fraction, size: Fraction, bits: int) -> Row:
+    """The row at a time, of all starts within the size of the scene's own."""
+    system = posed(asked)
+    with ctx.workprec(bits):
+        start = [ball(value) + arb(0, ball(size).upper()) for value in system.start]
+        initial = asked.initial
+        centre = initial.centre if isinstance(initial, Impulse) else None
+        place = Place.of(rotation_matrix(initial.attitude), centre)
+        run = Course.of(system, start, place, bits, 10_000)
+        (row,) = (row for _, row in run.rows([time]))
+    return row
+
+
+def corners(asked: Scene) -> list[Sequence[int]]:
+    size = 3 if isinstance(asked.body, RigidBody) else 6
+    every = [tuple(signs) for signs in product((-1, 1), repeat=size)]
+    return every if size == 3 else every[::9]
+
+
+def is_contained(name: str, bits: int = 80, size: Fraction = WIDE) -> bool:
+    """Whether the balls of a box contain the motions from its corners, by far sharper runs."""
+    asked, end = CASES[name]
+    time = Fraction(end)
+    row = enclosed(asked, time, size, bits)
+    for signs in corners(asked):
+        truth = TRUTHS[name, tuple(signs), size]
+        with ctx.workprec(200):
+            for got, exact in (
+                (row.state, truth[0]),
+                (row.turn, truth[1]),
+                (row.centre or [], truth[2]),
+            ):
+                if not all(g.overlaps(e) for g, e in zip(got, exact, strict=True)):
+                    return False
+    return True
+
+
+class _Truths(dict[tuple[str, tuple[int, ...], Fraction], tuple[list[arb], list[arb], list[arb]]]):
+    """Motions from corners, each computed once, before anything is broken."""
+
+    def __missing__(
+        self, key: tuple[str, tuple[int, ...], Fraction]
+    ) -> tuple[list[arb], list[arb], list[arb]]:
+        name, signs, size = key
+        asked, end = CASES[name]
+        corner = replace(asked, initial=moved(asked.initial, signs, size))
+        row = enclosed(corner, Fraction(end), Fraction(0), 160)
+        self[key] = (row.state, row.turn, row.centre or [])
+        return self[key]
+
+
+TRUTHS = _Truths()
+
+
+@pytest.mark.parametrize("size", [WIDE, Fraction(1, 10**12)], ids=["1e-6", "1e-12"])
+@pytest.mark.parametrize("name", CASES)
+def test_motions_from_a_box_of_starts_stay_in_its_balls(name: str, size: Fraction) -> None:
+    """State, attitude and centre, forwards and backwards in time, free and loaded."""
+    assert is_contained(name, size=size)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_balls_of_a_box_are_not_much_wider_than_its_motions(name: str) -> None:
+    """The corners are apart by more than a thirtieth of the width that is given for them."""
+    asked, end = CASES[name]
+    row = enclosed(asked, Fraction(end), WIDE, 80)
+    ends = [TRUTHS[name, tuple(signs), WIDE][0] for signs in corners(asked)]
+    for place, width in enumerate(row.state):
+        values = [float(z[place].mid()) for z in ends]
+        assert max(values) - min(values) >= float(width.rad()) / 30
+
+
+def norm_of_the_sum(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:
+    """The false bound of the integral of |W (z - p)|: smaller than the true one."""
+    spread, constant = deviations
+    total = constant
+    for k, part in enumerate(spread):
+        total = total + part * (arb(1) / (k + 1))
+    return placing.norm((form * total).entries())
+
+
+def test_the_norm_of_a_sum_is_no_bound_of_the_integral() -> None:
+    """Of a deviation whose direction turns, the norm of the integral is smaller, and a false bound."""
+    sharp = placing._accumulated
+    spread = [tube.column([arb(e) for e in row]) for row in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    constant = tube.column([arb(0)] * 3)
+    one = arb_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)])
+    with ctx.workprec(64):
+        # z - p = (1, s, s^2): the integral of its norm is 1.2936... , between the two.
+        true = mp.quad(lambda s: mp.sqrt(1 + s**2 + s**4), [0, 1])
+        assert float(norm_of_the_sum(one, (spread, constant))) < true
+        assert float(sharp(one, (spread, constant))) >= true
+
+
+@pytest.mark.parametrize(
+    ("broken", "name"),
+    [
+        ("truncation", "euler"),
+        ("truncation", "kirchhoff"),
+        ("radius", "euler"),
+        ("radius", "loaded"),
+        ("turn", "euler"),
+        ("turn", "kirchhoff"),
+    ],
+)
+def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each bound counts: without one of them a motion leaves its balls, with it none does."""
+    size = WIDE
+    if broken == "truncation":
+        size = Fraction(0)
+        _ = [TRUTHS[name, tuple(signs), size] for signs in corners(CASES[name][0])]
+        # Steps that are too long for eight terms: truncation is by far the largest error.
+        sharp = Course._root_test
+        monkeypatch.setattr(Course, "order", property(lambda _: 8))
+        monkeypatch.setattr(
+            Course, "_root_test", lambda self, state: sharp(replace(self, bits=30), state)
+        )
+    assert is_contained(name, size=size)
+    zero = tube.column([arb(0)] * posed(CASES[name][0]).size)
+    carried, leg = box.carried, placing.leg
+    match broken:
+        case "truncation":
+            monkeypatch.setattr(tube, "truncation", lambda *_: zero)
+        case "radius":
+            monkeypatch.setattr(
+                course, "carried", lambda *a: replace(carried(*a), radius=carried(*a).radius / 64)
+            )
+        case "turn":
+            monkeypatch.setattr(course, "leg", lambda *a: replace(leg(*a), turn_error=arb(0)))
+    assert not is_contained(name, size=size)
+
+
+def test_a_centre_whose_bound_is_left_out_leaves_its_balls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sphere that drifts without spin: the width of its speed, and nothing else, moves the centre."""
+    sphere = ImmersedBody(diagonal(vector(1, 1, 1)), ZERO_MATRIX, diagonal(vector(1, 1, 1)))
+    drifting = one_instant(sphere, Impulse(vector(1, 0, 0), vector(0, 0, 0)), "attitude", "centre")
+    system = posed(drifting)
+
+    def centre() -> arb:
+        with ctx.workprec(80):
+            start = balls(system.start)
+            start[0] += arb(0, 1e-6)
+            place = Place.of(TURN, vector(0, 0, 0))
+            run = Course.of(system, start, place, 80, 10_000)
+            ((_, row),) = run.rows([Fraction(3)])
+            assert row.centre is not None
+            turned: arb = sum((ball(TURN[i][0]) * c for i, c in enumerate(row.centre)), arb(0))
+            return turned
+
+    # Along the first body axis the centre moves by 3 (1 +- 1e-6).
+    assert centre().contains(arb("3.000002"))
+    original = course.leg
+    monkeypatch.setattr(course, "leg", lambda *a: replace(original(*a), path_error=arb(0)))
+    assert not centre().contains(arb("3.000002"))
+
+
+# The precision, and its end.
+
+
+def test_a_vector_that_vanishes_has_an_absolute_radius() -> None:
+    """A moment stops the body: at that instant omega is zero to 200 bits more than were asked for."""
+    stopping = RigidBody(diagonal(vector(2, 2, 2)), vector(-2, 0, 0))
+    motion = TaylorSolution(one_instant(stopping, Spin(vector(3, 0, 0)))).motion([Fraction(3)], 20)
+    assert mp.norm(list(motion["omega"][0])) <= motion.radii["omega"][0]
+    assert motion.radii["omega"][0] <= mpf(10) ** -80
+
+
+def test_a_vector_that_cancels_for_ever_has_an_absolute_radius() -> None:
+    """Drifting along an axis of A, a solid without spin has y = 0, though no term of y' is zero."""
+    turned = tensors.product(
+        tensors.product(TURN, diagonal(vector(1, 2, 3))), tensors.transpose(TURN)
+    )
+    solid = ImmersedBody(turned, ZERO_MATRIX, diagonal(vector(1, 2, 3)))
+    drifting = one_instant(solid, Impulse(tensors.apply(TURN, vector(0, 0, 1)), vector(0, 0, 0)))
+    motion = TaylorSolution(drifting).motion([Fraction(5)], 20)
+    assert mp.norm(list(motion["angular_impulse"][0])) <= motion.radii["angular_impulse"][0]
+    assert motion.radii["angular_impulse"][0] <= mpf(10) ** -60
+
+
+@pytest.mark.parametrize("unit", ["1e-200", "1e200"])
+def test_the_unit_of_time_may_be_beyond_floats(unit: str) -> None:
+    """A motion 10^200 times as slow, or as fast, is the same motion: no length passes through a float."""
+    factor = Fraction(unit) ** 2
+    usual = one_instant(TRIAXIAL, Spin(vector("0.3", 1, "0.2")))
+    other = one_instant(TRIAXIAL, Spin(tensors.scaled(factor, vector("0.3", 1, "0.2"))))
+    one = TaylorSolution(usual).motion([Fraction(7)], 20)["omega"][0]
+    two = TaylorSolution(other).motion([7 / factor], 20)["omega"][0]
+    with mp.workdps(30):
+        size = mp.convert(factor)
+        assert mp.norm(list(two / size - one)) <= mpf(10) ** -19
+
+
+def test_the_bits_that_a_motion_loses_are_said() -> None:
+    """A motion that no ten thousand bits carry so far is refused: digits per unit of time, and why."""
+    # The middle axis of a tensor that is turned by a rational rotation: no coordinate is zero.
+    turned = tensors.product(tensors.product(TURN, TRIAXIAL.inertia), tensors.transpose(TURN))
+    steady = one_instant(RigidBody(turned), Spin(tensors.apply(TURN, vector(0, 1, 0))))
+    assert TaylorSolution(steady).motion([Fraction(20)], 12).radius[0] <= mpf(10) ** -12
+    with pytest.raises(
+        Unsettled, match=r"loses about 0\.\d+ digits per unit of time.*more than \d+ bits"
+    ):
+        TaylorSolution(steady).motion([Fraction(10**5)], 12)
+
+
+def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thousand samples are read off the steps that the last one takes."""
+    steps = 0
+    original = Course._step
+
+    def counted(self: Course, *arguments: Any) -> Any:
+        nonlocal steps
+        steps += 1
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Course, "_step", counted)
+    asked = TaylorSolution(CASES["euler"][0])
+    counts = []
+    for count in (1, 200):
+        steps = 0
+        asked.motion([Fraction(10 * (k + 1), count) for k in range(count)], 15)
+        counts.append(steps)
+    assert counts[0] == counts[1]
+
+
+def test_the_start_is_the_state_itself() -> None:
+    """At time zero the balls are those of the initial rationals."""
+    asked = CASES["kirchhoff"][0]
+    motion = TaylorSolution(asked).motion([Fraction(0)], 30)
+    with mp.workdps(40), ctx.workprec(140):
+        (row,) = motion["linear_impulse"]
+        exact = balls(asked.initial.linear) if isinstance(asked.initial, Impulse) else []
+        assert all(
+            abs(mpf(str(e.mid().str(40, radius=False))) - v) < 1e-35
+            for e, v in zip(exact, row, strict=True)
+        )

@@ -1,0 +1,116 @@
+"""A solver of one's own that ends the program has failed: its caller lives on, and says so."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+import verify
+from verify.judge.judgement import Judgement
+from verify.judge.verdict import Status
+from verify.models.problem import Problem
+from verify.solvers.solver import Callback, Solver
+from verify.solvers.trajectory import Outcome, Trajectory
+
+pytest_plugins = ["pytester"]
+
+CODES = [0, None, 1, "no licence", False]
+
+
+@dataclass(frozen=True)
+class Leaving(Solver):
+    """A Solver of one's own that calls sys.exit."""
+
+    code: Any
+    name: str = "leaving"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        sys.exit(self.code)
+
+
+class Array:
+    """An answer that ends the program when it is looked at."""
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        sys.exit(0)
+
+
+WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
+    "check": lambda solve: verify.check("euler/rest", solve),
+    "run": lambda solve: verify.run("euler/rest", Callback(solve)),
+}
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
+@pytest.mark.parametrize("code", CODES)
+def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
+    """The verdict is a fail whose reason names the exit, whatever the code."""
+    (verdict,) = way(lambda problem: sys.exit(code)).verdicts
+    assert verdict.verdict is Status.FAIL
+    assert verdict.outcome == Outcome.RAISED.value
+    said = "SystemExit" if code is None else f"SystemExit: {code}"
+    assert f"({said})" in verdict.because
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_sys_exit_in_a_solver_class_is_a_failed_solver(code: Any) -> None:
+    """A Solver of one's own may break its contract, and does not end its caller."""
+    (verdict,) = verify.run("euler/rest", Leaving(code)).verdicts
+    assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
+
+
+def test_sys_exit_in_the_answer_is_a_failed_solver() -> None:
+    """An answer may be an object, which leaves when it is asked for its numbers."""
+    (verdict,) = verify.check("euler/rest", lambda problem: Array()).verdicts
+    assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
+def test_an_interrupt_stays_an_interrupt(way: Any) -> None:
+    """Ctrl-C in the middle of a callable is heard by its caller."""
+
+    def interrupted(problem: Problem) -> Any:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        way(interrupted)
+
+
+def test_a_script_whose_solver_leaves_comes_to_its_end() -> None:
+    """The exit status of a script is its own, and not that of the solver it judges."""
+    script = (
+        "import sys, verify\n"
+        "judged = verify.check('euler/rest', lambda problem: sys.exit(0))\n"
+        "sys.exit(0 if judged.verdicts[0].verdict == 'pass' else 7)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 7
+
+
+@pytest.mark.parametrize("code", ["0", "", "1"])
+def test_sys_exit_in_a_test_fails_the_test_alone(pytester: pytest.Pytester, code: str) -> None:
+    """The plugin reports a failed solver with the line that left, and the session goes on."""
+    pytester.makepyfile(
+        f"""
+import sys
+
+
+def leaving(problem):
+    sys.exit({code})
+
+
+def test_it(verify_solver):
+    verify_solver("euler/rest", leaving)
+
+
+def test_next():
+    pass
+"""
+    )
+    result = pytester.runpytest_subprocess()
+    result.assert_outcomes(failed=1, passed=1)
+    result.stdout.fnmatch_lines(["*sys.exit(*", "*omega: fail, ended with an error*"])

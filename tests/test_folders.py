@@ -1,0 +1,232 @@
+"""A folder takes one run at a time, and only a checkout is published from."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from samples import THREE_INSTANTS
+
+from verify.cli import main
+from verify.folder_lock import LOCK, Occupied, alone_in
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> Path:
+    file = tmp_path / "short.toml"
+    file.write_text(THREE_INSTANTS)
+    return file
+
+
+# The lock.
+
+
+def test_a_folder_that_was_made_for_a_lock_goes_with_it(tmp_path: Path) -> None:
+    """A folder that was there before stays, and so does one that is no longer empty."""
+    with alone_in(tmp_path / "new" / "nested"):
+        assert (tmp_path / "new" / "nested" / LOCK).exists()
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "old").mkdir()
+    with alone_in(tmp_path / "old"):
+        pass
+    assert list((tmp_path / "old").iterdir()) == []
+    with alone_in(tmp_path / "new"):
+        (tmp_path / "new" / "result").write_text("42")
+    assert [file.name for file in (tmp_path / "new").iterdir()] == ["result"]
+
+
+def test_a_second_holder_is_refused_and_the_next_is_not(tmp_path: Path) -> None:
+    """The text names the folder and the process; a folder let go of can be taken again."""
+    for _ in range(2):
+        with alone_in(tmp_path):
+            words = f"in use by process {os.getpid()} @ {tmp_path}"
+            with pytest.raises(Occupied, match=words), alone_in(tmp_path):
+                pass
+            # The refusal has not removed the lock of the first.
+            with pytest.raises(Occupied), alone_in(tmp_path):
+                pass
+
+
+def test_the_lock_of_a_killed_process_is_free(tmp_path: Path) -> None:
+    """Its file is left behind, and is in nobody's way."""
+    script = (
+        "import sys, time\nfrom pathlib import Path\nfrom verify.folder_lock import alone_in\n"
+        "with alone_in(Path(sys.argv[1])):\n    print(flush=True)\n    time.sleep(600)\n"
+    )
+    command = [sys.executable, "-c", script, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as holder:
+        assert holder.stdout is not None
+        holder.stdout.readline()
+        with pytest.raises(Occupied, match=f"process {holder.pid} "), alone_in(tmp_path):
+            pass
+        holder.kill()
+    assert (tmp_path / LOCK).exists()
+    with alone_in(tmp_path):
+        pass
+    assert not (tmp_path / LOCK).exists()
+
+
+def _increase(folder: Path, times: int) -> None:
+    file = folder / "count"
+    for _ in range(times):
+        while True:
+            try:
+                with alone_in(folder):
+                    count = int(file.read_text())
+                    time.sleep(0.001)
+                    file.write_text(str(count + 1))
+                break
+            except Occupied:
+                time.sleep(0.0005)
+
+
+def test_a_lock_that_comes_and_goes_is_held_by_one(tmp_path: Path) -> None:
+    """Processes that take it in turns, its file removed every time, never hold it together."""
+    (tmp_path / "count").write_text("0")
+    context = multiprocessing.get_context("spawn")
+    workers = [context.Process(target=_increase, args=(tmp_path, 50)) for _ in range(3)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join(60)
+    assert (tmp_path / "count").read_text() == "150"
+
+
+# --out
+
+
+def test_a_second_run_into_one_folder_is_refused(
+    capsys: Captured, short: Path, tmp_path: Path
+) -> None:
+    """Exit status 2 and a sentence with the folder, before anything is run or written."""
+    folder = tmp_path / "out"
+    with alone_in(folder):
+        assert main(["run", str(short), "--out", str(folder)]) == 2
+        out, error = capsys.readouterr()
+        assert out == ""
+        assert error == (
+            "taylor-verify: expected a folder that no other run writes to, got one in use by "
+            f"process {os.getpid()} @ {folder} (--out)\n"
+        )
+        assert [file.name for file in folder.iterdir()] == [LOCK]
+    assert main(["run", str(short), "--out", str(folder)]) == 0
+    assert LOCK not in {file.name for file in folder.iterdir()}
+    with alone_in(folder):
+        assert main(["publish", "--from", str(folder)]) == 2
+        assert main(["publish", "--reference", "--from", str(folder)]) == 2
+        assert "(--from)" in capsys.readouterr().err
+
+
+def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
+    """The first comes to its end with the reports it would have had alone."""
+    folder = tmp_path / "out"
+    command = [sys.executable, "-m", "verify", "run", "--rung", "f64", "--out", str(folder)]
+    scenes = ["euler/generic", "euler/with-attitude", "kirchhoff/whole-motion"]
+    with subprocess.Popen([*command, *scenes], stderr=subprocess.PIPE, text=True) as first:
+        deadline = time.monotonic() + 60
+        while not (folder / LOCK).exists() and time.monotonic() < deadline:
+            time.sleep(0.005)
+        first.send_signal(signal.SIGSTOP)
+        try:
+            second = subprocess.run(
+                [*command, "euler/rest"], capture_output=True, text=True, timeout=60, check=False
+            )
+        finally:
+            first.send_signal(signal.SIGCONT)
+        assert first.wait(120) == 0
+    assert second.returncode == 2
+    assert f"in use by process {first.pid} @ {folder}" in second.stderr
+    stored = (folder / "data" / "verdicts.json").read_text()
+    assert all(scene in stored for scene in scenes)
+    assert "euler/rest" not in stored
+
+
+# publish
+
+
+MADE = ["gallery", "paper"]
+MEASURED = [
+    *("reference", "portraits", "controls", "claims", "prices", "tradeoff"),
+    *("extremes", "worst", "reach", "growth"),
+]
+
+
+def test_every_option_of_publish_is_here() -> None:
+    """These tests ask for all that `publish` may be asked for."""
+    from verify.cli.arguments import parse
+
+    known = vars(parse(["publish"])).keys()
+    others = {"folder", "seconds", "seed", "periods", "long", "outside", "json", "act"}
+    assert known - others == {*MADE, *MEASURED, "site"}
+
+
+@pytest.mark.parametrize(
+    "options", [[], ["--site", "pages"], *([f"--{name}"] for name in (*MADE, *MEASURED))], ids=str
+)
+def test_publish_outside_a_checkout_is_refused(
+    capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str]
+) -> None:
+    """Exit status 2 and a sentence that says where to go; no folder is made."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["publish", *options]) == 2
+    assert capsys.readouterr().err == (
+        f"taylor-verify: expected a checkout of taylor-verify, got {tmp_path}; what is published "
+        "belongs to a checkout of the project, and no package has it: go to one, or name a folder "
+        "that `run --out` has written\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_nothing_is_measured_outside_a_checkout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """A folder that is named is no checkout either."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["publish", f"--{name}", "--from", "reports"]) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_of_one_s_own_is_published_anywhere(
+    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tables of what `run --out` wrote are made again wherever it lies."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", str(short), "--out", "mine"]) == 0
+    assert main(["publish", "--from", "mine"]) == 0
+
+
+def test_the_reports_of_the_checkout_are_meant_below_it_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`publish` finds the reports of the checkout from any folder of it."""
+    from verify.cli.folders import reports_folder
+
+    (tmp_path / "pyproject.toml").write_text('[project]\nname = "taylor-verify"\n')
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "docs").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert reports_folder(None, measures=True) == "reports"
+    monkeypatch.chdir(tmp_path / "docs")
+    assert reports_folder(None, measures=True) == "../reports"
+    (tmp_path / "pyproject.toml").write_text('[project]\nname = "mine"\n')
+    assert main(["publish"]) == 2
+
+
+def test_against_outside_a_checkout_says_what_to_do(
+    capsys: Captured, short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`run --against reports`, as `make check-reports` has it, is refused with the same sentence."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", str(short), "--against", "reports"]) == 2
+    error = capsys.readouterr().err
+    assert "@ --against reports/data/verdicts.json; what is published belongs" in error
+    assert "go to one, or name a folder that `run --out` has written" in error
