@@ -53,6 +53,14 @@ def regressions(old: Iterable[Verdict], new: Iterable[Verdict]) -> list[str]:
     return [str(departure) for departure in hold(old, new).regressions]
 
 
+def test_a_quaternion_that_loses_its_length_is_a_regression() -> None:
+    """The row of a lost unit quaternion is new where it appears, and held as no other new row is."""
+    lost = row(errors=50.0, verdict=Status.FAIL, quantity="unit quaternion")
+    (regression,) = regressions([row()], [row(), lost])
+    assert "expected no such row, got one that fails" in regression
+    assert hold([row()], [row(), row(quantity="T")]).regressions == ()
+
+
 # Errors.
 
 

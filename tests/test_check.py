@@ -532,7 +532,7 @@ def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
         read(tmp_path / "mine.npz")
     assert len(refused.value.faults) == 2
     np.savez(tmp_path / "object.npz", t=np.array([{}], dtype=object))
-    with pytest.raises(Refused, match="expected an NPZ archive"):
+    with pytest.raises(Refused, match=r"got shape .* of object"):
         read(tmp_path / "object.npz")
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from first_order import engine, explicit, none
 from mpmath import mp, mpf
 from trajectories import (
     MATRIX,
@@ -25,11 +27,13 @@ from trajectories import (
 
 import verify
 from verify.judge.answer import FileJudgement
-from verify.judge.conventions.readings import AXES, readings, rotations
+from verify.judge.conventions.axes import AXES, Frames
+from verify.judge.conventions.readings import readings, rotations
 from verify.judge.conventions.search import EXPLAINS, conventions
 from verify.judge.verdict import Status
 from verify.scenes import tensors
 from verify.scenes.bodies import ImmersedBody, RigidBody
+from verify.scenes.motion import Spin
 from verify.scenes.precision import rung
 from verify.scenes.reader import load
 from verify.solvers.file import read
@@ -95,11 +99,10 @@ def of_another_epoch(sound: Sound) -> Columns:
 
 
 def permuted(sound: Sound) -> Columns:
-    return replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
-
-
-def with_a_sign(sound: Sound) -> Columns:
-    return replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
+    """The body's axes in another order, for omega and the attitude alike."""
+    R = rotations(rows_of(sound, QUATERNION))[:, :, [1, 2, 0]]
+    turned = replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+    return replaced(turned, QUATERNION, [quaternion(r) for r in R])
 
 
 @pytest.mark.parametrize(
@@ -114,8 +117,11 @@ def with_a_sign(sound: Sound) -> Columns:
         (in_milliseconds, "time", "thousandths"),
         (late, "time", "late by 0.0005"),
         (of_another_epoch, "time", "late by 1024"),
-        (permuted, "omega", "axis 1 is w3, axis 2 is w1, axis 3 is w2"),
-        (with_a_sign, "omega", "axis 2 is -w2"),
+        (
+            permuted,
+            "axes",
+            "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1",
+        ),
     ],
 )
 def test_each_convention_is_found_and_mended_only_when_asked(
@@ -144,15 +150,14 @@ def test_conventions_are_found_together(tmp_path: Path) -> None:
 
 
 def test_impulses_have_conventions_too(tmp_path: Path) -> None:
-    """The axes of x and y, and the unit of Omega, are found in a file of a solid in a fluid."""
+    """The axes of the body and the unit of Omega are found in a file of a solid in a fluid."""
     scene = "kirchhoff/whole-motion"
     sound = exact_columns(scene)
-    spoiled = in_degrees(sound)
+    spoiled = permuted(in_degrees(sound))
     for names in (VECTORS["linear_impulse"], VECTORS["angular_impulse"]):
-        spoiled = replaced(spoiled, names, rows_of(sound, names)[:, [2, 0, 1]])
+        spoiled = replaced(spoiled, names, rows_of(sound, names)[:, [1, 2, 0]])
     found = judged(tmp_path, scene, spoiled)
-    subjects = {finding.subject for finding in found.conventions}
-    assert subjects == {"omega", "linear_impulse", "angular_impulse"}
+    assert [finding.subject for finding in found.conventions] == ["axes", "omega"]
     assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
 
 
@@ -188,15 +193,15 @@ def test_transposed_coupling_is_seen(tmp_path: Path) -> None:
 def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
     accept: bool, tmp_path: Path
 ) -> None:
-    """Two columns with one value were exchanged with a third: which is which nobody can say."""
+    """Columns of one size have other signs: nobody can say which of them is which axis."""
     scene = tmp_path / "equal.toml"
     scene.write_text(
-        'title = "Two equal components"\nmodel = "euler"\n[body]\ninertia = [2, 2, 2]\n'
-        "[initial]\nomega = [0.5, 0.5, 0.25]\n[time]\nend = 10\nsamples = 11\n"
+        'title = "Three equal components"\nmodel = "euler"\n[body]\ninertia = [2, 2, 2]\n'
+        "[initial]\nomega = [0.5, 0.5, 0.5]\n[time]\nend = 10\nsamples = 11\n"
     )
     spoiled = {
         "t": list(range(11)),
-        **{n: [v] * 11 for n, v in zip(OMEGA, (0.25, 0.5, 0.5), strict=True)},
+        **{n: [v] * 11 for n, v in zip(OMEGA, (-0.5, -0.5, 0.5), strict=True)},
     }
     found = judged(tmp_path, str(scene), spoiled, accept)
     (finding,) = found.conventions
@@ -233,17 +238,131 @@ def test_poor_answers_show_their_conventions(tmp_path: Path) -> None:
     assert "scalar last" in finding.words
 
 
+# What is no convention.
+
+
+def test_one_reflected_component_is_an_error(tmp_path: Path) -> None:
+    """A sign of one component of omega is no change of axes: the attitude in the file is right."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
+    found = judged(tmp_path, "euler/with-attitude", spoiled, accept=True)
+    assert found.conventions == ()
+    assert Status.FAIL in statuses(found)
+    # Nor is it one where omega is all that the file has.
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    assert judged(tmp_path, "euler/with-attitude", alone, accept=True).conventions == ()
+
+
+def test_axes_of_omega_alone_are_no_convention_beside_an_attitude(tmp_path: Path) -> None:
+    """A permutation of omega must be one of the attitude's body axes too; alone in a file it may stand."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+    assert judged(tmp_path, "euler/with-attitude", spoiled, accept=True).conventions == ()
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    (finding,) = judged(tmp_path, "euler/with-attitude", alone).conventions
+    assert finding.subject == "axes"
+    assert finding.words.endswith("other axes: axis 1 is w3, axis 2 is w1, axis 3 is w2")
+
+
+SYMMETRIC = (
+    'title = "Symmetric"\nmodel = "euler"\ntrack = ["omega", "attitude"]\n[body]\n'
+    "inertia = [1.3, 1.3, 0.7]\n[initial]\nomega = [0.5, 0.2, 1.5]\nattitude = [1, 2, -1, 3]\n"
+    "[time]\nend = 20\nsamples = 21\n"
+)
+
+
+@pytest.mark.parametrize("with_attitude", [False, True])
+@pytest.mark.parametrize("angle", [0.3, -0.3])
+def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_path: Path) -> None:
+    """A symmetric body that starts turned about its axis looks late; its initial state fails."""
+    name = tmp_path / "symmetric.toml"
+    name.write_text(SYMMETRIC)
+    scene = load(str(name))
+    assert isinstance(scene.initial, Spin)
+    c, s = np.cos(angle), np.sin(angle)
+    w1, w2, w3 = map(float, scene.initial.omega)
+    turned = tuple(Fraction(v) for v in (float(c * w1 - s * w2), float(s * w1 + c * w2), w3))
+    initial = replace(scene.initial, omega=turned)
+    columns = columns_at(replace(scene, initial=initial), scene.clock.instants)
+    if not with_attitude:
+        columns = {n: columns[n] for n in ("t", *OMEGA)}
+    found = judged(tmp_path, str(name), columns, accept=True)
+    assert found.conventions == ()
+    first = found.verdicts[0]
+    assert (first.quantity, first.verdict) == ("initial state", Status.FAIL)
+
+
+def test_a_body_that_stands_still_has_no_unit_of_time(tmp_path: Path) -> None:
+    """A constant omega is not counted in nanoseconds, in which the truth does not move either."""
+    sound = exact_columns("euler/with-attitude")
+    still = replaced(sound, OMEGA, [rows_of(sound, OMEGA)[0]] * len(sound["t"]))
+    for columns in (still, {n: still[n] for n in ("t", *OMEGA)}):
+        assert judged(tmp_path, "euler/with-attitude", columns).conventions == ()
+
+
+# Honest files of first-order engines, whose later rows are off by far more than a hundredth.
+
+
+def identical(columns: Columns) -> Columns:
+    return columns
+
+
+def all_at_once(columns: Columns) -> Columns:
+    return scalar_last(in_degrees(in_space_axes(columns)))
+
+
+# A start in line with the axes of space shows space axes only after a while.
+@pytest.mark.parametrize(
+    ("scene", "rows"),
+    [("euler/with-attitude", 5), ("euler/with-attitude", 1001), ("euler/nesc-brick", 1001)],
+)
+@pytest.mark.parametrize(
+    ("spoil", "subjects"),
+    [
+        (identical, []),
+        (scalar_last, ["quaternion"]),
+        (conjugate, ["quaternion"]),
+        (in_space_axes, ["omega"]),
+        (in_degrees, ["omega"]),
+        (permuted, ["axes"]),
+        (all_at_once, ["omega", "quaternion"]),
+    ],
+)
+def test_the_first_rows_of_an_engine_decide(
+    scene: str, rows: int, spoil: Callable[[Sound], Columns], subjects: list[str], tmp_path: Path
+) -> None:
+    """Of semi-implicit Euler at h = 0.01 the first five rows suffice, and a long file hides nothing."""
+    file = read(write_csv(tmp_path / "mine.csv", spoil(first_order(scene, rows))))
+    found = conventions(file, load(scene), rung("f64")).findings
+    assert [finding.subject for finding in found] == subjects
+    assert all(finding.is_certain for finding in found)
+
+
+def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: Path) -> None:
+    """The start and the first step are right to a hundredth even where omega never changes."""
+    scene = "euler/with-attitude"
+    columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
+    found = judged(tmp_path, scene, columns)
+    assert [finding.subject for finding in found.conventions] == ["omega", "quaternion"]
+    assert any(note.startswith("no gyroscopic term") for note in found.notes)
+
+
+@cache
+def first_order(scene: str, rows: int) -> Columns:
+    return engine(scene, explicit, 0.01, rows)
+
+
 # Readings.
 
 
-def test_axes_are_the_48_signed_permutations() -> None:
-    """All are orthogonal and different; half of them are rotations."""
-    unit = np.eye(3)
-    matrices = [axes.vectors(unit).T for axes in AXES]
-    assert len({m.tobytes() for m in matrices}) == 48
+def test_axes_are_the_24_rotations_of_a_cube() -> None:
+    """All are signed permutations of determinant 1, all are different, and none is a reflection."""
+    matrices = [axes.vectors(np.eye(3)).T for axes in AXES]
+    assert len({m.tobytes() for m in matrices}) == 24
     for axes, P in zip(AXES, matrices, strict=True):
-        assert np.array_equal(P @ P.T, unit)
-        assert axes.is_proper == (np.linalg.det(P) > 0)
+        assert np.array_equal(P @ P.T, np.eye(3))
+        assert np.linalg.det(P) == pytest.approx(1)
+        assert np.allclose(rotations(np.array([axes.quaternion], dtype=float))[0], P, atol=1e-15)
 
 
 def test_renaming_both_frames_is_a_conjugation() -> None:
@@ -254,6 +373,15 @@ def test_renaming_both_frames_is_a_conjugation() -> None:
         assert np.allclose(axes.left(axes.right(R))[0], P @ R[0] @ P.T, atol=1e-15)
 
 
+def test_renamed_quaternions_are_those_of_the_renamed_matrices() -> None:
+    """A quaternion under other axes is that of Q R P^T, and keeps its length."""
+    q = 0.5 * np.array([[0.3, -0.5, 0.7, 0.2]])
+    for frames in (f for a in AXES for f in (Frames(body=a), Frames(space=a), Frames(a, a))):
+        turned = frames.quaternions(q)
+        assert np.allclose(rotations(turned), frames.attitudes(rotations(q)), atol=1e-15)
+        assert np.linalg.norm(turned) == pytest.approx(np.linalg.norm(q), rel=1e-15)
+
+
 @pytest.mark.parametrize("group", ["omega", "quaternion", "attitude", "centre", "linear_impulse"])
 def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
     """What is tried in float64 is what is corrected in exact numbers."""
@@ -262,19 +390,20 @@ def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
     R = rotations(np.random.default_rng(2).standard_normal((2, 4)))
     with mp.workdps(30):
         held, frames = (np.vectorize(mpf, otypes=[object])(a) for a in (rows, R))
-        for reading in readings(group)[::7]:
+        renamed = Frames(AXES[5], AXES[17])
+        for reading in (*readings(group), *readings(group, renamed)):
             exact = reading.read(held, frames).astype(float)
             assert np.allclose(reading.read(rows, R), exact, rtol=1e-13, atol=1e-13)
 
 
 def test_first_reading_is_the_scenes_own() -> None:
-    """The one reading without cost leaves vectors as they are and normalises quaternions."""
+    """The one reading without cost leaves columns as they are, quaternions with their length."""
     for group in ("omega", "quaternion", "attitude", "centre", "angular_impulse"):
         costs = [reading.cost for reading in readings(group)]
         assert costs.count(0) == 1
         assert costs[0] == 0
     q = np.array([[2.0, 0.0, 0.0, 0.0]])
-    assert np.array_equal(readings("quaternion")[0].read(q, q)[0], np.eye(3))
+    assert np.array_equal(readings("quaternion")[0].read(q, q), q)
 
 
 def test_quaternion_of_the_tests_is_the_one_of_its_matrix() -> None:

@@ -301,7 +301,7 @@ def test_a_callable_module_is_told_of_as_its_function() -> None:
     """`verify.exact` has the arguments and the docstring of the function that it is called as."""
     module = configuration()
     found = module.signed(None, "function", "verify.exact", verify.exact, None, "", "")
-    assert found[0].startswith("(scene: Scene | str, times:")
+    assert found[0].startswith("(scene: Scene | str | os.PathLike[str], times:")
     lines = ["something else"]
     module.told(None, "function", "verify.exact", verify.exact, None, lines)
     assert lines[0].startswith("The exact motion at absolute times")

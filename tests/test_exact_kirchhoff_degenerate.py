@@ -172,7 +172,7 @@ def test_starts_where_it_is_told_to(solid: Clebsch, start: Sequence[Fraction], k
 
 @by_case
 def test_agrees_with_the_taylor_route(solid: Clebsch, start: Sequence[Fraction], kind: str) -> None:
-    """The Taylor recursion from the same start leads to the same states, both ways in time."""
+    """The Taylor route from the same start leads to the same states, both ways in time."""
     times = [Fraction(3, 2), Fraction(12), Fraction(-7, 3), Fraction(-10)]
     problem = scene(solid, start)
     found = rows(closed_form(problem).motion(times, DIGITS))

@@ -96,9 +96,14 @@ def test_a_missing_number_format_is_exit_0_and_said(
     finfo = np.finfo
 
     class Other:
+        """A long double that is a double in all but its name."""
+
         nmant = 52
 
-    monkeypatch.setattr(np, "finfo", lambda t: Other if t is np.longdouble else finfo(t))
+        def __getattr__(self, name: str) -> Any:
+            return getattr(finfo(np.longdouble), name)
+
+    monkeypatch.setattr(np, "finfo", lambda t: Other() if t is np.longdouble else finfo(t))
     (verdict,) = run(SCENE, "taylor", "f80").verdicts
     assert (verdict.verdict, verdict.outcome) == (Status.UNAVAILABLE, Outcome.NO_FORMAT.value)
     assert main(["run", SCENE, "--rung", "f80"]) == 0

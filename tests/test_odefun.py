@@ -104,8 +104,8 @@ def test_rates_that_are_no_numbers_are_an_outcome() -> None:
     [
         ("mpmath:odefunc", r"got 'odefunc'; did you mean odefun\?"),
         ("mpmath:odefun?tol=0", r"expected a positive number, got '0' @ tol"),
-        ("mpmath:odefun?degree=2.5", r"whole number of at least 2, got '2.5' @ degree"),
-        ("mpmath:odefun?degree=1", r"whole number of at least 2, got '1' @ degree"),
+        ("mpmath:odefun?degree=2.5", r"whole number from 2 to 1000, got '2.5' @ degree"),
+        ("mpmath:odefun?degree=1", r"whole number from 2 to 1000, got '1' @ degree"),
         ("mpmath:odefun?rtol=1", r"got 'rtol'; did you mean tol\?"),
     ],
 )

@@ -278,16 +278,23 @@ def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("shift", "words"),
+    ("shift", "course", "words"),
     [
-        ("constant", "a constant shift; the best constant one, 0.0005 late, leaves 2e-09 rad"),
-        ("none", "no shift of time explains the error"),
+        ("constant", {}, "a constant shift; the best constant one, 0.0005 late, leaves 2e-09 rad"),
+        (
+            "drifting",
+            {"trend": -1e-4, "remains": 3e-12},
+            "a drifting shift: the clock runs fast by 0.0001 of the time; 3e-12 rad remains",
+        ),
+        ("none", {}, "no shift of time explains the error"),
     ],
 )
-def test_a_time_shift_is_told_beside_a_tolerance(shift: str, words: str) -> None:
+def test_a_time_shift_is_told_beside_a_tolerance(
+    shift: str, course: dict[str, float], words: str
+) -> None:
     """What the judge made of the error as a shift of time is passed on with the test's own bound."""
     numbers = {"max": 1e-3, "at": 1.0, "mean": 1e-3, "final": 1e-3, "unit": "rad"}
-    late = verdict(Status.FAIL, **numbers, time_shift=5e-4, residual=2e-9, shift=shift)
+    late = verdict(Status.FAIL, **numbers, time_shift=5e-4, residual=2e-9, shift=shift, **course)
     told = report(run("euler/rest", "process:false"), [Demand(late, tolerance=1e-6)])
     assert f"    time     {words}" in told.splitlines()
 

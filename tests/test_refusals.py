@@ -61,9 +61,9 @@ def test_every_line_says_what_was_expected_what_was_found_and_where(file: Path) 
 
 
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    """A path that cannot be read is a fault with the system's reason, not a traceback."""
+    """A path that cannot be read is a fault, not a traceback."""
     line = str(refusal(tmp_path / "absent.toml"))
-    assert "No such file or directory" in line
+    assert "no such file" in line
     assert "absent.toml" in line
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from trajectories import VECTORS, columns_at, write_csv
 
 from verify.check import check
 from verify.exact.rates import rates
@@ -146,18 +148,79 @@ def test_a_clock_that_runs_wrong_drifts(pace: str) -> None:
         assert f"drifting: its clock runs {told} by {abs(float(pace)):.3g} of" in shift.sentence()
 
 
-def test_a_few_samples_that_are_not_late_leave_a_constant_shift() -> None:
-    """An output written one step late from the second sample on is late by one step."""
+@pytest.mark.parametrize("name", SCENES)
+def test_a_first_row_that_is_not_late_is_named_and_spoils_no_fit(name: str) -> None:
+    """A first row that is the given start leaves the shift of all others exact, and is named."""
 
     def course(t: float) -> Fraction:
-        return Fraction(1, 4) if t else Fraction(0)
+        return Fraction(-1, 10000) if t else Fraction(0)
 
-    for shift in shifts_of("kirchhoff/whole-motion", course, samples=21).values():
+    for shift in shifts_of(name, course, samples=21).values():
         assert shift is not None
         assert shift.kind is Kind.CONSTANT
-        # One sample of 21 asks for no shift, with at most twice the mean weight.
-        assert shift.time_shift == pytest.approx(0.25, rel=2 / 21)
-        assert shift.at_samples[1:] == pytest.approx([0.25] * (len(shift.times) - 1), rel=1e-9)
+        assert shift.time_shift == pytest.approx(-1e-4, rel=1e-12)
+        assert shift.residual == shift.remains <= 10.0**-DIGITS * 10
+        assert shift.strays == shift.times[:1]
+        assert shift.sentence().startswith("early by 0.0001, constant; ")
+        rows = len(shift.times)
+        said = f" in {rows - 1} of {rows} rows; the row at t = {shift.times[0]:g} does not share it"
+        assert shift.sentence().endswith(said)
+
+
+def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
+    """Of a clock that runs slow but for two of 41 rows the pace is exact, and both rows are named."""
+
+    def course(t: float) -> Fraction:
+        return Fraction(1, 10) if t in (6.0, 13.5) else exact_value(t) / 1000
+
+    for shift in shifts_of("euler/with-attitude", course, samples=41).values():
+        assert shift is not None
+        assert shift.kind is Kind.DRIFTING
+        assert shift.trend == pytest.approx(1e-3, rel=1e-9)
+        assert shift.strays == (6.0, 13.5)
+        assert shift.remains <= 1e-15
+        assert "in 39 of 41 rows; the rows at t = 6, 13.5 do not share it" in shift.sentence()
+
+
+def test_a_shift_that_few_rows_share_is_no_cause() -> None:
+    """Where a quarter of the rows is late, no shift is constant."""
+
+    def course(t: float) -> Fraction:
+        return Fraction(1, 1000) if t % 2 == 0 else Fraction(0)
+
+    shift = shifts_of("euler/with-attitude", course, samples=41)["omega"]
+    assert shift is not None
+    assert shift.kind is Kind.WANDERING
+
+
+def test_a_third_of_an_error_along_the_orbit_is_no_clock() -> None:
+    """An error of which a shift leaves a third is a wrong equation, and not a clock that runs fast."""
+    scene, exact = asked("euler/generic", 41)
+    late = shifted(exact, scene, lambda t: exact_value(t) / 10**6)
+    velocity = rates(scene, late).velocity["omega"]
+    across = np.cross(velocity, [1.0, 2.0, 3.0])
+    error = max(
+        np.linalg.norm(
+            (late["omega"] - exact.motion(scene.clock.elapsed, DIGITS)["omega"]).astype(float),
+            axis=1,
+        )
+    )
+    across *= error / 3 / np.linalg.norm(across, axis=1, keepdims=True)
+    with mp.workdps(DIGITS):
+        wrong = late["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
+    shift = judged(scene, exact, Motion({"omega": wrong}, late.radius))["omega"]
+    assert shift is not None
+    assert shift.kind is Kind.NONE
+
+
+def test_an_answer_that_stands_still_has_no_clock() -> None:
+    """An omega that never changes is not called a clock that runs slow by 1."""
+    scene, exact = asked("euler/generic", 41)
+    truth = exact.motion(scene.clock.elapsed, DIGITS)
+    still = np.array([truth["omega"][0]] * len(truth.radius), dtype=object)
+    shift = judged(scene, exact, Motion({"omega": still}, truth.radius))["omega"]
+    assert shift is not None
+    assert shift.kind is Kind.NONE
 
 
 def test_a_shift_that_comes_and_goes_wanders() -> None:
@@ -370,3 +433,27 @@ def test_a_motion_without_widths_of_its_own_has_that_of_its_rows() -> None:
     rows = np.array([[mpf(1)] * 3], dtype=object)
     motion = Motion({"omega": rows}, np.array([mpf(2)], dtype=object))
     assert list(motion.radius_of("omega")) == [2]
+
+
+@pytest.mark.parametrize("stray", [False, True])
+def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
+    stray: bool, tmp_path: Path
+) -> None:
+    """Omega = B^T x + C y has its shift with a first row that does not share it as without."""
+    scene = load("kirchhoff/whole-motion")
+    instants = scene.clock.instants[:60:3]
+    shift = Fraction(1, 1000)
+    columns = columns_at(scene, [t - (shift if t or not stray else 0) for t in instants])
+    columns = {name: columns[name] for name in VECTORS["omega"]} | {
+        "t": [float(t) for t in instants]
+    }
+    (omega,) = (
+        v
+        for v in check(scene, write_csv(tmp_path / "mine.csv", columns)).verdicts
+        if v.quantity == "omega"
+    )
+    assert omega.shift == "constant"
+    assert omega.time_shift == pytest.approx(1e-3, rel=1e-9)
+    assert omega.residual is not None
+    # Rounding to doubles is left, of Omega and of the times.
+    assert omega.residual == omega.remains <= 1e-13

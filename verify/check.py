@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from verify.callable_module import make_callable
@@ -12,14 +12,14 @@ from verify.models.problem import Problem
 from verify.run import run
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback
 
 
 def check(
-    scene: Scene | str,
-    solve_or_file: Callable[[Problem], Any] | str | Path,
+    scene: Scene | str | PathLike[str],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
@@ -35,16 +35,21 @@ def check(
     they are corrected with ``accept_conventions`` only. A file that lacks tracked columns, or covers a
     part of the span, has a row `complete` that is undecided; with ``partial`` it is vacuous and counts
     for nothing. An answer of a callable is always whole. Raises scenes.faults.Refused for a file that
-    cannot be judged, with every fault of it.
+    cannot be judged, with every fault of it, and ValueError for what is neither a callable nor a file.
     """
-    if not isinstance(solve_or_file, str | Path):
+    if callable(solve_or_file):
         return run(scene, Callback(solve_or_file), rung)
+    if not isinstance(solve_or_file, str | PathLike):
+        kind = type(solve_or_file).__name__
+        raise ValueError(
+            f"expected a callable solve(problem) or a trajectory file, got {kind} "
+            "(write it to a file, or return it from a callable)"
+        )
     from verify.judge.answer import judge_file
     from verify.solvers.file import read
 
-    scene = load(scene) if isinstance(scene, str) else scene
-    rung = rung_named(rung) if isinstance(rung, str) else rung
-    return judge_file(read(solve_or_file), scene, rung, accept_conventions, partial)
+    file = read(solve_or_file)
+    return judge_file(file, as_scene(scene), rung_named(rung), accept_conventions, partial)
 
 
 make_callable(__name__, check)

@@ -9,6 +9,8 @@ from typing import Final
 
 from verify.judge.judgement import Judgement
 from verify.judge.verdict import INITIAL, STATES, Status, Verdict
+from verify.scenes.faults import brief
+from verify.scenes.positive import positive
 
 Tolerance = float | Mapping[str, float] | None
 Only = str | Collection[str] | None
@@ -80,6 +82,10 @@ def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None
         return found
     if only == CONSERVED:
         return [demand for demand in found if demand.is_conserved]
+    if not isinstance(only, str) and not (
+        isinstance(only, Collection) and all(map(_is_text, only))
+    ):
+        raise ValueError(f"expected names of quantities, got {brief(only)} @ only")
     wanted = [only] if isinstance(only, str) else list(only)
     _check_known(wanted, [*verdicts, CONSERVED], "only")
     return [demand for demand in found if demand.verdict.quantity in wanted]
@@ -99,10 +105,11 @@ def _tolerances(tolerance: Tolerance, quantities: Collection[str]) -> Mapping[st
     if not isinstance(tolerance, Mapping):
         tolerance = dict.fromkeys(quantities, tolerance)
     _check_known(list(tolerance), list(quantities), "tolerance")
-    for value in tolerance.values():
-        if isinstance(value, bool) or not 0 < value < inf:
-            raise ValueError(f"expected a positive number, got {value!r} @ tolerance")
-    return tolerance
+    return {name: positive(value, "tolerance") for name, value in tolerance.items()}
+
+
+def _is_text(name: object) -> bool:
+    return isinstance(name, str)
 
 
 def _check_known(names: Sequence[str], known: Sequence[str], place: str) -> None:
@@ -194,6 +201,12 @@ def _time_shift(verdict: Verdict) -> str:
         return ""
     if verdict.shift == "none":
         return "no shift of time explains the error"
+    if verdict.trend is not None:
+        pace = "slow" if verdict.trend > 0 else "fast"
+        return (
+            f"a drifting shift: the clock runs {pace} by {_short(abs(verdict.trend))} of the time; "
+            f"{_short(verdict.remains)}{_unit(verdict)} remains"
+        )
     way = "late" if verdict.time_shift > 0 else "early"
     return (
         f"a {verdict.shift} shift; the best constant one, {_short(abs(verdict.time_shift))} {way}, "

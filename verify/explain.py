@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
+from os import PathLike
 from typing import Any
 
 from mpmath import mp
@@ -22,7 +23,7 @@ from verify.run import run
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
 
 _DIGITS = 15
@@ -31,14 +32,14 @@ _FROM_RECORD = (
 )
 
 
-def explanation(scene: Scene | str, rung: str) -> dict[str, Any]:
+def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
     """One run of the scene on that rung, told by its record: nothing here is an estimate.
 
     A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
     orbit, its conditioning, and each gate with the terms of its bound. What a run that came to no
     comparison has not found out is None. Raises scenes.faults.Refused for a scene that cannot be read.
     """
-    scene = load(scene) if isinstance(scene, str) else scene
+    scene = as_scene(scene)
     found = run(scene, "taylor", rung)
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]

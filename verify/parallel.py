@@ -13,13 +13,19 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 Asked = TypeVar("Asked")
 Result = TypeVar("Result")
+
+
+NO_MEMORY: Final = (
+    "expected more memory, got none left (raise the limit of the process, or ask for less: fewer samples, "
+    "fewer digits)"
+)
 
 
 class Failed(RuntimeError):  # noqa: N818 (it names what happened to the run)
@@ -108,7 +114,15 @@ def available_cores() -> int:
 
 
 def fault(error: BaseException) -> str:
-    """One line for an error that nobody foresaw: what it is, and where in this package it rose."""
+    """One line for an error that nobody foresaw: what it is, and where in this package it rose.
+
+    Memory that runs out is the machine's or the question's, and a library that does not load is the
+    machine's: neither is called a fault of this package.
+    """
+    if isinstance(error, MemoryError):
+        return NO_MEMORY
+    if isinstance(error, ImportError):
+        return f"expected a library to load (installed whole, with memory for it), got {error}"
     package = Path(__file__).parent
     frames = [
         f"{Path(frame.filename).relative_to(package)}:{frame.lineno}"

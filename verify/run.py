@@ -6,6 +6,7 @@ The module is callable, so that `verify.run(scene, solver, rung)` is this chain.
 from __future__ import annotations
 
 from dataclasses import replace
+from os import PathLike
 from time import perf_counter
 
 from verify.callable_module import make_callable
@@ -16,14 +17,16 @@ from verify.judge.verdict import Status
 from verify.models.problem import NotRepresentable, pose
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
-from verify.solvers.registry import solver_named
+from verify.solvers.registry import as_solver
 from verify.solvers.solver import Lack, Solver, raised
 from verify.solvers.trajectory import Outcome
 
 
-def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = "f64") -> Judgement:
+def run(
+    scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
+) -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
     The scene is a Scene, a path or the name of a shipped scene; the solver a Solver or a name such as
@@ -34,9 +37,7 @@ def run(scene: Scene | str, solver: Solver | str = "taylor", rung: Rung | str = 
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
     no solver or no rung. What the rung cannot hold is a verdict, not an error.
     """
-    scene = load(scene) if isinstance(scene, str) else scene
-    solver = solver_named(solver) if isinstance(solver, str) else solver
-    rung = rung_named(rung) if isinstance(rung, str) else rung
+    scene, solver, rung = as_scene(scene), as_solver(solver), rung_named(rung)
     if missing := solver.unavailable(rung):
         lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
         return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing, lack)

@@ -41,7 +41,9 @@ def _print(answer: Answer, as_json: bool) -> int:
     if as_json:
         import json
 
-        print_out(json.dumps(answer.document, indent=1, allow_nan=False))
+        text = json.dumps(answer.document, indent=1, allow_nan=False)
+        # JSON escapes every other control character by itself.
+        print_out(text.replace("\x7f", "\\u007f"))
     else:
         print_out(answer.text())
     for message in answer.messages:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from verify.cli import ci, claims, publishing, question, tradeoff, verbs
 from verify.cli.answer import Answer
+from verify.cli.streams import escaped
 
 _DEFAULT_DIGITS = 30
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
@@ -56,8 +57,15 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
     return rungs, scenes
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        super().exit(status, message and escaped(message))
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="taylor-verify",
         description="The reference that rigid-body and ideal-fluid simulations are measured "
         "against.",

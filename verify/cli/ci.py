@@ -168,19 +168,16 @@ def _unexpected(expected: Held, verdicts: Sequence[Verdict]) -> list[Remark]:
 
 def _baseline(file: str) -> tuple[Verdict, ...]:
     from verify.judge.baseline import load
+    from verify.scenes.faults import Refused
 
-    try:
-        return load(file)
-    except IsADirectoryError as error:
+    if Path(file).is_dir():
         raise WrongCall(
             f"expected a file, got a folder (its rows are in {file}/data/verdicts.json) "
             f"@ --baseline {file}"
-        ) from error
-    except OSError as error:
-        raise WrongCall(
-            f"expected a file of verdicts, got {error.strerror!r} @ --baseline {file}"
-        ) from error
-    except ValueError as error:
+        )
+    try:
+        return load(file)
+    except (Refused, ValueError) as error:
         raise WrongCall(f"{error} (--baseline)") from error
 
 
@@ -243,7 +240,8 @@ def _writable_file(name: str) -> Path:
         nearest = next(p for p in path.absolute().parents if p.exists())
         with tempfile.TemporaryFile(dir=nearest):
             return path
-    except OSError as error:
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
         raise WrongCall(
-            f"expected a file that can be written, got {name!r} ({error.strerror}) @ --junit"
+            f"expected a file that can be written, got {name!r} ({reason}) @ --junit"
         ) from error

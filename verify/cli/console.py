@@ -4,12 +4,27 @@ from __future__ import annotations
 
 import sys
 import textwrap
+from collections.abc import Iterable
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 from rich.text import Text
+
+from verify.cli.streams import escaped
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 PIPED_WIDTH = 140
+
+
+class EscapingConsole(Console):
+    """A console on which no name can steer the terminal: styles are its own, the rest is text."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        for segment in super().render(renderable, options):
+            is_text = segment.control is None
+            yield Segment(escaped(segment.text), segment.style) if is_text else segment
 
 
 def print_line(console: Console, *parts: str | Text) -> None:
@@ -26,7 +41,7 @@ def print_indented(console: Console, label: str, text: str) -> None:
 
 def new_console(piped_width: int = PIPED_WIDTH) -> Console:
     """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
-    console = Console(markup=False, emoji=False, highlight=False)
+    console = EscapingConsole(markup=False, emoji=False, highlight=False)
     if not sys.stdout.isatty():
         console.width = piped_width
     console.begin_capture()

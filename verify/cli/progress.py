@@ -23,12 +23,13 @@ def advancing(total: int) -> Iterator[Callable[[Job], None]]:
     if not sys.stderr.isatty():
         yield _counting(total)
         return
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
     from rich.progress import TimeElapsedColumn as Elapsed
 
+    from verify.cli.console import EscapingConsole
+
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
-    console = Console(stderr=True)
+    console = EscapingConsole(stderr=True)
     with Progress(*columns, Elapsed(), console=console, transient=True) as bar:
         task = bar.add_task("compiling and solving", total=total)
 
@@ -53,10 +54,11 @@ def _counting(total: int) -> Callable[[Job], None]:
 def working(what: str) -> Iterator[None]:
     """A spinner while one long thing is computed; one line where stderr is no terminal."""
     if sys.stderr.isatty():
-        from rich.console import Console
         from rich.text import Text
 
-        with Console(stderr=True).status(Text(what)):
+        from verify.cli.console import EscapingConsole
+
+        with EscapingConsole(stderr=True).status(Text(what)):
             yield
         return
     notice = threading.Timer(_PATIENCE, say, [f"{what}: computing"])

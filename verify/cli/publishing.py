@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from functools import partial
+from math import inf
 from pathlib import Path
 
 from verify.cli.answer import Answer, WrongCall, files_written
@@ -187,7 +188,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
     from verify.publish import worst as pages
     from verify.scenes.library import WORST, cases_directory
 
-    if not seconds > 0:
+    if not 0 < seconds < inf:
         raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
     found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}

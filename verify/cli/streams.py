@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import TextIO
+from typing import Final, TextIO
+
+# Control characters of both sets but tab and line break, separators of lines, turns of the direction.
+_CONTROL: Final = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]"
+)
+
+
+def escaped(text: str) -> str:
+    """The text with an escape for each character that would steer a terminal: a name may hold any."""
+    return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
 def say(message: str) -> None:
     try:
-        print(f"taylor-verify: {message}", file=sys.stderr, flush=True)
+        print(f"taylor-verify: {escaped(message)}", file=sys.stderr, flush=True)
     except OSError:
         _abandon(sys.stderr)
 
@@ -19,7 +30,7 @@ def say(message: str) -> None:
 def tell_runner(line: str) -> None:
     """A line for the runner of a CI, which reads stderr too, and commands only at a line's start."""
     try:
-        print(line, file=sys.stderr, flush=True)
+        print(escaped(line), file=sys.stderr, flush=True)
     except OSError:
         _abandon(sys.stderr)
 

@@ -238,10 +238,21 @@ def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
         table.add_column(heading, justify="right" if heading in numbers else "left", no_wrap=True)
     for v in verdicts:
         figures = (v.max, v.at, v.bound, v.ratio)
-        shift = (None, None) if v.shift in (None, "none") else (v.time_shift, v.residual)
-        cells = [*(_figure(f) for f in figures), *("" if f is None else _figure(f) for f in shift)]
+        cells = [*(_figure(f) for f in figures), *_shift_cells(v)]
         table.add_row(v.quantity, _status(v.verdict.value), *cells, v.unit)
     return table
+
+
+def _shift_cells(verdict: Verdict) -> tuple[str, str]:
+    """The shift of time that explains the error, and what it leaves: the fit of the reason."""
+    if verdict.remains is None:
+        return "", ""
+    left = _figure(verdict.remains)
+    if verdict.trend is not None:
+        return f"{_figure(verdict.trend)} t, {verdict.shift}", left
+    if verdict.shift == "constant":
+        return f"{_figure(verdict.time_shift)}, constant", left
+    return str(verdict.shift), left
 
 
 def _figure(value: float | None) -> str:

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
     from verify.solvers.file import TrajectoryFile
 
-_MOST_DIGITS = 10_000
-
 
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
@@ -161,9 +159,10 @@ def exact(options: argparse.Namespace) -> Answer:
     """The exact motion of one scene."""
     from verify.cli.progress import working
     from verify.cli.terminal import exact_text
+    from verify.exact.request import MOST_DIGITS
 
-    if not 1 <= options.digits <= _MOST_DIGITS:
-        raise WrongCall(f"expected --digits from 1 to {_MOST_DIGITS}, got {options.digits}")
+    if not 1 <= options.digits <= MOST_DIGITS:
+        raise WrongCall(f"expected --digits from 1 to {MOST_DIGITS}, got {options.digits}")
     times = [(text.strip(), read_time(text)) for text in options.at.split(",")]
     (scene,) = read_scenes([options.scene])
     from verify.exact.ellipsoid import formed_to

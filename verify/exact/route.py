@@ -8,6 +8,7 @@ from typing import Final
 
 from verify.exact.solution import NoClosedForm, Solution
 from verify.exact.taylor import TaylorSolution
+from verify.scenes.faults import brief
 from verify.scenes.scene import Scene
 
 CLOSED_ROUTES: Final = ("arb", "mpmath")
@@ -38,8 +39,11 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     """
     if route == "taylor":
         return TaylorSolution(scene)
-    if route is not None:
+    if route in CLOSED_ROUTES:
         return _closed_form(scene, route)
+    if route is not None:
+        known = ", ".join((*CLOSED_ROUTES, "taylor"))
+        raise ValueError(f"expected a route ({known}), got {brief(route)}")
     try:
         return _closed_form(scene, "arb")
     except NoClosedForm:

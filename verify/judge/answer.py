@@ -19,6 +19,8 @@ from verify.exact.route import solution
 from verify.exact.solution import Unsettled
 from verify.judge.complete import Extent, complete_verdict, not_judged
 from verify.judge.conventions.search import Conventions, Finding, conventions, is_far
+from verify.judge.conventions.worlds import World
+from verify.judge.gyroscopic import gyroscopic_cause
 from verify.judge.initial import initial_verdict
 from verify.judge.inputs import input_rounding
 from verify.judge.judgement import Judgement, unjudged
@@ -115,10 +117,9 @@ def judge_file(
     asked, notes = scene, tuple(_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     scene = replace(scene, track=scene.track & _tracked(groups))
-    findings: tuple[Finding, ...] = ()
+    found = Conventions((), World(scene), {})
     try:
         found = conventions(compared, scene, rung)
-        findings = found.findings
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found)
         extent = Extent.of(answer.scene, answer.times, rung)
@@ -131,9 +132,14 @@ def judge_file(
         judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt))
-    if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
+    if "omega" in failed and (cause := gyroscopic_cause(compared, scene, rung, found)):
+        notes += (cause,)
+    if failed:
         notes += (*_cut_off(file, rung), *_single_precision(file, rung))
-    return FileJudgement(judged.verdicts, judged.record, file, findings, accept_conventions, notes)
+    return FileJudgement(
+        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes
+    )
 
 
 def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Conventions) -> Judgement:
@@ -152,7 +158,9 @@ def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Convention
         return _alone(scene, file, rung, Status.UNDECIDED, why)
     sides = [_side(part, rung, file.name) for part in answer.sides()]
     unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
-    return unfinished or _united(sides, file, float(scene.clock.start))
+    if unfinished is not None:
+        return unfinished
+    return _united(sides, file, float(scene.clock.start))
 
 
 def _alone(scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str) -> Judgement:
@@ -300,8 +308,7 @@ class _Answer:
             R = _attitudes(scene, rung, times, bits)
             with mp.workprec(bits):
                 for name, reading in accepted.readings.items():
-                    read = reading.read(quantities.pop(name), R)
-                    quantities["attitude" if name == "quaternion" else name] = read
+                    quantities[name] = reading.read(quantities[name], R)
         return cls(scene, times, quantities)
 
     def sides(self) -> list[_Answer]:

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -43,13 +44,17 @@ from verify.judge.rounding_class import (
     paired,
     told,
 )
+from verify.judge.unit_quaternion import UNIT_QUATERNION
 from verify.judge.verdict import COMPLETE, Status, Verdict, exit_status
+from verify.scenes.limit import Limit
+from verify.scenes.regular_file import read_bytes
 
 _TEXTS: Final = ("scene", "solver", "rung", "setting", "quantity", "outcome", "unit")
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
 _COUNTS: Final = ("steps", "evaluations")
 # From the best: 0 all passed, 3 nothing shown, 1 failed.
 _GRADES: Final = (0, 3, 1)
+_MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 
 
 @dataclass(frozen=True)
@@ -72,13 +77,17 @@ class Held:
 def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     """Hold every row made against the row of the baseline; rungs that a machine lacks are left out.
 
-    A row that is gone, a verdict that is worse and an error beyond ten times the larger of what it was
-    and half of what is attainable are regressions: below that, roundings drawn anew may explain it.
+    A row that is gone, a verdict that is worse, a quaternion that is no unit quaternion any more, and an
+    error beyond ten times the larger of what it was and half of what is attainable are regressions: below
+    that, roundings drawn anew may explain it.
     """
     rows = paired(_compared(baseline), _compared(made))
     regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
     undecided: list[Departure] = []
-    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in rows.extra]
+    # This row is there only where it fails: of a sound run no baseline has one.
+    spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
+    other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
+    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
     changes += _machines(rows.absent)
     for old, new in rows.shared:
         other = list(_other_question(old, new))
@@ -87,6 +96,7 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         regressions += grown
         # Of a verdict that is worse the other numbers are the consequence.
         changes += [] if other or grown else departures(old, new)
+    regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
 
 
@@ -162,11 +172,12 @@ def _row(verdict: Verdict, expected: str, got: str) -> Departure:
 def load(file: Path | str) -> tuple[Verdict, ...]:
     """The verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
 
-    Raises OSError for a file that cannot be read, and ValueError, with what was expected and where,
-    for one that holds something else: a baseline that is half understood would let all pass.
+    Raises scenes.faults.Refused for a file that cannot be read, and ValueError, with what was expected
+    and where, for one that holds something else: a baseline that is half understood would let all pass.
     """
+    content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:
-        document = json.loads(Path(file).read_text(encoding="utf-8"), parse_constant=_no_number)
+        document = _parsed(content)
         rows = document.get("verdicts") if isinstance(document, Mapping) else None
         if not isinstance(rows, list):
             raise ValueError('expected an object with "verdicts", a list')
@@ -175,6 +186,13 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
     return found
+
+
+def _parsed(content: bytes) -> Any:
+    try:
+        return json.loads(content.decode(), parse_constant=_no_number)
+    except RecursionError:
+        raise ValueError("expected a JSON document, got brackets nested too deeply") from None
 
 
 def _check_once(found: Iterable[Verdict]) -> None:
@@ -220,8 +238,8 @@ def _number(row: Mapping[str, Any], name: str, place: str) -> float | None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"expected a number or null, got {value!r} @ {place}.{name}")
-    if not math.isfinite(value):  # 1e999 is read as infinite
-        raise ValueError(f"expected a finite number or null, got {value!r} @ {place}.{name}")
+    if not abs(value) <= sys.float_info.max:  # 1e999 is read as infinite
+        raise ValueError(f"expected a finite number or null, got {value!r:.60} @ {place}.{name}")
     return float(value)
 
 

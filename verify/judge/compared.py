@@ -7,7 +7,7 @@ v, a         velocity and acceleration of exact(t - c), relative likewise
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,8 +20,8 @@ from mpmath import mp
 
 from verify.exact.rates import Rates, rates
 from verify.exact.solution import Solution, Unsettled
-from verify.judge.errors import Errors
-from verify.scenes.motion import Motion
+from verify.judge.errors import Errors, largest, norms
+from verify.scenes.motion import Clock, Motion
 from verify.scenes.precision import power_of_two
 from verify.scenes.scene import Scene
 
@@ -164,6 +164,24 @@ class Compared:
 
     run: Run
     errors: Errors
+
+    def without(self, strays: Collection[int]) -> Compared:
+        """The comparison of all samples but these."""
+        run = self.run
+        kept = [k for k in range(len(run.elapsed)) if k not in strays]
+        clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in kept))
+        scene = replace(run.scene, clock=clock)
+        rows = replace(run, scene=scene, truth=run.truth.at(kept), answer=run.answer.at(kept))
+        return replace(self, run=rows)
+
+    @cached_property
+    def reach(self) -> float:
+        """How far the answer goes from its first sample, in the unit of the error."""
+        parts = [
+            norms((self.run.answer[part] - self.run.answer[part][:1]) / scale)
+            for part, scale in self._scales.items()
+        ]
+        return float(max(largest(part) for part in parts))
 
     @cached_property
     def doubt(self) -> float:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, isfinite, log, sqrt
+from os import PathLike
 from typing import Any, Final, final
 
 import numpy as np
@@ -20,9 +21,10 @@ import numpy as np
 from verify.judge.judgement import judgement
 from verify.judge.verdict import Status, Verdict
 from verify.models.problem import NotRepresentable, Problem, pose
+from verify.scenes.positive import positive
 from verify.scenes.precision import Rung
 from verify.scenes.precision import rung as rung_named
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
 from verify.solvers.solver import Callback, Solver
 from verify.solvers.trajectory import Trajectory
@@ -272,7 +274,7 @@ class Sweep:
 
 
 def sweep(
-    scene: Scene | str,
+    scene: Scene | str | PathLike[str],
     solve_with_step: Callable[[Problem, float], Any],
     steps: Sequence[float],
     rung: Rung | str = "f64",
@@ -282,10 +284,10 @@ def sweep(
 
     ``states`` are as verify.check has them; ``expected`` is the order that the method ought to
     have. A run that raises, or answers what is no number, has no error at its step. Raises
-    ValueError where the rung cannot hold the scene.
+    ValueError where the rung cannot hold the scene, and for a step that is no positive number.
     """
-    scene = load(scene) if isinstance(scene, str) else scene
-    rung = rung_named(rung) if isinstance(rung, str) else rung
+    scene, rung = as_scene(scene), rung_named(rung)
+    steps = [positive(step, f"steps[{i}]") for i, step in enumerate(steps)]
     try:
         problem = pose(scene, rung)
     except NotRepresentable as reason:

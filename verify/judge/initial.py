@@ -79,6 +79,8 @@ def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE)
         time_shift=None,
         residual=None,
         shift=None,
+        trend=None,
+        remains=None,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, fsum, log10
+from math import ceil, fsum, inf, log10
 from typing import Any
 
 import numpy as np
@@ -21,9 +21,10 @@ from verify.judge.errors import Errors, state_errors
 from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
-from verify.judge.shift import Shift, time_shifts
+from verify.judge.shift import Kind, Shift, time_shifts
 from verify.judge.steps import Steps, count_steps
-from verify.judge.verdict import Status, Verdict
+from verify.judge.unit_quaternion import unit_quaternion
+from verify.judge.verdict import Status, Verdict, exit_status
 from verify.models.problem import Problem
 from verify.scenes.mpfr import in_mpfr
 from verify.scenes.precision import Rung, hexadecimal
@@ -38,16 +39,37 @@ _MORE_DIGITS = 3
 _SPARE_BITS = 96
 
 
+class NotPassed(AssertionError):
+    """A judgement that is no pass; the text is every verdict that is none, with its reason."""
+
+
 @dataclass(frozen=True)
 class Judgement:
     """The verdicts of one run and the record they rest on (None if the run never came to a truth).
 
-    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
+    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ... The
+    truth value of a judgement is ``passed``.
     """
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
     costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def passed(self) -> bool:
+        """Whether a gate was judged, and nothing failed or stayed undecided."""
+        was_judged = any(verdict.verdict is Status.PASS for verdict in self.verdicts)
+        return was_judged and exit_status(self.verdicts) == 0
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, an AssertionError, unless the judgement passed."""
+        if not self.passed:
+            others = [v for v in self.verdicts if v.verdict is not Status.PASS]
+            lines = [f"{v.scene} {v.rung} {v.quantity}: {v.verdict}: {v.because}" for v in others]
+            raise NotPassed("\n".join(lines) or "nothing was judged")
 
 
 @dataclass(frozen=True)
@@ -138,6 +160,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 )
                 for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
             ]
+            gated += _lengths(run, base)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
     return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
 
@@ -163,8 +186,20 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
         time_shift=shift.time_shift,
         residual=shift.residual,
         shift=shift.kind.value,
+        trend=shift.trend if shift.kind is Kind.DRIFTING else None,
+        remains=None if shift.kind is Kind.NONE else shift.remains,
     )
     return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+
+
+def _lengths(run: _Run, base: Floor) -> list[Gated]:
+    """The row of quaternions that are no unit quaternions; none where they are."""
+    quaternions = run.trajectory.quantities.get("quaternion")
+    failed = None if quaternions is None else unit_quaternion(quaternions, base)
+    if failed is None:
+        return []
+    errors, attainable, finding = failed
+    return [(_verdict(run, errors, attainable, finding), _gate(errors, attainable))]
 
 
 def _conserved(
@@ -195,7 +230,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         errors.quantity,
         finding.status,
         max=float(errors.doubles[worst]),
-        mean=fsum(errors.doubles) / len(errors.doubles),
+        mean=_mean(errors.doubles),
         final=float(errors.doubles[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
@@ -205,6 +240,14 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         ratio=finding.ratio,
         ratio_at=float(instants[finding.ratio_at]),
     )
+
+
+def _mean(errors: Floats) -> float:
+    """The mean; infinite where the sum is beyond doubles."""
+    try:
+        return fsum(errors) / len(errors)
+    except OverflowError:
+        return inf
 
 
 def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> GateRecord:

@@ -24,6 +24,8 @@ from verify.judge.inputs import angular_velocity
 from verify.judge.judgement import Judgement, judgement
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord
+from verify.judge.shift import Kind
+from verify.judge.unit_quaternion import UNIT_QUATERNION
 from verify.judge.verdict import Verdict
 from verify.models.problem import Problem
 from verify.scenes.bodies import ImmersedBody
@@ -77,6 +79,7 @@ def _truth(problem: Problem) -> Motion:
 def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
     """The quantities of a verdict all of whose ingredients the answer has."""
     found = has & {"omega", "attitude", "centre"}
+    found.add(UNIT_QUATERNION)
     if {"linear_impulse", "angular_impulse"} & has:
         found.add("impulse")
     for invariant in invariants(problem.given):
@@ -130,7 +133,9 @@ def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gate
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(exact.scale)
-        return replace(row, time_shift=late, residual=left, shift=shift.kind.value), gate
+        remains = None if shift.kind is Kind.NONE else left
+        row = replace(row, time_shift=late, residual=left, shift=shift.kind.value)
+        return replace(row, remains=remains), gate
 
 
 def _row(

@@ -63,7 +63,9 @@ def graded(judgement: Judgement, inputs: InputRounding, roundoff: float) -> list
 def _graded(
     verdict: Verdict, gate: GateRecord, times: Floats, inputs: InputRounding, roundoff: float
 ) -> Graded:
-    rounding, moved = np.array(gate.attainable), inputs.at_samples[gate.quantity]
+    rounding = np.array(gate.attainable)
+    # The length of a quaternion owes nothing to the input.
+    moved = inputs.at_samples.get(gate.quantity, np.zeros(len(rounding)))
     both = np.hypot(rounding, moved)
     worst = index_of_largest(np.array(gate.errors))
     reason = (

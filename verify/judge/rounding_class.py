@@ -10,8 +10,9 @@ come again is therefore the verdict, the cost and the size of the error:
     max, mean, final, ratio            new <= FACTOR max(old, LEVEL attainable), and the reverse
 
 (``ratio`` is in units of attainable already; for the others the larger attainable of both counts.)
-``time_shift``, ``residual`` and ``shift`` have no class. Of a gate that passed they are read from
-roundings alone, whose sign and course in time are drawn anew: only those of a failed gate are published.
+``time_shift``, ``residual``, ``shift``, ``trend`` and ``remains`` have no class. Of a gate that
+passed they are read from roundings alone, whose sign and course in time are drawn anew: only those of a
+failed gate are published.
 
 FACTOR and LEVEL come from the distribution of the maximum of a random walk, in units of its standard
 deviation, which attainable is. A maximum can be small by chance: the error of an orbit with one

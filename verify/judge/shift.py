@@ -1,51 +1,47 @@
 """What an error of the state means: an answer that is right but late, and what is left of the error.
 
-With answer(t) ~ exact(t - c), c is positive if the answer is late. To first order a further shift dc
-leaves e + v dc of an error e, v being the velocity. Least squares over all samples give one constant
-shift, or one that is linear in t, or one for every sample. What first order neglects, v' dc^2/2 and
-the roundings of float64, is held against what is left; while it is not small beside it, the exact
-motion is evaluated anew at t - c (Gauss-Newton). A shift of a sizeable part of a turn is looked for
-among many on a few samples first.
+With answer(t) ~ exact(t - c), c is positive if the answer is late. The shift is constant, or linear in t,
+or another one for every sample (judge.courses).
+
+A few samples may not share the course of the others, as a first row that is the given start. The median
+of the shifts of single samples does not see them, nor does the line of Theil and Sen for a drift. They
+are left out, named, and the rest is fitted again by least squares.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
-from mpmath import mp
 
+from verify.exact.looks import evenly
 from verify.exact.solution import Solution
+from verify.judge import courses
 from verify.judge.compared import Compared, Floats, Run, Shifted
 from verify.judge.errors import Errors
 from verify.scenes.motion import Motion
 from verify.scenes.scene import Scene
 
-# A shift that leaves more than half of the error (root mean square) explains nothing.
-_EXPLAINS: Final = 0.5
-# One that leaves less than a tenth is the explanation, and so is one that leaves no more than twice
-# what shifts of every single sample leave.
-_SETTLES: Final = 0.1
-_AS_GOOD: Final = 2.0
-# A constant that leaves a quarter may have a few samples against it: it is the explanation too, if a
-# drift does not do twice as well.
-_MOSTLY: Final = 0.25
-# What is neglected is to be this much smaller than what is left.
-_NEGLIGIBLE: Final = 1 / 16
-# A sample at which the motion is slower than this part of its fastest tells no time.
-_AT_REST: Final = 1e-3
-# Convergence is quadratic: 2^-4 becomes 2^-237 in six evaluations, the rest is for a poor start.
-_EVALUATIONS: Final = 10
-_HALVINGS: Final = 3
-# An evaluation that leaves more than this part of the error before it is worth no further one.
-_PROGRESS: Final = 0.9
-# The search: this many steps of half a radian of the fastest turn, each way.
-_SEARCH_STEPS: Final = 16
-_SEARCH_STEP: Final = 0.5
+Places = np.ndarray[Any, np.dtype[np.bool_]]
+
+# A shift is the cause of an error only if it leaves no more than this part of it. A wrong equation also
+# moves a body along its orbit, by about as much as across it, so that a third or a half proves nothing.
+LEAVES: Final = 0.1
+# So large a part of the samples, and one at least, may be without the shift that the others share;
+_STRAYS: Final = 0.1
+# a shift that fewer than this share explains nothing.
+_FEWEST: Final = 3
+# A stray is off by so many times what is usual.
+_UNUSUAL: Final = 10.0
+# The line of Theil and Sen looks at all pairs of so many samples.
+_MOST_PAIRED: Final = 201
+_MOST_NAMED: Final = 3
+# Its square is a double. No shift of time makes an error of that size, nor one that is not finite.
+_LARGEST_ERROR: Final = 2**500
 
 
 class Kind(StrEnum):
@@ -61,11 +57,12 @@ class Kind(StrEnum):
 class Shift:
     """The shift of one quantity.
 
-    ``time_shift`` is the constant c that leaves least, in the scene's unit of time, and ``residual``
-    the largest error that it leaves, in the unit of the error. ``kind`` is the simplest course of the
-    shift that explains the error, ``remains`` what that course leaves. ``at_samples`` holds the shift
-    of every sample by itself; at those where the motion rests, that of the course. ``trend`` is the
-    shift per unit of time of the best course linear in t.
+    ``kind`` is the simplest course of the shift that explains the error, and ``remains`` the largest
+    error that this course leaves, in the unit of the error. ``time_shift`` is the constant c that leaves
+    least, in the scene's unit of time, and ``residual`` what it leaves. ``trend`` is the shift per unit of
+    time of the best course linear in t. ``strays`` are the times of samples that do not share the course:
+    all these numbers are of the others. ``course`` is the shift of every sample on the course, and
+    ``at_samples`` the shift of every sample by itself; where the motion rests, that of the course.
     """
 
     time_shift: float
@@ -75,20 +72,34 @@ class Shift:
     trend: float
     times: tuple[float, ...]
     at_samples: tuple[float, ...]
+    course: tuple[float, ...]
+    strays: tuple[float, ...] = ()
 
     def sentence(self) -> str:
-        """What a person can act on."""
+        """The shift in words that a person can act on."""
         if self.kind is Kind.NONE:
             return "no shift of time explains it"
-        left = f"{self.remains:.2g} remains"
+        left = f"{self.remains:.2g} remains{self._strays()}"
         if self.kind is Kind.CONSTANT:
             return f"{_late(self.time_shift)}, constant; {left}"
-        worst = max(range(len(self.times)), key=lambda k: abs(self.at_samples[k]))
-        at_worst = f"{_late(self.at_samples[worst])} at t = {self.times[worst]:g}"
+        worst = max(range(len(self.times)), key=lambda k: abs(self.course[k]))
+        at_worst = f"{_late(self.course[worst])} at t = {self.times[worst]:g}"
         if self.kind is Kind.WANDERING:
             return f"{at_worst}, wandering; {left}"
         pace = f"{'slow' if self.trend > 0 else 'fast'} by {abs(self.trend):.3g} of the time"
         return f"{at_worst}, drifting: its clock runs {pace}; {left}"
+
+    def _strays(self) -> str:
+        """The number of rows that share the shift, and the times of those that do not."""
+        if not self.strays:
+            return ""
+        count, rows = len(self.strays), len(self.times)
+        named = ", ".join(f"{t:g}" for t in self.strays[:_MOST_NAMED])
+        rest = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
+        those = (
+            f"the row at t = {named} does" if count == 1 else f"the rows at t = {named}{rest} do"
+        )
+        return f" in {rows - count} of {rows} rows; {those} not share it"
 
 
 def time_shifts(
@@ -106,113 +117,145 @@ def time_shifts(
 
 def _shift(compared: Compared) -> Shift | None:
     run, errors = compared.run, compared.errors
-    if not all(mp.isfinite(error) for error in errors.values):
+    if not all(error <= _LARGEST_ERROR for error in errors.values):
         return None
     start = compared.fit(run.truth, run.rates, run.unshifted)
     if not start.is_finite:
         return None
-    constant = _fitted(compared, _best_start(compared, start, _constant), _constant)
-    linear = _fitted(compared, _best_start(compared, constant, _linear), _linear)
-    single = _fitted(compared, min(constant, linear, key=lambda fit: fit.left), _single)
-    kind = _kind(start.left, constant.left, linear.left, single.left)
-    course = {Kind.CONSTANT: constant, Kind.DRIFTING: linear, Kind.WANDERING: single}
-    line = linear.shift
-    return Shift(
-        time_shift=float(constant.shift[0]),
-        residual=compared.largest(constant),
-        kind=kind,
-        remains=compared.largest(course.get(kind, start)),
-        trend=float(line[-1] - line[0]) / run.span if run.span else 0.0,
-        times=run.instants,
-        at_samples=tuple(single.shift.tolist()),
-    )
+    fits = _Fits.of(compared, start, start)
+    single = courses.fitted(compared, min(fits.constant, fits.linear, key=_left), courses.single)
+    candidates = [fits, *_without_strays(compared, single)] if fits.kind is Kind.NONE else [fits]
+    best = next((one for one in candidates if one.kind is not Kind.NONE), fits)
+    if best.kind is Kind.NONE and best.explains(single):
+        shift = best.shift(run, Kind.WANDERING, compared.largest(single), single.shift)
+    else:
+        shift = best.shift(run, best.kind, best.remains, best.course(run))
+    return replace(shift, at_samples=tuple(single.shift.tolist()))
+
+
+def _left(fit: Shifted) -> float:
+    return fit.left
+
+
+@dataclass(frozen=True)
+class _Fits:
+    """The constant and the drifting shift of some samples; ``strays`` are the places of the others."""
+
+    compared: Compared
+    start: Shifted
+    constant: Shifted
+    linear: Shifted
+    strays: tuple[int, ...] = ()
+
+    @classmethod
+    def of(
+        cls, compared: Compared, start: Shifted, begin: Shifted, strays: tuple[int, ...] = ()
+    ) -> _Fits:
+        """The least squares; ``start`` is without a shift, and the fits begin at ``begin``."""
+        begin = courses.best_start(compared, begin, courses.constant)
+        constant = courses.fitted(compared, begin, courses.constant)
+        onward = courses.best_start(compared, constant, courses.linear)
+        return cls(
+            compared, start, constant, courses.fitted(compared, onward, courses.linear), strays
+        )
+
+    def explains(self, fit: Shifted) -> bool:
+        """Return True if the shift leaves next to nothing of the error, and of the answer's motion.
+
+        An answer that stands still is the truth at a clock that stands still, which is no cause.
+        """
+        some = min(self.compared.largest(self.start), self.compared.reach)
+        return bool(some > 0 and self.compared.largest(fit) <= LEAVES * some)
+
+    @property
+    def kind(self) -> Kind:
+        if self.explains(self.constant):
+            return Kind.CONSTANT
+        return Kind.DRIFTING if self.explains(self.linear) else Kind.NONE
+
+    @property
+    def remains(self) -> float:
+        fits = {Kind.CONSTANT: self.constant, Kind.DRIFTING: self.linear}
+        return self.compared.largest(fits.get(self.kind, self.start))
+
+    @property
+    def trend(self) -> float:
+        line, span = self.linear.shift, self.compared.run.span
+        return float(line[-1] - line[0]) / span if span else 0.0
+
+    def course(self, run: Run) -> Floats:
+        """The shift of all samples of a run, strays among them."""
+        if self.kind is not Kind.DRIFTING:
+            return np.full(len(run.instants), float(self.constant.shift[0]))
+        found: Floats = self.linear.shift[0] + self.trend * (
+            np.array(run.instants) - self.compared.run.instants[0]
+        )
+        return found
+
+    def shift(self, run: Run, kind: Kind, remains: float, course: Floats) -> Shift:
+        return Shift(
+            time_shift=float(self.constant.shift[0]),
+            residual=self.compared.largest(self.constant),
+            kind=kind,
+            remains=remains,
+            trend=self.trend,
+            times=run.instants,
+            at_samples=(),
+            course=tuple(course.tolist()),
+            strays=tuple(run.instants[k] for k in self.strays),
+        )
 
 
 def _late(shift: float) -> str:
     return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
 
 
-def _kind(error: float, constant: float, linear: float, single: float) -> Kind:
-    """The simplest course that explains, from what each leaves in the root mean square."""
-    if not single < _EXPLAINS * error:
-        return Kind.NONE
-    enough = max(_SETTLES * error, min(_AS_GOOD * single, _EXPLAINS * error))
-    mostly = constant <= _MOSTLY * error and linear > constant / _AS_GOOD
-    if constant <= enough or mostly:
-        return Kind.CONSTANT
-    return Kind.DRIFTING if linear <= enough else Kind.WANDERING
+# The samples that do not share the course of the others.
 
 
-Course = Callable[[Shifted, Floats], Floats]
+def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
+    """The fits of the samples that share a robust course, constant or linear in t."""
+    moving = courses.moving(single)
+    if np.count_nonzero(moving) < _FEWEST:
+        return
+    for robust in (_median, _theil_sen):
+        course = robust(single.shift, moving, np.array(compared.run.instants))
+        speed = np.sqrt(single.weight) / (float(single.unit) * single.size)
+        across = np.linalg.norm(single.error, axis=1)
+        strays = strays_from(course, single.shift, speed, across)
+        if not strays:
+            continue
+        shared = compared.without(strays)
+        run, kept = shared.run, np.delete(course, strays)
+        begin = shared.evaluated(tuple(Fraction(c) for c in kept.tolist()))
+        if begin is not None:
+            start = shared.fit(run.truth, run.rates, run.unshifted)
+            yield _Fits.of(shared, start, begin, strays)
 
 
-def _constant(fit: Shifted, times: Floats) -> Floats:
-    """One shift for all samples."""
-    return _along(np.ones((len(times), 1)), fit)
+def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
+    """The samples that are off a course by an unusual part of the shift; none where they are many.
 
-
-def _linear(fit: Shifted, times: Floats) -> Floats:
-    """A shift that is linear in t; ``times`` run over the span from 0 to 1."""
-    return _along(np.stack([np.ones(len(times)), times], axis=1), fit)
-
-
-def _along(basis: Floats, fit: Shifted) -> Floats:
-    root = np.sqrt(fit.weight)
-    asked = np.divide(fit.wanted, root, out=np.zeros(len(root)), where=root > 0)
-    parameters = np.linalg.lstsq(root[:, None] * basis, asked, rcond=None)[0]
-    found: Floats = basis @ parameters
-    return found
-
-
-def _single(fit: Shifted, times: Floats) -> Floats:
-    """Every sample by itself; none where the motion rests, for there it tells no time."""
-    moving = fit.weight > _AT_REST**2 * np.max(fit.weight)
-    return np.divide(fit.wanted, fit.weight, out=np.zeros(len(times)), where=moving)
-
-
-def _fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """The least squares along a course that begins where ``fit`` stands."""
-    for _ in range(_EVALUATIONS):
-        step = course(fit, compared.run.times)
-        better = fit.with_first_order(step)
-        left = max(float(np.max(np.abs(better.error))), compared.doubt / fit.size)
-        if fit.neglects(fit.more + step) <= _NEGLIGIBLE * left:
-            return better
-        closer = _closer(compared, fit, fit.more + step)
-        if closer is None:
-            return fit
-        if closer.left > _PROGRESS * fit.left:
-            return closer
-        fit = closer
-    return fit
-
-
-def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
-    """The evaluation at a further shift, halved until it leaves less; None if it never does."""
-    for halvings in range(_HALVINGS + 1):
-        found = compared.evaluated(fit.moved(step / 2**halvings))
-        if found is None or found.left < fit.left:
-            return found
-    return None
-
-
-def _best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
-    """Where to begin: at ``fit``, or at one of many shifts if the error is that large.
-
-    A motion that comes back has many shifts that are equally good: the smallest is taken of those
-    that leave the least but for what the distance between two of them may add.
+    ``shifts`` are those of single samples, which leave ``across`` of the error, and ``speed`` is the
+    error that a shift of one makes.
     """
-    if not compared.is_far(fit) or not fit.rate:
-        return fit
-    times = compared.run.times
-    shape = np.ones(len(times)) if course is _constant else times
-    pace = _SEARCH_STEP / fit.rate
-    tried = sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs)
-    steps = [Fraction(k * pace) * fit.unit for k in tried]
-    left = compared.left_by([tuple(c * Fraction(s) for s in shape.tolist()) for c in steps])
-    if left is None:
-        return fit
-    between = (pace / 2) ** 2 * float(np.mean(fit.weight))
-    best = next(k for k, one in enumerate(left) if one <= min(left) + between)
-    found = compared.evaluated(tuple(steps[best] * Fraction(s) for s in shape.tolist()))
-    return fit if found is None or not found.left < fit.left else found
+    off = np.hypot((shifts - course) * speed, across)
+    is_off = (off > LEAVES * np.abs(course) * speed) & (off > _UNUSUAL * np.median(off))
+    strays = tuple(int(k) for k in np.flatnonzero(is_off))
+    few = max(1, int(_STRAYS * len(off)))
+    return strays if len(strays) <= min(few, len(off) - _FEWEST) else ()
+
+
+def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
+    return np.full(len(times), np.median(shifts[moving]))
+
+
+def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
+    """The line whose slope is the median of those between all pairs of samples."""
+    places = np.flatnonzero(moving)
+    chosen = places[evenly(len(places), _MOST_PAIRED)]
+    first, second = np.triu_indices(len(chosen), 1)
+    t, c = times[chosen], shifts[chosen]
+    slope = float(np.median((c[second] - c[first]) / (t[second] - t[first])))
+    found: Floats = np.median(c - slope * t) + slope * times
+    return found

@@ -40,9 +40,11 @@ class Verdict:
     samples (those before a vacuous gate's bound reached the size of the motion) and ``ratio_at`` its
     time: the gate asks each of them, so ``ratio`` decides. For a state
     quantity ``time_shift`` is the constant c with answer(t) ~ exact(t - c), in the unit of t and
-    positive if the answer is late, ``residual`` the largest error that it leaves, in ``unit``, and
-    ``shift`` what a shift of time makes of the error: constant, drifting, wandering, or none (it
-    explains less than half). A number that does not exist, or is not finite, is None.
+    positive if the answer is late, and ``residual`` the largest error that it leaves, in ``unit``.
+    ``shift`` says what a shift of time makes of the error: constant, drifting, wandering, or none (it
+    leaves more than a tenth). ``remains`` is the largest error that this course leaves, and ``trend`` the
+    shift per unit of time of one that drifts; both are None where no shift explains the error. A
+    number that does not exist, or is not finite, is None.
     """
 
     scene: str
@@ -65,6 +67,8 @@ class Verdict:
     time_shift: float | None = None
     residual: float | None = None
     shift: str | None = None
+    trend: float | None = None
+    remains: float | None = None
     roundoff: float | None = None
     exponent: float | None = None
     steps: int = 0

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Callable, Iterable, Sequence
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, Final
 
 from verify.judge.verdict import INITIAL, Status, is_conserved
+from verify.publish import sheets
 from verify.publish.cells import NOTHING, figure
 from verify.publish.data import versions
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
@@ -259,19 +258,18 @@ _FIELDS: Final = (
 
 def sheet(sights: Iterable[Sight]) -> str:
     """A row for every defect and gate, with every digit."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, _FIELDS, extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
-    for sight in sights:
-        for name, verdict in sight.verdicts.items():
-            twin = sight.sound[name]
-            row = verdict.row() | {
-                "defect": sight.name,
-                "seen": "yes" if sight.is_seen_by(name) else "no",
-                "error_over_bound": sight.over_bound(name),
-                "twin": sight.twin,
-                "twin_verdict": twin.verdict.value,
-                "twin_ratio": twin.ratio,
-            }
-            writer.writerow(row)
-    return text.getvalue()
+    return sheets.sheet(_FIELDS, (row for sight in sights for row in _rows_of(sight)))
+
+
+def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
+    for name, verdict in sight.verdicts.items():
+        # A sound quaternion is a unit one, and has no row that says so.
+        twin = sight.sound.get(name)
+        yield verdict.row() | {
+            "defect": sight.name,
+            "seen": "yes" if sight.is_seen_by(name) else "no",
+            "error_over_bound": sight.over_bound(name),
+            "twin": sight.twin,
+            "twin_verdict": None if twin is None else twin.verdict.value,
+            "twin_ratio": None if twin is None else twin.ratio,
+        }

@@ -31,7 +31,7 @@ RECORDS: Final = "records"
 _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 # What the numbers do not depend on: it may differ where verdicts.json may not.
 _MACHINE = ("processor", "command")
-_SHIFT = ("time_shift", "residual", "shift")
+_SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
@@ -173,7 +173,7 @@ def read_document(file: Path) -> dict[str, Any]:
     """The JSON object in a file; ValueError, with the file, for anything else."""
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
-    except ValueError as fault:
+    except (ValueError, RecursionError) as fault:
         raise ValueError(f"expected a JSON document, got a fault: {fault} @ {file}") from fault
     if not isinstance(document, dict):
         raise ValueError(f"expected a JSON object, got {type(document).__name__} @ {file}")

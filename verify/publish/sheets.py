@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from verify.judge.verdict import Verdict
@@ -19,6 +19,8 @@ from verify.publish.runs import (
     runs,
 )
 
+# What a spreadsheet begins a formula with; a tab has gone with the line ends.
+_FORMULA: Final = ("=", "+", "-", "@")
 _RUN: Final = ("scene", "solver", "setting", "rung")
 _ACCURACY: Final = (
     *_RUN,
@@ -91,15 +93,30 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
     return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
 
 
-def sheet(names: Sequence[str], rows: Iterable[dict[str, Any]]) -> str:
-    """A line for every row: the columns of these names, empty where a row has none."""
+def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """A line for every row: the columns of these names, empty where a row has none.
+
+    A text that a spreadsheet would take for a formula has an apostrophe before it: the name of a scene
+    is a path, and may be anybody's.
+    """
     text = io.StringIO()
     writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
-    writer.writerows({name: _on_one_line(value) for name, value in row.items()} for row in rows)
+    writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
     return text.getvalue()
 
 
-def _on_one_line(value: Any) -> Any:
-    """A text without line ends: readers differ in how they take those, and a row is then a line."""
-    return " ".join(value.split()) if isinstance(value, str) else value
+def _cell(value: Any) -> Any:
+    """A text without line ends, which readers take differently, and without the force of a formula."""
+    if not isinstance(value, str):
+        return value
+    text = " ".join(value.split())
+    return f"'{text}" if text.startswith(_FORMULA) and not _is_number(text) else text
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -20,7 +20,7 @@ CONTROLS: Final = f"{data.FOLDER}/controls.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
 _APART: Final = ("seconds", "provenance")
-_SHIFT: Final = ("time_shift", "residual", "shift")
+_SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 
 @dataclass(frozen=True)
@@ -65,11 +65,11 @@ class Sight:
 
     def is_seen_by(self, quantity: str) -> bool:
         """The gate fails the defect and passes the sound twin."""
-        judged = self.verdicts.get(quantity)
+        judged, twin = self.verdicts.get(quantity), self.sound.get(quantity)
         if judged is None or not self.is_finished:
             return False
-        twin = self.sound[quantity].verdict
-        return judged.verdict is Status.FAIL and twin is Status.PASS
+        sound = twin is None or twin.verdict is Status.PASS
+        return judged.verdict is Status.FAIL and sound
 
     def is_missed_by(self, quantity: str) -> bool:
         """The gate passes the defect."""

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Sequence
 from math import log10
 from pathlib import Path
 from typing import Final
 
-from verify.publish import figures
+from verify.publish import figures, sheets
 from verify.publish.cells import NOTHING, figure
 from verify.publish.doubles import doubles_table
 from verify.publish.markdown import Column, bold, bullets, code, prose, table
@@ -304,10 +302,4 @@ _FIELDS: Final = (
 
 def sheet(trades: Sequence[Trade]) -> str:
     """A row for every scene and setting, with every digit."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, _FIELDS, extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
-    for trade in trades:
-        for row in trade.rows:
-            writer.writerow({**row, "because": " ".join(str(row["because"]).split())})
-    return text.getvalue()
+    return sheets.sheet(_FIELDS, (row for trade in trades for row in trade.rows))

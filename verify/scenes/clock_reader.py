@@ -24,7 +24,7 @@ def clock(table: Table) -> Clock | None:
 
 def _listed(table: Table, start: Fraction | None) -> Clock | None:
     """The instants of ``at``, in which neither ``end`` nor ``samples`` has a place."""
-    instants = table.numbers("at")
+    instants = table.numbers("at", most=MOST_SAMPLES)
     for key in ("end", "samples"):
         if table.has(key):
             table.take(key, "nothing")

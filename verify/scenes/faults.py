@@ -10,6 +10,8 @@ from fractions import Fraction
 from verify.scenes.precision import float_text
 
 _LONGEST_SHOWN = 60
+# Who has mended as many asks again; a million would be read by nobody, and take minutes to write.
+_MOST_TOLD = 100
 
 
 class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
@@ -20,7 +22,8 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
     """
 
     def __init__(self, faults: Sequence[str]) -> None:
-        self.faults = tuple(faults)
+        # A name in it may hold line breaks; a fault is one line.
+        self.faults = tuple(fault.replace("\n", "\\n") for fault in faults)
         super().__init__("\n".join(self.faults))
 
     def __reduce__(self) -> tuple[type[Refused], tuple[tuple[str, ...]]]:
@@ -29,20 +32,43 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
 
 
 class Faults:
-    """The faults found so far in one scene, in the order of the reading."""
+    """The faults of one scene or file in the order of the reading, no more than a hundred."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
 
+    @property
+    def is_full(self) -> bool:
+        """Whether no further fault will be told."""
+        return len(self.lines) > _MOST_TOLD
+
     def add(self, expected: str, got: str, path: str, mend: str = "") -> None:
+        if self.is_full:
+            return
+        if len(self.lines) == _MOST_TOLD:
+            self.lines.append("and more faults beyond these hundred")
+            return
         line = f"expected {expected}, got {got} @ {path}"
         self.lines.append(f"{line} ({mend})" if mend else line)
 
 
 def shown(value: object) -> str:
     """A value as its scene would write it, cut short where it is long."""
-    text = _toml(value)
+    return cut(_toml(value))
+
+
+def cut(text: str) -> str:
+    """The text, cut short where it is long."""
     return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
+
+
+def brief(value: object) -> str:
+    """What a Python caller handed over, on one line and cut short."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python prints no integer of more than 4300 digits
+        text = f"a number of the type {type(value).__name__}"
+    return cut(" ".join(text.split()))
 
 
 def _toml(value: object, depth: int = 0) -> str:

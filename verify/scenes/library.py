@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import difflib
+import os
 from pathlib import Path
 from typing import Final
 
-from verify.scenes.faults import Refused
+from verify.scenes.faults import Refused, brief
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"
@@ -47,18 +48,26 @@ def named(scene: str) -> tuple[str, ...]:
     return (names(*folders) if is_folder else ()) or (scene,)
 
 
-def find(scene: str) -> Path:
+def find(scene: str | os.PathLike[str]) -> Path:
     """The file of a scene given by path or by the name of a shipped scene.
 
-    A text that ends in ``.toml`` or names a file is a path. Raises Refused for an unknown name.
+    A text that ends in ``.toml`` or names what is there is a path. Raises Refused for an unknown name,
+    and for what is neither text nor a path.
     """
+    expected = "a path or the name of a shipped scene"
+    if not isinstance(scene, str | os.PathLike):
+        raise Refused([f"expected {expected}, got the {type(scene).__name__} {brief(scene)}"])
     path = Path(scene)
-    if path.suffix == ".toml" or path.is_file():
-        return path
-    shipped = cases_directory() / f"{scene}.toml"
-    if shipped.is_file():
-        return shipped
-    raise Refused([f"expected a path or the name of a shipped scene, got {scene} ({_near(scene)})"])
+    name = str(scene)
+    try:
+        if path.suffix == ".toml" or path.is_file():
+            return path
+        shipped = cases_directory() / f"{name}.toml"
+        if name and shipped.is_file():
+            return shipped
+    except OSError as error:  # a name longer than any file's
+        raise Refused([f"expected {expected}, got {name:.60} ({error.strerror})"]) from None
+    raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
 
 
 def _scenes(folder: Path) -> list[Path]:

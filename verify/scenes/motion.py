@@ -83,3 +83,9 @@ class Motion:
     def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
         """The radius of this quantity alone; that of the whole row where no other is known."""
         return self.radii.get(quantity, self.radius)
+
+    def at(self, rows: Sequence[int]) -> Motion:
+        """The motion at some of its instants."""
+        quantities = {name: values[rows] for name, values in self.quantities.items()}
+        radii = {name: radius[rows] for name, radius in self.radii.items()}
+        return Motion(quantities, self.radius[rows], radii)

@@ -64,15 +64,19 @@ _IEEE = {
 }
 
 
-def rung(name: str) -> Rung:
-    """The rung of that name; ValueError for a name that is not on the ladder."""
-    if name in _IEEE:
-        return _IEEE[name]
-    match = re.fullmatch(r"mp([1-9][0-9]{1,3})", name)
+def rung(name: str | Rung) -> Rung:
+    """The rung of that name, or the one given; ValueError for a name that is not on the ladder."""
+    if isinstance(name, Rung):
+        return name
+    match = None
+    if isinstance(name, str):
+        if name in _IEEE:
+            return _IEEE[name]
+        match = re.fullmatch(r"mp([1-9][0-9]{1,3})", name)
     if match is None or not _LEAST_BITS <= int(match[1]) <= _MOST_BITS:
         raise ValueError(
             f"expected a rung f32, f64, f80, f128 or mpN with {_LEAST_BITS} <= N <= {_MOST_BITS} "
-            f"bits, got {name!r}"
+            f"bits, got {name!r:.60}"
         )
     return Rung(name, int(match[1]))
 
@@ -153,3 +157,11 @@ def float_text(value: Fraction) -> str:
     from mpmath import libmp
 
     return str(libmp.to_str(libmp.from_rational(value.numerator, value.denominator, 53), 6))
+
+
+def double_text(value: Fraction | float) -> str:
+    """Every digit of the double nearest to the value; a short decimal where there is none."""
+    try:
+        return repr(float(value))
+    except OverflowError:
+        return float_text(Fraction(value))

@@ -7,26 +7,38 @@ The format is that of cases/README.md. Legend: ``linear_impulse`` x, ``angular_i
 from __future__ import annotations
 
 import hashlib
+import os
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
-from pathlib import Path
 from typing import Final, NamedTuple, TypeVar
 
 from verify.scenes import library
 from verify.scenes.bodies import Body
 from verify.scenes.body_reader import immersed_body, rigid_body, warnings
 from verify.scenes.clock_reader import clock
-from verify.scenes.faults import Faults, Refused, near, shown
+from verify.scenes.faults import Faults, Refused, cut, near, shown
+from verify.scenes.limit import Limit
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.manufactured_reader import manufactured
 from verify.scenes.motion import IDENTITY, Impulse, Quaternion, Spin, State
+from verify.scenes.regular_file import read_bytes
 from verify.scenes.scene import Scene
 from verify.scenes.table import Table
 from verify.scenes.tensors import ZERO_VECTOR
 
 T = TypeVar("T")
+
+MOST_BYTES: Final = Limit(2**25, "bytes", "a million instants of thirty characters")
+# No key of a scene has more than three parts, and tomllib takes the square of their number in time.
+_MOST_KEY_PARTS: Final = 16
+_DEEP_KEY: Final = re.compile(
+    r"""(?:^|[\[{,])[ \t]*+(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    rf"{{{_MOST_KEY_PARTS}}}",
+    re.MULTILINE,
+)
 
 
 class Model(NamedTuple):
@@ -47,19 +59,25 @@ class Model(NamedTuple):
     placed: Callable[[Table], State | None]
 
 
-def load(scene: str | Path) -> Scene:
+def load(scene: str | os.PathLike[str]) -> Scene:
     """The scene at a path, or the shipped scene of that name (``euler/generic``).
 
     Every number becomes the rational that its text writes. Raises Refused with every fault of the file
     at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
-    file = library.find(str(scene))
+    file = library.find(scene)
+    content = read_bytes(file, "a readable scene file", MOST_BYTES)
     try:
-        text = file.read_bytes().decode()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "bytes that are not UTF-8"
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        reason = "bytes that are not UTF-8"
         raise Refused([f"expected a readable scene file, got {reason!r} @ {file}"]) from None
     return read(text, str(scene))
+
+
+def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
+    """Return a Scene as it is; load one that is given by its path or name."""
+    return scene if isinstance(scene, Scene) else load(scene)
 
 
 def read(text: str, name: str) -> Scene:
@@ -95,6 +113,10 @@ def read(text: str, name: str) -> Scene:
 
 
 def _parsed(text: str, name: str) -> dict[str, object]:
+    if deep := _DEEP_KEY.search(text):
+        line = text.count("\n", 0, deep.start()) + 1
+        expected = f"a key of at most {_MOST_KEY_PARTS} parts"
+        raise Refused([f"expected {expected}, got more @ {name}, line {line}"])
     try:
         return tomllib.loads(text, parse_float=_decimal)
     except RecursionError:
@@ -133,7 +155,7 @@ def _model(top: Table) -> Model | None:
     if isinstance(value, str) and value in MODELS:
         return MODELS[value]
     if value is not None:
-        top.fault(expected, shown(value), "model", near(str(value), MODELS))
+        top.fault(expected, shown(value), "model", near(cut(str(value)), MODELS))
     return None
 
 

@@ -11,12 +11,13 @@ from decimal import Decimal
 from fractions import Fraction
 
 from verify.scenes import tensors
-from verify.scenes.faults import Faults, near, shown
+from verify.scenes.faults import Faults, cut, near, shown
 from verify.scenes.tensors import Matrix, Vector
 
 LARGEST_EXPONENT = 5000
 _MOST_DIGITS = 4000  # below the 4300 digits at which Python refuses to read an integer
 _MOST_BITS = 16_600  # 10^5000 has 16610 bits
+_LONGEST_SENTENCE = 1000  # it stands in a cell of a table
 
 _NUMBER = "a finite number"
 _FRACTION = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
@@ -53,7 +54,9 @@ class Table:
     def close(self) -> None:
         """Every key that nobody took is unknown."""
         for key in self._left:
-            self.fault("a known key", f"`{key}`", key, near(key, self._known))
+            if self.faults.is_full:
+                break
+            self.fault("a known key", f"`{cut(key)}`", cut(key), near(cut(key), self._known))
 
     def drain(self) -> None:
         """Leave the rest unread, without a fault."""
@@ -91,9 +94,11 @@ class Table:
         if default is not None and not self.has(key):
             return default
         value = self.take(key, "a sentence")
-        if isinstance(value, str) and value.strip():
+        if isinstance(value, str) and value.strip() and len(value) <= _LONGEST_SENTENCE:
             return value
-        if value is not None:
+        if isinstance(value, str) and len(value) > _LONGEST_SENTENCE:
+            self.fault(f"at most {_LONGEST_SENTENCE} characters", str(len(value)), key)
+        elif value is not None:
             self.fault("a sentence", shown(value), key)
         return None
 
@@ -106,9 +111,11 @@ class Table:
             self.fault("an array of words", shown(value), key)
             return None
         for i, word in enumerate(value):
+            if self.faults.is_full:
+                break
             if not isinstance(word, str) or word not in known:
                 expected = f"one of {', '.join(sorted(known))}"
-                self.fault(expected, shown(word), f"{key}[{i}]", near(str(word), known))
+                self.fault(expected, shown(word), f"{key}[{i}]", near(cut(str(word)), known))
         return known.intersection(word for word in value if isinstance(word, str))
 
     def number(self, key: str, default: Fraction | None = None) -> Fraction | None:
@@ -118,13 +125,16 @@ class Table:
         value = self.take(key, _NUMBER)
         return None if value is None else self._exact(value, key)
 
-    def numbers(self, key: str) -> Vector | None:
-        """An array of exact numbers, of any length."""
+    def numbers(self, key: str, most: int) -> Vector | None:
+        """An array of at most so many exact numbers."""
         value = self.take(key, "an array of numbers")
         if value is None:
             return None
         if not isinstance(value, list):
             self.fault("an array of numbers", shown(value), key)
+            return None
+        if len(value) > most:
+            self.fault(f"at most {most} numbers", str(len(value)), key)
             return None
         return self._entries(value, key)
 

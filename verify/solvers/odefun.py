@@ -27,6 +27,8 @@ METHODS: Final = ("odefun",)
 
 # At a tenth of a millisecond to some milliseconds an evaluation these take a few minutes.
 _MOST_EVALUATIONS: Final = 10**6
+# Twice what mpmath takes of itself on the widest rung; a series costs the square of its degree.
+_MOST_DEGREE: Final = 1000
 
 
 @final
@@ -121,15 +123,19 @@ def _own_degree(rung: Rung) -> int:
 def named(name: str) -> Odefun:
     """The integrator at its tolerance and degree.
 
-    Raises ValueError for a method that there is not, a tolerance that is not positive, and a degree
-    that is no whole number above 1.
+    Raises ValueError for a method that there is not, a tolerance outside 0 to 1, and a degree
+    that is no whole number from 2 to a thousand.
     """
     asked = options(name, METHODS, ["tol", "degree"])
     tol = asked.positive("tol", "") if "tol" in asked else None
+    if tol is not None and not tol <= 1:
+        # mpmath would ask for a negative number of bits, and never end.
+        raise ValueError(f"expected a tolerance of at most 1, got {asked.values['tol']!r} @ tol")
     if "degree" not in asked:
         return Odefun(name, tol)
     degree = asked.positive("degree", "")
-    if degree.denominator != 1 or not degree >= 2:
+    if degree.denominator != 1 or not 2 <= degree <= _MOST_DEGREE:
         text = asked.values["degree"]
-        raise ValueError(f"expected a whole number of at least 2, got {text!r} @ degree")
+        expected = f"a whole number from 2 to {_MOST_DEGREE}"
+        raise ValueError(f"expected {expected}, got {text!r:.60} @ degree")
     return Odefun(name, tol, int(degree))

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
 
 from verify.scenes.table import exact_number
+
+# Below the roundoff of every rung, and beyond every span of time.
+_LEAST = Fraction(sys.float_info.min)
+_LARGEST = Fraction(sys.float_info.max)
 
 
 @dataclass(frozen=True)
@@ -31,9 +36,12 @@ class Options:
         try:
             value = exact_number(text)
         except ValueError as error:
-            raise ValueError(f"expected {error}, got {text!r} @ {key}") from None
+            raise ValueError(f"expected {error}, got {text!r:.60} @ {key}") from None
         if not value > 0:
-            raise ValueError(f"expected a positive number, got {text!r} @ {key}")
+            raise ValueError(f"expected a positive number, got {text!r:.60} @ {key}")
+        if not _LEAST <= value <= _LARGEST:
+            expected = "a positive number that a double holds"
+            raise ValueError(f"expected {expected}, got {text!r:.60} @ {key}")
         return value
 
 

@@ -81,7 +81,7 @@ from verify.models.problem import Problem
 from verify.scenes.bodies import Body, RigidBody
 from verify.scenes.manufactured import Manufactured
 from verify.scenes.motion import Impulse, Spin
-from verify.scenes.precision import Rung, hexadecimal, power_of_two
+from verify.scenes.precision import Rung, double_text, hexadecimal, power_of_two
 from verify.scenes.table import exact_number
 from verify.scenes.tensors import apply
 from verify.solvers.solver import columns
@@ -327,8 +327,8 @@ def _check_times(times: Sequence[Fraction | float], problem: Problem) -> None:
     for row, (asked, got) in enumerate(zip(clock.instants, times, strict=True)):
         if not abs(Fraction(got) - asked) <= allowed:
             raise Misanswer(
-                f"expected t = {float(asked)!r} (within {_TIME_ROUNDINGS} roundings of "
-                f"{problem.rung.name}), got {float(got)!r} @ t[{row}]"
+                f"expected t = {double_text(asked)} (within {_TIME_ROUNDINGS} roundings of "
+                f"{problem.rung.name}), got {double_text(got)} @ t[{row}]"
             )
 
 

@@ -99,6 +99,19 @@ def _without_heyoka(name: str, error: ModuleNotFoundError) -> Solver:
     return Absent(name, Lack(sentence, Outcome.NO_PACKAGE))
 
 
+def as_solver(solver: Solver | str) -> Solver:
+    """Return a Solver as it is, and that of a name; ValueError for anything else."""
+    from verify.scenes.faults import brief
+    from verify.solvers.solver import Solver
+
+    if isinstance(solver, str):
+        return solver_named(solver)
+    if isinstance(solver, Solver):
+        return solver
+    mend = " (a callable is judged by verify.check)" if callable(solver) else ""
+    raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
+
+
 def check_name(name: str) -> None:
     """Raise the ValueError of `solver_named`; nothing heavy is imported for it."""
     if name.startswith(TAYLOR_AT):

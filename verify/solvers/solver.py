@@ -89,8 +89,9 @@ class Callback(Solver):
     """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
-    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. An exception is a failed run,
-    and so is `sys.exit` with any code; an interrupt stays an interrupt.
+    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. A masked number and a table with
+    named columns are refused. An exception is a failed run, and so is `sys.exit` with any code; an
+    interrupt stays an interrupt.
     """
 
     answer: Callable[[Problem], Any]
@@ -100,7 +101,10 @@ class Callback(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         try:
-            states = np.asarray(self.answer(problem))
+            answered = self.answer(problem)
+            if fault := _no_array(answered):
+                return Trajectory(Outcome.MISSHAPEN, detail=fault)
+            states = np.asarray(answered)
         except (Exception, SystemExit) as error:  # a stranger's code: what it raises is its outcome
             return raised(error)
         seconds = perf_counter() - began
@@ -125,6 +129,23 @@ def raised(error: BaseException) -> Trajectory:
     """The trajectory of a solver that ended with an error, a `sys.exit` included."""
     detail = f"{type(error).__name__}: {error}".removesuffix(": ")
     return Trajectory(Outcome.RAISED, detail=detail)
+
+
+def _no_array(answered: Any) -> str:
+    """Why what would become an array of numbers is none; empty where it is one.
+
+    NumPy drops a mask, and a table's columns have names that say more than their order.
+    """
+    if hasattr(answered, "columns"):
+        kind = type(answered).__name__
+        return (
+            f"expected an array of states, got a {kind} (hand over its columns in the order of a "
+            "state, as an array)"
+        )
+    rows = answered if isinstance(answered, list | tuple) else [answered]
+    masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
+    masked = sum(int(np.sum(mask)) for mask in masks)
+    return f"expected states without a mask, got {masked} masked numbers" if masked else ""
 
 
 def columns(problem: Problem) -> list[tuple[str, int]]:

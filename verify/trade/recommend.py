@@ -5,12 +5,13 @@ from __future__ import annotations
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from os import PathLike
 from typing import Any, Final
 
 from verify.models.problem import NotRepresentable, pose
+from verify.scenes.positive import positive
 from verify.scenes.precision import Rung
-from verify.scenes.reader import load
+from verify.scenes.reader import as_scene
 from verify.scenes.scene import Scene
 from verify.solvers.registry import PROCESS
 from verify.solvers.solver import Solver
@@ -87,7 +88,7 @@ class Recommendation:
 
 
 def recommend(
-    scene: Scene | str,
+    scene: Scene | str | PathLike[str],
     error: float,
     asked: Sequence[Setting] | None = None,
     seed: int = SEED,
@@ -102,7 +103,7 @@ def recommend(
     scene that cannot be read. Rungs on which rounding alone leaves far more are not measured.
     """
     check_target(error)
-    scene = load(scene) if isinstance(scene, str) else scene
+    scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
     without = left_out(scene, (one.rung for one in asked if _computes_on_its_rung(one)), error)
     kept = [one for one in asked if one.rung not in without or not _computes_on_its_rung(one)]
@@ -122,8 +123,7 @@ def _not_measured(reasons: Sequence[str]) -> str:
 
 def check_target(error: float) -> None:
     """Raise ValueError for a target that is no positive number."""
-    if not (error > 0 and isfinite(error)):
-        raise ValueError(f"expected a positive error, got {error!r}")
+    positive(error, "error", "a positive error")
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:

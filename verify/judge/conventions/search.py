@@ -1,15 +1,19 @@
 """Finding out conventions: hypotheses tried on the exact motion, and the simplest one that explains.
 
-A hypothesis about the whole file is a *world*: a body as the file's author may have understood it, and
-a map of time. In each world every group of columns has its readings. What is wanted is the world and
-the readings with the fewest departures whose error is as small as any; it is a finding only where it
-leaves a hundredth of the error of the scene's own conventions. Where two that are equally simple leave
-equally little, the file cannot tell them apart, and neither is taken.
+A hypothesis about the whole file is a *world*: a body as the file's author may have understood it, a
+map of time, and names of axes. In each world every group of columns has its readings. The finding is
+the world and the readings with the fewest departures whose error is as small as any. They leave a
+hundredth of the error of the scene's own conventions, in every group and in every row that is looked
+at, the first among them. Where two that are equally simple leave equally little, the file cannot tell
+them apart, and neither is taken.
+
+The first rows decide, for there even a poor answer is still right. A convention that shows only after
+a while, such as space axes of a body that starts in line with them, is tried on longer beginnings too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,38 +25,35 @@ from mpmath import mp
 
 from verify.exact.route import solution
 from verify.exact.solution import Quantities, Solution, Unsettled
-from verify.judge.angular_shift import angular_shift
-from verify.judge.conventions.readings import Reading, readings
-from verify.judge.conventions.worlds import World, late, worlds
-from verify.judge.errors import state_errors
+from verify.judge.conventions.axes import Frames, renamings
+from verify.judge.conventions.readings import Reading, readings, rotations, vector_columns
+from verify.judge.conventions.worlds import World, worlds
 from verify.judge.inputs import angular_velocity
-from verify.judge.shift import Kind, time_shifts
 from verify.models.problem import NotRepresentable, adopt
 from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Motion
 from verify.scenes.precision import Rung
 from verify.scenes.scene import Scene
 from verify.solvers.file import TrajectoryFile
-from verify.solvers.values import held
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A convention explains an error if it leaves no more than this part of it.
+# A convention explains an error if it leaves no more than this part of it: the rest is the solver's.
 EXPLAINS: Final = 1e-2
-# What leaves up to ten times as much as the best explains as well: it may be the solver's own error.
+# Another one that leaves up to ten times as much as the best explains as well.
 _AS_WELL: Final = 10.0
 # Errors of so many units of roundoff, or of float64's, are not told apart.
 _NOISE_ROUNDOFFS: Final = 64
 _FLOAT64: Final = 2.0**-53
-# Conventions show in few rows; of a poor answer the early half is still right.
-_MOST_ROWS: Final = 24
+# The start and one step, which is all that is right to a hundredth without a gyroscopic term; then a few
+# steps, and beginnings so many times as long each. The longest one is half of the file.
+_FEWEST_ROWS: Final = 2
+_FIRST_ROWS: Final = 5
+_LONGER: Final = 8
 _FEW_ROWS: Final = 12
+# So many rows, evenly chosen, stand for a beginning.
+_MOST_ROWS: Final = 24
 _DIGITS: Final = 20
-_GUARD_DIGITS: Final = 3
-_SPARE_BITS: Final = 96
-# The relative error of a shift that is a double.
-_FLOAT_NOISE: Final = 2.0**-50
 # The Taylor route is not sent further than this many spans of the scene for a hypothesis.
 _MOST_SPANS: Final = 10
 
@@ -61,8 +62,8 @@ _MOST_SPANS: Final = 10
 class Finding:
     """One convention of the file that is not the scene's.
 
-    ``subject`` is ``time``, ``body`` or a group of columns; ``before`` and ``after`` are relative
-    errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
+    ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
+    relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
     """
 
     subject: str
@@ -86,11 +87,15 @@ class Finding:
 
 @dataclass(frozen=True)
 class Conventions:
-    """What was found, and the world and readings that correct the file; only what is certain."""
+    """The findings, and the world and readings that correct the file; only what is certain."""
 
     findings: tuple[Finding, ...]
     world: World
     readings: Mapping[str, Reading]
+
+    @property
+    def _rank(self) -> tuple[int, int]:
+        return sum(finding.is_certain for finding in self.findings), len(self.findings)
 
 
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
@@ -99,19 +104,32 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     Raises Unsettled where there is no exact motion, and NotRepresentable where the rung cannot hold
     the scene.
     """
-    search = _Search(file, scene, rung)
-    if not search.rows:
+    searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
+    if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
         return Conventions((), World(scene), {})
-    plain = search.fitted(World(scene))
-    if plain.worst <= search.noise / EXPLAINS:
-        return Conventions((), World(scene), {})
-    fits = [plain, *(search.fitted(w) for w in search.worlds())]
-    best, others = _simplest(fits, search.noise)
-    if max(read.error for read in best.groups.values()) > search.noise:
-        starts = [plain] if best is plain else [plain, best]
-        fits += [search.fitted(world) for start in starts for world in search.shifted(start)]
-        best, others = _simplest(fits, search.noise)
-    return _conventions(search, plain, best, others)
+    # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
+    return max((search.conventions() for search in searches), key=lambda found: found._rank)
+
+
+def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
+    """Finite rows of ever longer beginnings of a file, the shortest first."""
+    groups = file.groups.values()
+    finite = [
+        k
+        for k in range(len(file.times))
+        if all(isinstance(value, Fraction) for rows in groups for value in rows[k])
+    ]
+    longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
+    lengths, length = [_FEWEST_ROWS] if longest > _FEWEST_ROWS else [], _FIRST_ROWS
+    while length < longest:
+        lengths.append(length)
+        length *= _LONGER
+    return [_evenly(finite[:count]) for count in (*lengths, longest) if count]
+
+
+def _evenly(rows: Sequence[int]) -> tuple[int, ...]:
+    chosen = np.linspace(0, len(rows) - 1, min(len(rows), _MOST_ROWS))
+    return tuple(sorted({rows[round(k)] for k in chosen}))
 
 
 # One world, and how well every group can be read in it.
@@ -119,11 +137,16 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
 
 @dataclass(frozen=True)
 class _Read:
-    """The simplest reading of a group that is as good as any, and others as simple and as good."""
+    """The simplest reading of a group that is as good as any, and others as simple and as good.
+
+    ``plain`` is the error of the scene's own reading. ``motion`` is how far the exact motion goes over
+    the rows, in the unit of the errors.
+    """
 
     reading: Reading
     error: float
     plain: float
+    motion: float
     others: tuple[Reading, ...]
 
 
@@ -145,6 +168,29 @@ class _Fit:
         """The sum of the orders of magnitude of all groups' errors."""
         return sum(log10(max(read.error, noise)) for read in self.groups.values())
 
+    def gain(self, plain: _Fit) -> str:
+        """The group that the world explains best."""
+        return max(
+            self.groups, key=lambda g: plain.groups[g].error / (self.groups[g].error or _FLOAT64)
+        )
+
+    def explains(self, plain: _Fit, noise: float) -> bool:
+        """Return True if the world explains some group, and leaves no group unexplained.
+
+        A file that stands still has any unit of time in which the truth does not move either: a map
+        of time explains a motion only where there is one.
+        """
+        best = self.gain(plain)
+        gained, before = self.groups[best], plain.groups[best].error
+        if not gained.error <= EXPLAINS * before:
+            return False
+        if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
+            return False
+        return all(
+            read.error <= max(noise, EXPLAINS * max(plain.groups[group].error, read.motion))
+            for group, read in self.groups.items()
+        )
+
 
 def _simplest(fits: Sequence[_Fit], noise: float) -> tuple[_Fit, list[_Fit]]:
     """The world of least cost among those as good as the best; and others, as good and as simple."""
@@ -152,8 +198,7 @@ def _simplest(fits: Sequence[_Fit], noise: float) -> tuple[_Fit, list[_Fit]]:
     good = [fit for fit in fits if fit.size(noise) <= best + log10(_AS_WELL)]
     cost = min(fit.cost for fit in good)
     simple = sorted((f for f in good if f.cost == cost), key=lambda fit: fit.size(noise))
-    first = simple[0]
-    return first, [fit for fit in simple if not fit.world.is_nearly(first.world)]
+    return simple[0], simple[1:]
 
 
 @dataclass(frozen=True)
@@ -163,22 +208,25 @@ class _Search:
     file: TrajectoryFile
     scene: Scene
     rung: Rung
+    rows: tuple[int, ...]
+
+    def conventions(self) -> Conventions:
+        """The conventions that these rows tell."""
+        noise = self.noise
+        if self.plain.worst <= noise / EXPLAINS:
+            return Conventions((), World(self.scene), {})
+        tried = [fit for world in self.worlds() for fit in self.fits(world)]
+        fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, noise))]
+        return _conventions(self.plain, *_simplest(fits, noise))
 
     @property
     def noise(self) -> float:
         return _NOISE_ROUNDOFFS * max(float(self.rung.unit_roundoff), _FLOAT64)
 
     @cached_property
-    def rows(self) -> list[int]:
-        """Finite rows, evenly chosen from the early half."""
-        count = len(self.file.times)
-        finite = [k for k in range(count) if self._is_finite(k)]
-        early = finite[: max(ceil(len(finite) / 2), _FEW_ROWS)]
-        chosen = np.linspace(0, len(early) - 1, min(len(early), _MOST_ROWS))
-        return sorted({early[round(k)] for k in chosen}) if early else []
-
-    def _is_finite(self, row: int) -> bool:
-        return all(isinstance(v, Fraction) for rows in self.file.groups.values() for v in rows[row])
+    def plain(self) -> _Fit:
+        """The best readings in the scene's own world."""
+        return self.fits(World(self.scene), (Frames(),))[0]
 
     @cached_property
     def instants(self) -> tuple[Fraction, ...]:
@@ -191,6 +239,21 @@ class _Search:
             for group, rows in self.file.groups.items()
         }
 
+    @cached_property
+    def frames(self) -> tuple[Frames, ...]:
+        """The renamings of axes that show in the file."""
+        active: dict[str, set[int]] = {"body": set(), "space": set()}
+        vectors = [group for group in self.values if group not in _ATTITUDES]
+        for group in vectors:
+            columns = set(np.flatnonzero(np.any(self.values[group], axis=0)).tolist())
+            active["space"] |= columns
+            active["body"] |= columns if group != "centre" else set()
+        has_attitude = len(vectors) < len(self.values)
+        if has_attitude:
+            active = {"body": {0, 1, 2}, "space": {0, 1, 2}}
+        joined = has_attitude or ("centre" in vectors and len(vectors) > 1)
+        return tuple(renamings(active["body"], active["space"], joined))
+
     def solution(self, world: World) -> tuple[Scene, Solution]:
         """The rounded scene of a world at the file's rows, with the attitude for space axes."""
         track = {"attitude"} | ({"centre"} if "centre" in self.file.groups else set())
@@ -198,47 +261,56 @@ class _Search:
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
 
-    def fitted(self, world: World) -> _Fit:
-        """The best readings in a world; all errors are infinite where there is no exact motion."""
+    def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[_Fit]:
+        """The best readings in a world under each renaming of axes."""
         given, exact = self.solution(world)
-        near = [k for k, t in enumerate(given.clock.elapsed) if self._is_near(exact, t)]
-        found = {}
-        if near:
-            try:
-                truth = exact.evaluate([given.clock.elapsed[k] for k in near], _DIGITS)
-            except Unsettled:
-                near = []
-            else:
-                found = _as_floats(_with_omega(given, truth))
-        return _Fit(world, {group: self._best(group, found, near) for group in self.values})
+        reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
+        elapsed = given.clock.elapsed
+        near = [k for k, t in enumerate(elapsed) if exact.route != "taylor" or abs(t) <= reach]
+        try:
+            truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
+        except Unsettled:
+            near, truth = [], {}
+        floats = _as_floats(_with_omega(given, truth)) if near else {}
+        columns = vector_columns(next(iter(self.values))) if self._is_one_vector else ()
+        return [
+            _Fit(
+                replace(world, frames=renamed, axes_words=renamed.words(columns)),
+                {group: self._best(group, floats, near, renamed) for group in self.values},
+            )
+            for renamed in frames or self.frames
+        ]
 
-    def _is_near(self, exact: Solution, elapsed: Fraction) -> bool:
-        span = max(abs(t) for t in self.scene.clock.elapsed)
-        return exact.route != "taylor" or abs(elapsed) <= _MOST_SPANS * span
+    @property
+    def _is_one_vector(self) -> bool:
+        return len(self.values) == 1 and not _ATTITUDES & set(self.values)
 
-    def _best(self, group: str, truth: Mapping[str, Floats], near: Sequence[int]) -> _Read:
-        columns = self.values[group]
-        known = [reading for reading in readings(group) if reading.is_plain(columns)]
+    def _best(
+        self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
+    ) -> _Read:
+        known = readings(group, frames)
         if not near:
-            return _Read(known[0], 1.0, 1.0, ())
-        values, right = columns[list(near)], truth[_QUANTITY.get(group, group)]
+            return _Read(known[0], 1.0, 1.0, 0.0, ())
+        columns, right = self.values[group][list(near)], truth[_QUANTITY.get(group, group)]
         # A row out of reach of this world is not known to be right.
         beyond = 1.0 if len(near) < len(self.rows) else 0.0
         errors = [
-            max(_error(group, reading.read(values, truth["attitude"]), right), beyond)
+            max(_error(group, reading.read(columns, truth["attitude"]), right), beyond)
             for reading in known
         ]
         enough = _AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
         alike = [reading for reading, _ in good if reading.cost == cost]
-        return _Read(alike[0], good[0][1], errors[0], tuple(alike[1:]))
+        motion = _distance(group, np.broadcast_to(right[0], right.shape), right)
+        return _Read(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
 
     # Worlds.
 
     def worlds(self) -> list[World]:
-        """Every hypothesis but the scene's own that can be tried here."""
-        return [w for w in worlds(self.scene, self.file.times[0]) if self._is_possible(w)]
+        """Every body and clock that can be tried here, the scene's own first."""
+        others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
+        return [World(self.scene), *others]
 
     def _is_possible(self, world: World) -> bool:
         try:
@@ -249,61 +321,6 @@ class _Search:
         reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
         return reach <= _MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
 
-    def shifted(self, fit: _Fit) -> list[World]:
-        """The same world with the constant shift of time that explains one of its groups."""
-        given, exact = self.solution(fit.world)
-        if not self.rows or not all(self._is_near(exact, t) for t in given.clock.elapsed):
-            return []
-        digits = ceil(self.rung.bits * log10(2)) + _GUARD_DIGITS
-        try:
-            with mp.workprec(self.rung.bits + _SPARE_BITS):
-                shifts = set(self._shifts(fit, given, exact, digits))
-        except Unsettled:
-            return []
-        scale_words = fit.world.time_words[: int(fit.world.scale != 1)]
-        totals = {fit.world.shift + shift for shift in shifts}
-        return [
-            replace(fit.world, shift=total, time_words=(*scale_words, late(total)))
-            for total in totals
-            if total
-        ]
-
-    def _shifts(self, fit: _Fit, given: Scene, exact: Solution, digits: int) -> Iterator[Fraction]:
-        """The shift of every group, in its tentative reading, that is constant and explains it."""
-        truth = exact.motion(given.clock.elapsed, digits)
-        # What the file lacks is taken from the truth: it has no error, and no shift.
-        quantities = dict(truth.quantities)
-        for group, read in fit.groups.items():
-            if _QUANTITY.get(group, group) in quantities:
-                values = held([self.file.groups[group][k] for k in self.rows], mp.prec)
-                reading = read.reading.read(values, truth["attitude"])
-                quantities[_QUANTITY.get(group, group)] = reading
-        if "omega" in fit.groups and "omega" not in quantities:
-            yield from self._angular_shifts(given, fit.groups["omega"].reading, truth, digits)
-        answer = Motion(quantities, truth.radius)
-        states = state_errors(given, truth, answer)
-        shifts = time_shifts(given, exact, truth, answer, digits, states)
-        for errors, shift in zip(states, shifts, strict=True):
-            largest = float(max(errors.values))
-            if not largest > self.noise:
-                continue
-            if shift is None or shift.kind is not Kind.CONSTANT:
-                continue
-            if shift.residual <= EXPLAINS * largest:
-                # |error| = |velocity| |shift|, so that this is how sharply the error tells it.
-                width = shift.residual / largest + _FLOAT_NOISE
-                yield _short(shift.time_shift, width * abs(shift.time_shift))
-
-    def _angular_shifts(
-        self, given: Scene, reading: Reading, truth: Motion, digits: int
-    ) -> Iterator[Fraction]:
-        """That of an angular velocity beside, or instead of, the impulses."""
-        values = held([self.file.groups["omega"][k] for k in self.rows], mp.prec)
-        shift = angular_shift(given, reading.read(values, truth["attitude"]), digits)
-        if shift is not None and shift.kind is Kind.CONSTANT:
-            late, width = float(shift.time_shift), shift.residual / shift.before + _FLOAT_NOISE
-            yield _short(late, width * abs(late))
-
 
 def is_far(scene: Scene, times: Iterable[Fraction], spans: int = _MOST_SPANS) -> bool:
     """Return True if the Taylor route would have to go so many spans of the scene."""
@@ -312,10 +329,11 @@ def is_far(scene: Scene, times: Iterable[Fraction], spans: int = _MOST_SPANS) ->
     return reach > spans * span and solution(scene).route == "taylor"
 
 
-# What the groups are compared with.
+# The errors of the groups.
 
 
 _QUANTITY: Final = {"quaternion": "attitude"}
+_ATTITUDES: Final = frozenset({"quaternion", "attitude"})
 
 
 def _with_omega(given: Scene, truth: Quantities) -> Quantities:
@@ -330,7 +348,12 @@ def _as_floats(truth: Quantities) -> dict[str, Floats]:
 
 
 def _error(group: str, got: Floats, right: Floats) -> float:
-    """The largest error over the rows, relative to the largest vector (absolute where all are zero).
+    """The largest error of columns in the scene's conventions."""
+    return _distance(group, rotations(got) if group == "quaternion" else got, right)
+
+
+def _distance(group: str, got: Floats, right: Floats) -> float:
+    """The largest distance over the rows, relative to the largest vector (absolute where all are zero).
 
     Of a frame turned by a small angle, that angle. Infinite where anything is not finite.
     """
@@ -338,9 +361,11 @@ def _error(group: str, got: Floats, right: Floats) -> float:
     if not np.all(np.isfinite(flat)):
         return inf
     size = np.max(np.linalg.norm(right.reshape(len(right), -1), axis=1)) or 1.0
-    if _QUANTITY.get(group, group) == "attitude":
+    if group in _ATTITUDES:
         size = np.sqrt(2)
-    return float(np.max(np.linalg.norm(flat, axis=1)) / size)
+    error = float(np.max(np.linalg.norm(flat, axis=1)) / size)
+    # Beyond doubles both may be infinite: no reading is right then.
+    return error if error == error else inf
 
 
 def _float(value: Fraction | float) -> float:
@@ -350,40 +375,24 @@ def _float(value: Fraction | float) -> float:
         return inf
 
 
-def _short(value: float, width: float) -> Fraction:
-    """The shortest decimal that is within ``width`` of the value."""
-    texts = (f"{value:.{digits}e}" for digits in range(17))
-    near = (Fraction(text) for text in texts if abs(Fraction(text) - Fraction(value)) <= width)
-    return next(near, Fraction(value))
+# The findings.
 
 
-# What is said of it.
-
-
-def _conventions(search: _Search, plain: _Fit, best: _Fit, others: Sequence[_Fit]) -> Conventions:
-    gained = max(
-        plain.groups, key=lambda g: plain.groups[g].error / _positive(best.groups[g].error)
-    )
+def _conventions(plain: _Fit, best: _Fit, others: Sequence[_Fit]) -> Conventions:
+    gained = best.gain(plain)
     before, after = plain.groups[gained].error, best.groups[gained].error
-    findings: list[Finding] = []
-    if best.world.cost and not after <= EXPLAINS * before:
-        best, others = plain, ()
     alternatives = tuple(o.world.words or "the scene's own" for o in others)
-    subjects = {"time": "; ".join(best.world.time_words), "body": best.world.body_words}
-    for subject, words in subjects.items():
-        if words:
-            findings.append(Finding(subject, words, before, after, alternatives))
-    certain = {}
+    findings = [
+        Finding(subject, words, before, after, alternatives)
+        for subject, words in best.world.subjects.items()
+    ]
+    # Where the axes are ambiguous none are renamed.
+    frames = Frames() if others else best.world.frames
+    certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
     for group, read in best.groups.items():
         if read.reading.cost and read.error <= EXPLAINS * read.plain:
-            unlike = tuple(reading.sentence for reading in read.others)
-            words = read.reading.sentence
-            findings.append(Finding(group, words, read.plain, read.error, unlike))
+            words, unlike = read.reading.words, tuple(other.sentence for other in read.others)
+            findings.append(Finding(group, "; ".join(words), read.plain, read.error, unlike))
             if not unlike:
-                certain[group] = read.reading
-    world = World(search.scene) if others else best.world
-    return Conventions(tuple(findings), world, certain)
-
-
-def _positive(error: float) -> float:
-    return error or _FLOAT64
+                certain[group] = next(r for r in readings(group, frames) if r.words == words)
+    return Conventions(tuple(findings), plain.world if others else best.world, certain)

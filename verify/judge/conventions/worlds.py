@@ -1,18 +1,22 @@
-"""Hypotheses about a whole file: its unit and origin of time, and how its author read the body."""
+"""Hypotheses about a whole file: its unit and origin of time, its axes, and how its author read the body.
+
+A shift of the clock is a hypothesis only where it is anchored: the file's first row becomes the scene's
+start, or its first instant. Any other shift would take the row at the start away from the start, and
+with it the one row that says whether the file begins at the scene's initial state.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
+from verify.judge.conventions.axes import Frames
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
 from verify.scenes.scene import Scene
 
-# Two shifts this near are one.
-_SAME_SHIFT: Final = 1e-3
 _SCALES: Final = (
     (Fraction(1, 1000), "thousandths of the scene's unit (milliseconds for seconds)"),
     (Fraction(1, 10**6), "millionths of the scene's unit (microseconds for seconds)"),
@@ -24,50 +28,64 @@ _SCALES: Final = (
 
 @dataclass(frozen=True)
 class World:
-    """A hypothesis about the whole file: time of the scene = scale x t - shift, and a body."""
+    """A hypothesis about the whole file: time of the scene = scale x t - shift, a body, and axes."""
 
     scene: Scene
     scale: Fraction = Fraction(1)
     shift: Fraction = Fraction(0)
     time_words: tuple[str, ...] = ()
     body_words: str = ""
+    frames: Frames = Frames()  # noqa: RUF009 (frozen)
+    axes_words: str = ""
 
     @property
     def cost(self) -> int:
-        return len(self.time_words) + bool(self.body_words)
+        return len(self.time_words) + bool(self.body_words) + self.frames.cost
+
+    @property
+    def subjects(self) -> dict[str, str]:
+        """The departures in words, by what they are about."""
+        time = "; ".join(self.time_words)
+        every = {"time": time, "body": self.body_words, "axes": self.axes_words}
+        return {subject: words for subject, words in every.items() if words}
 
     @property
     def words(self) -> str:
-        return "; ".join((*self.time_words, *([self.body_words] if self.body_words else ())))
+        return "; ".join(self.subjects.values())
 
-    def is_nearly(self, other: World) -> bool:
-        """Whether both say the same but for digits of the shift that no answer tells."""
-        near = abs(self.shift - other.shift) <= _SAME_SHIFT * abs(other.shift)
-        return near and (self.scale, self.scene.body) == (other.scale, other.scene.body)
+    @property
+    def moves_time(self) -> bool:
+        return self.scale != 1 or self.shift != 0
 
     def times(self, instants: Iterable[Fraction]) -> tuple[Fraction, ...]:
         return tuple(self.scale * t - self.shift for t in instants)
 
 
-def worlds(scene: Scene, first: Fraction) -> list[World]:
-    """Every hypothesis but the scene's own: bodies, units of time, and another first instant."""
-    found = [
+def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
+    """Every body, unit and origin of time but the scene's own, for a file with rows at these times."""
+    every = [
         World(other, scale, shift, time_words, body_words)
         for other, body_words in [(scene, ""), *_other_bodies(scene)]
-        for scale, shift, time_words in _clocks(scene, first)
+        for scale, shift, time_words in _clocks(scene, times)
     ]
-    return found[1:]
+    return every[1:]
 
 
-def _clocks(scene: Scene, first: Fraction) -> list[tuple[Fraction, Fraction, tuple[str, ...]]]:
+def _clocks(
+    scene: Scene, times: Sequence[Fraction]
+) -> list[tuple[Fraction, Fraction, tuple[str, ...]]]:
     """Units of time, each with the file's origin and with its first row at the scene's own."""
+    start, instants = scene.clock.start, scene.clock.instants
+    first = min(times) if instants[-1] > start else max(times)
     clocks: list[tuple[Fraction, Fraction, tuple[str, ...]]] = []
     for scale, unit in ((Fraction(1), ""), *_SCALES):
         words = (f"t counts {unit}",) if unit else ()
         clocks.append((scale, Fraction(0), words))
-        for origin in dict.fromkeys((scene.clock.start, scene.clock.instants[0])):
+        if any(scale * t == start for t in times):
+            continue
+        for origin in dict.fromkeys((start, instants[0])):
             if shift := scale * first - origin:
-                clocks.append((scale, shift, (*words, late(shift))))
+                clocks.append((scale, shift, (*words, _late(shift))))
     return clocks
 
 
@@ -94,5 +112,5 @@ def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
     return [(replace(scene, body=other), words)]
 
 
-def late(shift: Fraction) -> str:
+def _late(shift: Fraction) -> str:
     return f"t is {'late' if shift > 0 else 'early'} by {float(abs(shift)):.15g}"

@@ -223,7 +223,7 @@ def _told(
     return f"Largest error over attainable by rung: {each}; a gate allows {factor:g}.{lowest}"
 
 
-# What a verdict calls an error of which a shift of time explains at least half.
+# What a verdict calls an error of which a shift of time leaves a tenth at most.
 _SHIFTED: Final = ("constant", "drifting", "wandering")
 
 

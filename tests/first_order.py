@@ -1,0 +1,71 @@
+"""First-order engines in a few lines: semi-implicit Euler with each treatment of the gyroscopic term."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from trajectories import QUATERNION, VECTORS, Columns, named
+
+from verify.judge.conventions.readings import rotations
+from verify.scenes.bodies import RigidBody
+from verify.scenes.motion import Spin
+from verify.scenes.reader import load
+
+Array = np.ndarray[Any, Any]
+# omega after a step of length h, from I, omega, the moment M and h.
+Kick = Callable[[Array, Array, Array, float], Array]
+
+
+def none(inertia: Array, w: Array, moment: Array, h: float) -> Array:
+    return w + h * np.linalg.solve(inertia, moment)
+
+
+def explicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
+    return w + h * np.linalg.solve(inertia, moment - np.cross(w, inertia @ w))
+
+
+def implicit(inertia: Array, w: Array, moment: Array, h: float) -> Array:
+    """One step of Newton's method for I (w' - w) = h (M - w' x I w')."""
+    slope = np.column_stack(
+        [np.cross(e, inertia @ w) + np.cross(w, inertia @ e) for e in np.eye(3)]
+    )
+    torque = moment - np.cross(w, inertia @ w)
+    return w + h * np.linalg.solve(inertia + h * slope, torque)
+
+
+def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
+    """Rows of t, omega in body axes and a unit quaternion; a row after every so many steps."""
+    given = load(scene)
+    assert isinstance(given.body, RigidBody)
+    assert isinstance(given.initial, Spin)
+    inertia = np.array(given.body.inertia, dtype=float)
+    moment = np.array(given.body.moment, dtype=float)
+    w = np.array(given.initial.omega, dtype=float)
+    q = np.array(given.initial.attitude, dtype=float)
+    q /= np.linalg.norm(q)
+    start, found = float(given.clock.start), []
+    for step in range((rows - 1) * every + 1):
+        if step % every == 0:
+            found.append([start + step * h, *w, *q])
+        w = kick(inertia, w, moment, h)
+        q = _turned(q, h * w)
+    table = np.array(found)
+    columns = named(("t",), table[:, :1])
+    return columns | named(VECTORS["omega"], table[:, 1:4]) | named(QUATERNION, table[:, 4:])
+
+
+def _turned(q: Array, angle: Array) -> Array:
+    """q times the quaternion of a turn about body axes."""
+    half = np.linalg.norm(angle) / 2
+    s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
+    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))]
+    return np.array(turned) / np.linalg.norm(turned)
+
+
+def in_space_axes(columns: Columns) -> Columns:
+    """omega as most engines have it, by the engine's own attitude."""
+    R = rotations(np.array([columns[name] for name in QUATERNION]).T)
+    w = np.array([columns[name] for name in VECTORS["omega"]]).T
+    return columns | named(VECTORS["omega"], (R @ w[:, :, None])[:, :, 0])

@@ -1,0 +1,161 @@
+"""Renamings of axes: a file may count the axes of the body, of space, or of both in another order.
+
+A renaming is a proper rotation P that maps axes to axes: a signed permutation of determinant +1.
+It takes the file's axes to the scene's, v_scene = P v_file. A reflection is no renaming: no frame has
+its axes so, and a file with one sign wrong has an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations, product
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+Array = np.ndarray[Any, Any]
+
+# There are many ways to name axes, so that each is worth less than another convention.
+_COST: Final = 2
+
+
+@dataclass(frozen=True)
+class Axes:
+    """A signed permutation: component i of the scene is ``signs[i]`` times the file's ``order[i]``."""
+
+    order: tuple[int, ...]
+    signs: tuple[int, ...]
+
+    def names(self, columns: Sequence[str]) -> str:
+        """The file's column, with its sign, of every axis that is not in its place."""
+        return ", ".join(
+            f"axis {i + 1} is {'-' if self.signs[i] < 0 else ''}{columns[self.order[i]]}"
+            for i in self.moved
+        )
+
+    @property
+    def moved(self) -> list[int]:
+        return [i for i in range(3) if self.order[i] != i or self.signs[i] < 0]
+
+    @property
+    def is_proper(self) -> bool:
+        """Return True for a rotation, False for a reflection."""
+        inversions = sum(self.order[i] > self.order[k] for i in range(3) for k in range(i + 1, 3))
+        return bool((-1) ** inversions * np.prod(self.signs) > 0)
+
+    def effect(self, active: Collection[int]) -> tuple[tuple[int, int] | None, ...]:
+        """The part of the permutation that shows if the file's other columns are zero."""
+        pairs = zip(self.order, self.signs, strict=True)
+        return tuple((k, sign) if k in active else None for k, sign in pairs)
+
+    def vectors(self, rows: Array) -> Array:
+        """P v for every row v."""
+        turned: Array = rows[:, self.order] * np.array(self.signs)
+        return turned
+
+    def left(self, matrices: Array) -> Array:
+        """P R for every matrix R."""
+        turned: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
+        return turned
+
+    def right(self, matrices: Array) -> Array:
+        """R P^T for every matrix R."""
+        turned: Array = matrices[:, :, self.order] * np.array(self.signs)
+        return turned
+
+    @cached_property
+    def quaternion(self) -> tuple[int, ...]:
+        """A quaternion of P in integers, scalar first, of any length: a column of 4 q q^T."""
+        P = self.vectors(np.eye(3, dtype=int)).T
+        trace = int(np.trace(P))
+        squares = [1 + trace, *(1 - trace + 2 * int(P[i, i]) for i in range(3))]
+        k = int(np.argmax(squares))
+        odd = [int(P[2, 1] - P[1, 2]), int(P[0, 2] - P[2, 0]), int(P[1, 0] - P[0, 1])]
+        if k == 0:
+            return (squares[0], *odd)
+        even = [squares[k] if i == k - 1 else int(P[i, k - 1] + P[k - 1, i]) for i in range(3)]
+        return (odd[k - 1], *even)
+
+
+# The 24 rotations of a cube, the simplest first.
+AXES: Final = tuple(
+    sorted(
+        (
+            axes
+            for order in permutations(range(3))
+            for signs in product((1, -1), repeat=3)
+            if (axes := Axes(order, signs)).is_proper
+        ),
+        key=lambda axes: (len(axes.moved), axes.signs.count(-1)),
+    )
+)
+UNMOVED: Final = AXES[0]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A renaming of the body's axes and of space's, the same for every quantity of a file."""
+
+    body: Axes = UNMOVED
+    space: Axes = UNMOVED
+
+    @property
+    def cost(self) -> int:
+        return _COST * bool(self.body.moved or self.space.moved)
+
+    def words(self, columns: Sequence[str]) -> str:
+        """The renaming in words; ``columns`` are the three of a file that has no other vector."""
+        if not self.cost:
+            return ""
+        axes = self.body if self.body.moved else self.space
+        if columns:
+            return f"{' '.join(columns)} have other axes: {axes.names(columns)}"
+        names = axes.names(("the file's 1", "the file's 2", "the file's 3"))
+        if self.body == self.space:
+            return f"both frames have other axes: {names}"
+        return f"{'the body' if self.body.moved else 'space'} has other axes: {names}"
+
+    def attitudes(self, matrices: Array) -> Array:
+        """R of the scene, Q R P^T, for every R of the file; Q renames space's axes."""
+        return self.space.left(self.body.right(matrices))
+
+    def quaternions(self, rows: Array) -> Array:
+        """The quaternions of ``attitudes``, of the length that they have in the file."""
+        if not self.cost:
+            return rows
+        s, *vector = self.body.quaternion
+        backward = (s, *(-entry for entry in vector))
+        turned = _product(_product(self.space.quaternion, list(rows.T)), backward)
+        square = sum(e * e for e in self.space.quaternion) * sum(e * e for e in backward)
+        length = mp.sqrt(square) if rows.dtype == object else np.sqrt(square)
+        found: Array = np.array(turned).T / length
+        return found
+
+
+def renamings(body: Collection[int], space: Collection[int], joined: bool) -> Iterator[Frames]:
+    """Every renaming of one frame, and of both alike, that shows in a file; none at all first.
+
+    ``body`` and ``space`` are the file's components along these axes that are not always zero.
+    Both frames are renamed at once only where quantities of the file have them ``joined``.
+    """
+    shown = set()
+    both = [Frames(axes, axes) for axes in AXES[1:]] if joined else []
+    single = [f for axes in AXES[1:] for f in (Frames(body=axes), Frames(space=axes))]
+    for frames in (Frames(), *both, *single):
+        effect = (frames.body.effect(body), frames.space.effect(space))
+        if effect not in shown:
+            shown.add(effect)
+            yield frames
+
+
+def _product(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, ...]:
+    """The product of two quaternions, component by component."""
+    return (
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    )
