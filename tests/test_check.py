@@ -22,8 +22,7 @@ from verify.cli import main
 from verify.exact.route import solution
 from verify.judge.answer import FileJudgement
 from verify.judge.inputs import input_rounding
-from verify.judge.regraded import INITIAL
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import COMPLETE, INITIAL, Status, Verdict
 from verify.models.problem import adopt, pose
 from verify.scenes import tensors
 from verify.scenes.bodies import RigidBody
@@ -54,7 +53,8 @@ def rows(found: FileJudgement) -> dict[str, Verdict]:
 
 
 def all_pass(found: FileJudgement) -> bool:
-    return {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
+    """Whether all that was compared passes; whether the file is complete is another row."""
+    return {v.verdict for v in found.verdicts if v.quantity != COMPLETE} == {Status.PASS}
 
 
 def without(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
@@ -128,17 +128,20 @@ def test_rows_may_run_backwards(tmp_path: Path) -> None:
     assert all_pass(checked(tmp_path, SCENE, turned))
 
 
-def test_one_row_is_enough(tmp_path: Path) -> None:
-    """A file with one row, at the start or later, is judged."""
+def test_one_row_is_judged_and_no_trajectory(tmp_path: Path) -> None:
+    """A file with one row, at the start or later, is judged there, and undecided as a whole."""
     for instants in ([Fraction(0)], [Fraction(30)]):
-        assert all_pass(checked(tmp_path, SCENE, columns_at(load(SCENE), instants)))
+        found = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
+        assert all_pass(found)
+        assert rows(found)[COMPLETE].verdict is Status.UNDECIDED
+        assert "one row is no trajectory" in rows(found)[COMPLETE].because
 
 
 @pytest.mark.parametrize(
     ("kept", "expected"),
     [
-        ({"t", *OMEGA}, {INITIAL, "omega", "T", "H2"}),
-        ({"t", "q0", "q1", "q2", "q3"}, {INITIAL, "attitude"}),
+        ({"t", *OMEGA}, {INITIAL, "omega", "T", "H2", COMPLETE}),
+        ({"t", "q0", "q1", "q2", "q3"}, {INITIAL, "attitude", COMPLETE}),
     ],
 )
 def test_only_what_is_in_the_file_is_compared(
@@ -157,7 +160,7 @@ def test_only_omega_of_a_solid_in_a_fluid(tmp_path: Path) -> None:
     scene = "kirchhoff/screw"
     sound = exact_columns(scene)
     columns = {name: list(sound[name]) for name in ("t", *OMEGA)}
-    assert set(rows(checked(tmp_path, scene, columns))) == {INITIAL, "omega"}
+    assert set(rows(checked(tmp_path, scene, columns))) == {INITIAL, "omega", COMPLETE}
     columns["w2"][3] *= 1 + 1e-10
     omega = rows(checked(tmp_path, scene, columns))["omega"]
     assert (omega.verdict, omega.at) == (Status.FAIL, columns["t"][3])
@@ -187,7 +190,7 @@ def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) 
 def test_matrices_of_a_loaded_body(tmp_path: Path) -> None:
     """With a moment the states are compared, and the balances that need no matrix."""
     scene = replace(load("euler/constant-moment"), track=frozenset({"attitude"}))
-    columns = columns_at(scene, scene.clock.instants[:20:2], matrix=True)
+    columns = columns_at(scene, scene.clock.instants[::2], matrix=True)
     found = verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
     assert {v.quantity for v in found.verdicts} == {INITIAL, "omega", "attitude", "T", "H2"}
     assert {v.verdict for v in found.verdicts} == {Status.PASS}
@@ -312,7 +315,7 @@ def test_reference_trajectories_are_files(tmp_path: Path) -> None:
 
     columns = reference(load("euler/later-start"))["columns"]
     file = write_csv(tmp_path / "mine.csv", {n: v[:20] for n, v in columns.items()}, str)
-    assert {v.verdict for v in judged(file, "euler/later-start").verdicts} == {Status.PASS}
+    assert all_pass(judged(file, "euler/later-start"))
 
 
 # The problem that others solve.

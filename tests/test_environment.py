@@ -203,7 +203,7 @@ def test_what_cannot_be_installed_is_told_in_one_line(
     solver = solver_named(NAME)
     assert solver.unavailable(rung("f64")) == ""
     found = [solver.solve(problem()) for _ in range(2)]
-    assert {one.outcome for one in found} == {Outcome.NOT_STARTED}
+    assert {one.outcome for one in found} == {Outcome.NO_PACKAGE}
     assert found[0].detail == found[1].detail == solver.unavailable(rung("f64"))
     assert "nothing" in found[0].detail
     assert "\n" not in found[0].detail
@@ -224,7 +224,7 @@ def test_a_cache_that_cannot_be_written_is_told(script: Script, cache: Path) -> 
     script()
     cache.mkdir(mode=0o500)
     found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NOT_STARTED
+    assert found.outcome is Outcome.NO_PACKAGE
     assert "Permission denied" in found.detail
 
 
@@ -233,7 +233,7 @@ def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
     script()
     cache.write_text("")
     found = solver_named(NAME).solve(problem())
-    assert found.outcome is Outcome.NOT_STARTED
+    assert found.outcome is Outcome.NO_PACKAGE
     assert str(cache) in found.detail
 
 

@@ -17,6 +17,7 @@ from verify.scenes.expected import Expectation, Expectations, left_out, read, sh
 from verify.scenes.faults import Refused
 from verify.scenes.precision import LADDER
 from verify.scenes.reader import load
+from verify.solvers.trajectory import Outcome
 
 Captured = pytest.CaptureFixture[str]
 SCENE = "extremes/euler-a"
@@ -26,7 +27,8 @@ LONG = "extremes/euler-separatrix-long"
 
 def row(status: Status = Status.PASS, **changed: Any) -> Verdict:
     given = {"scene": SCENE, "solver": "taylor", "rung": "f64", "setting": "", "quantity": "omega"}
-    return Verdict(**{**given, "verdict": status, "outcome": "", **changed})
+    outcome = Outcome.NO_FORMAT.value if status is Status.UNAVAILABLE else ""
+    return Verdict(**{**given, "verdict": status, "outcome": outcome, **changed})
 
 
 def expecting(verdict: str, quantity: str = "omega") -> Expectations:
@@ -200,8 +202,9 @@ def test_an_unexpected_pass_fails(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, solved: Any
 ) -> None:
     """What was expected to be vacuous and passes is a mismatch: exit status 1, and a line says so."""
-    passed = replace(solved.verdicts[0], verdict=Status.PASS)
-    marred = replace(solved, verdicts=(passed, *solved.verdicts[1:]))
+    start, omega, *others = solved.verdicts
+    passed = replace(omega, verdict=Status.PASS)
+    marred = replace(solved, verdicts=(start, passed, *others))
     monkeypatch.setattr(verbs, "_judge", lambda *_: [marred])
     assert main(["run", LONG]) == 1
     text = capsys.readouterr().out
@@ -214,8 +217,9 @@ def test_an_unforeseen_verdict_fails(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, solved: Any
 ) -> None:
     """A vacuous row that the file does not list fails; on another scene it would be undecided."""
-    marred = replace(solved.verdicts[1], verdict=Status.VACUOUS)
-    found = replace(solved, verdicts=(solved.verdicts[0], marred, *solved.verdicts[2:]))
+    start, omega, T, *others = solved.verdicts
+    marred = replace(T, verdict=Status.VACUOUS)
+    found = replace(solved, verdicts=(start, omega, marred, *others))
     monkeypatch.setattr(verbs, "_judge", lambda *_: [found])
     assert main(["run", LONG]) == 1
     assert f"expected pass, got vacuous @ {LONG} f64 T" in capsys.readouterr().out
@@ -240,19 +244,22 @@ def test_what_came_as_expected_leaves_a_junit_file_green(
 
 
 def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    """`run extremes` is all of them on f64; what is left out elsewhere is told, and run by name."""
+    """`run extremes` is all of them on f64; what is left out elsewhere is told, and run by name.
+
+    The judge of this test judges nothing, and that is no pass.
+    """
     asked: list[Any] = []
     monkeypatch.setattr(verbs, "_judge", lambda *call: asked.append(call) or [])
-    assert main(["run", "extremes"]) == 0
+    assert main(["run", "extremes"]) == 3
     names = library.named("extremes")
     assert asked.pop() == (list(names), "taylor", ["f64"], {}, False, None)
     (scene, rung), why = next(iter(shipped().left_out.items()))
-    assert main(["run", "extremes", "--rung", rung]) == 0
+    assert main(["run", "extremes", "--rung", rung]) == 3
     assert (scene, rung) in asked.pop()[3]
     assert f"not run: {scene} on {rung}: {why}" in capsys.readouterr().err
-    assert main(["run", scene, "--rung", rung]) == 0
+    assert main(["run", scene, "--rung", rung]) == 3
     assert asked.pop() == ([scene], "taylor", [rung], {}, False, None)
-    assert main(["run", "extremes", scene, "--rung", rung]) == 0
+    assert main(["run", "extremes", scene, "--rung", rung]) == 3
     assert (scene, rung) not in asked.pop()[3]
 
 

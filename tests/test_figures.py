@@ -13,7 +13,7 @@ from verify.exact.euler.jacobi import FreeRotation
 from verify.exact.euler.orbit import Orbit
 from verify.exact.kirchhoff.jacobi import NutatingBody
 from verify.exact.route import solution
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import STATES, Status, Verdict
 from verify.run import run
 from verify.scenes import tensors
 from verify.scenes.bodies import Clebsch, RigidBody
@@ -95,8 +95,8 @@ def drawn(model: str) -> tuple[Scene, ...]:
 def ensemble(model: str, rung: str) -> Ensemble:
     found = [run(scene, "taylor", rung).verdicts for scene in drawn(model)]
     return Ensemble(
-        tuple(verdicts[0] for verdicts in found),
-        tuple(verdict for verdicts in found for verdict in verdicts[1:]),
+        tuple(v for verdicts in found for v in verdicts if v.quantity in STATES),
+        tuple(v for verdicts in found for v in verdicts if v.is_conserved),
     )
 
 

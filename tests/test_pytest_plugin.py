@@ -59,7 +59,7 @@ def test_my_simulator(verify_solver):
 
 def test_its_judgement(verify_solver):
     found = verify_solver("euler/spherical", still, rung="f32")
-    assert {v.quantity for v in found.verdicts} == {"omega", "T", "H2"}
+    assert {v.quantity for v in found.verdicts} == {"initial state", "omega", "T", "H2"}
 """
     session(pytester, tests).assert_outcomes(passed=2)
 
@@ -75,7 +75,7 @@ def test_my_simulator(verify_solver):
     result.stdout.fnmatch_lines(
         [
             '>       verify_solver("euler/generic", still)',
-            "E       Failed: still on euler/generic, f64: 1 of 3 judged quantities are no pass",
+            "E       Failed: still on euler/generic, f64: 1 of 4 judged quantities are no pass",
             "E       omega: fail, the error reaches * x max|omega| at t = * (mean *, at the end *)",
             "E           against  the exact motion of the same rounded data (route *)",
             "E           bound    * x max|omega|; the error is * times what perfect rounding *",

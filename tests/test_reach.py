@@ -213,7 +213,7 @@ def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
     """A floor of one rounding a sample is no more than that of the steps that the solver takes."""
     for name in ("f32", "f64"):
         least = least_error(generic, rung(name))
-        (omega, *_) = verify.run(generic, Taylor(), name).verdicts
+        (_, omega, *_) = verify.run(generic, Taylor(), name).verdicts
         assert least is not None
         assert 0 < least <= omega.attainable * FACTOR
         assert omega.max <= FACTOR * omega.attainable

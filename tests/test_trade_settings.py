@@ -211,7 +211,7 @@ def test_a_recommendation_can_be_typed() -> None:
     asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
     found = recommend(scene, 1e-5, asked)
     assert solver_named(found.solver.name) == found.solver
-    (omega, *_) = verify.run(scene, found.solver.name, found.rung).verdicts
+    (_, omega, *_) = verify.run(scene, found.solver.name, found.rung).verdicts
     assert omega.max <= 1e-5
     assert found.solver.name in found.document()["command"]
 

@@ -22,6 +22,7 @@ def check(
     solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
+    partial: bool = False,
 ) -> Judgement:
     """Judge ``solve(problem) -> states`` or a trajectory file on a scene.
 
@@ -31,7 +32,9 @@ def check(
 
     A file (CSV, NPZ, Parquet, JSON; see solvers.file) was made in the arithmetic of ``rung``. Its
     judgement is a judge.answer.FileJudgement, which says what was found out about its conventions;
-    they are corrected with ``accept_conventions`` only. Raises scenes.faults.Refused for a file that
+    they are corrected with ``accept_conventions`` only. A file that lacks tracked columns, or covers a
+    part of the span, has a row `complete` that is undecided; with ``partial`` it is vacuous and counts
+    for nothing. An answer of a callable is always whole. Raises scenes.faults.Refused for a file that
     cannot be judged, with every fault of it, and ValueError for what is neither a callable nor a file.
     """
     if callable(solve_or_file):
@@ -45,7 +48,8 @@ def check(
     from verify.judge.answer import judge_file
     from verify.solvers.file import read
 
-    return judge_file(read(solve_or_file), as_scene(scene), rung_named(rung), accept_conventions)
+    file = read(solve_or_file)
+    return judge_file(file, as_scene(scene), rung_named(rung), accept_conventions, partial)
 
 
 make_callable(__name__, check)

@@ -8,7 +8,7 @@ from math import inf
 from typing import Final
 
 from verify.judge.judgement import Judgement
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import INITIAL, STATES, Status, Verdict
 from verify.scenes.faults import brief
 from verify.scenes.positive import positive
 
@@ -16,7 +16,6 @@ Tolerance = float | Mapping[str, float] | None
 Only = str | Collection[str] | None
 
 CONSERVED: Final = "conserved"
-_STATE: Final = frozenset({"omega", "impulse", "attitude", "centre"})
 # As the judge has it: a truth wider than this share of a bound cannot decide.
 _TRUTH_SHARE: Final = 16
 
@@ -42,7 +41,7 @@ class Demand:
 
     @property
     def is_conserved(self) -> bool:
-        return self.verdict.quantity not in _STATE
+        return self.verdict.is_conserved
 
     @property
     def is_met(self) -> bool:
@@ -68,7 +67,12 @@ def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None
     if judgement.record is None:
         return [Demand(verdict) for verdict in judgement.verdicts]
     radii = {gate.quantity: gate.truth_radius for gate in judgement.record.gates}
-    tolerances = _tolerances(tolerance, verdicts)
+    tolerances = dict(_tolerances(tolerance, verdicts))
+    if state := _state_of_start(verdicts):
+        # The start is the first sample of a state: what holds for this state holds for its start.
+        radii[INITIAL] = radii[state]
+        if state in tolerances:
+            tolerances.setdefault(INITIAL, tolerances[state])
     found = [
         # A verdict whose truth is of unknown width is held to the judge's own bound alone.
         Demand(verdict, radii.get(quantity, inf), tolerances.get(quantity))
@@ -85,6 +89,14 @@ def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None
     wanted = [only] if isinstance(only, str) else list(only)
     _check_known(wanted, [*verdicts, CONSERVED], "only")
     return [demand for demand in found if demand.verdict.quantity in wanted]
+
+
+def _state_of_start(verdicts: Mapping[str, Verdict]) -> str:
+    """The state that the row of the start compares, known by its unit; empty without such a row."""
+    if INITIAL not in verdicts:
+        return ""
+    unit = verdicts[INITIAL].unit
+    return next((name for name in STATES if name in verdicts and verdicts[name].unit == unit), "")
 
 
 def _tolerances(tolerance: Tolerance, quantities: Collection[str]) -> Mapping[str, float]:
@@ -204,7 +216,7 @@ def _time_shift(verdict: Verdict) -> str:
 
 def _hints(demanded: Sequence[Demand]) -> list[str]:
     """What the pattern of passes and fails points at."""
-    states = [d for d in demanded if not d.is_conserved]
+    states = [d for d in demanded if d.verdict.quantity in STATES]
     conserved = [d for d in demanded if d.is_conserved]
     all_conserved = bool(conserved) and all(d.is_met for d in conserved)
     if states and all_conserved and not any(d.is_met for d in states):

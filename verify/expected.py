@@ -6,13 +6,14 @@ exit status, and what was foreseen and did not come, or came unforeseen, is a mi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from verify.judge.verdict import Status, Verdict, exit_status
 from verify.scenes.expected import Expectation, Expectations, Row, is_extreme, shipped
 from verify.solvers.registry import TAYLOR
+from verify.solvers.trajectory import Outcome
 
 _PASS = Expectation(Status.PASS.value, "")
 
@@ -44,11 +45,26 @@ class Held:
             return None
         return found if found.verdict == verdict.verdict.value else None
 
-    def exit_status(self, verdicts: Iterable[Verdict]) -> int:
-        """1 for a mismatch; else that of the rows which are not as the file foresees."""
+    def exit_status(self, verdicts: Sequence[Verdict]) -> int:
+        """1 for a mismatch; else that of the rows which are not as the file foresees.
+
+        Where nothing was judged: 2 if a package is missing, 0 if the machine lacks every number format
+        that was asked for, 3 otherwise.
+        """
         if self.mismatches:
             return 1
-        return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
+        if not self.unjudged(verdicts):
+            return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
+        outcomes = {verdict.outcome for verdict in verdicts}
+        if Outcome.NO_PACKAGE.value in outcomes:
+            return 2
+        return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
+
+    def unjudged(self, verdicts: Sequence[Verdict]) -> str:
+        """The reasons why nothing was judged; empty where something was, or came as expected."""
+        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in verdicts):
+            return ""
+        return "; ".join(dict.fromkeys(v.because for v in verdicts)) or "no run was asked for"
 
     def row(self, verdict: Verdict) -> dict[str, Any]:
         """The row as JSON holds it, with what was expected of it where it was held to the file."""

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from verify.judge.gates import FACTOR
 from verify.judge.provenance import command, processor, versions
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import INITIAL, Status, Verdict
 from verify.run import run
 from verify.scenes.faults import Refused
 from verify.scenes.reader import read
@@ -130,7 +130,9 @@ def caught(family: Family, place: Place) -> Catch | None:
 
 
 def _counts(verdict: Verdict) -> bool:
-    return verdict.verdict in (Status.PASS, Status.FAIL)
+    is_asked = verdict.verdict in (Status.PASS, Status.FAIL)
+    # The start is the first row of a state, which counts already.
+    return is_asked and verdict.quantity != INITIAL
 
 
 def document(found: Iterable[Found], seconds: float, seed: int) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from verify.cli import ci, claims, publishing, tradeoff, verbs
+from verify.cli import ci, claims, publishing, question, tradeoff, verbs
 from verify.cli.answer import Answer
 from verify.cli.streams import escaped
 
@@ -76,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     _add_list(found)
+    _add_question(found)
     _add_run(found)
     _add_exact(found)
     _add_check(found)
@@ -104,6 +105,19 @@ def _verb(
 def _add_list(found: Any) -> None:
     _verb(
         found, "list", "list the shipped scenes, solvers and rungs", "list --json", verbs.list_all
+    )
+
+
+def _add_question(found: Any) -> None:
+    what = "print a scene as any solver gets it, in exact text and hexadecimal floats"
+    example = "question euler/generic --csv"
+    verb = _verb(found, "question", what, example, question.question)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
+    verb.add_argument(
+        "--csv",
+        action="store_true",
+        help="print the header and the times of a trajectory file, for a program to fill in",
     )
 
 
@@ -180,6 +194,12 @@ def _add_check(found: Any) -> None:
         action="store_true",
         help="correct what was found out (order of the quaternion, axes, units, time, ...) and judge "
         "the rest; without it the file is judged as it stands",
+    )
+    verb.add_argument(
+        "--partial",
+        action="store_true",
+        help="judge what the file has, without undecided for tracked columns or a part of the span that "
+        "it lacks",
     )
     ci.add_options(verb)
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _SUMMARY = "GITHUB_STEP_SUMMARY"
 # What fails nothing must not bury what does.
 _MOST_CHANGES = 10
+_NOTHING = "nothing was judged"
 # The graver first: a call that went wrong has shown nothing at all.
 _GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
 
@@ -139,16 +140,26 @@ def _write_github(asked: Outputs, verdicts: Sequence[Verdict], remarks: list[Rem
     return []
 
 
-def _unexpected(expected: Held, verdicts: Iterable[Verdict]) -> list[Remark]:
-    """A failure for each row that is not as expected, its solver's name taken from its run."""
+def _unexpected(expected: Held, verdicts: Sequence[Verdict]) -> list[Remark]:
+    """A failure for each row that is not as expected, its solver's name taken from its run.
+
+    Where the command is red because nothing was judged, every row is undecided.
+    """
     from verify.judge.verdict import Status
     from verify.publish.ci.case import Remark
 
     solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in verdicts}
-    return [
+    mismatches = [
         Remark(scene, *solvers[scene, rung], rung, quantity, Status.FAIL, str(mismatch))
         for mismatch in expected.mismatches
         for scene, rung, quantity in (mismatch.row,)
+    ]
+    if not expected.unjudged(verdicts) or not expected.exit_status(verdicts):
+        return mismatches
+    # A run that is red because nothing was judged has no row of its own that is.
+    return [
+        Remark(v.scene, v.solver, v.setting, v.rung, v.quantity, Status.UNDECIDED, _NOTHING)
+        for v in verdicts
     ]
 
 

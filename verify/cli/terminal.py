@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
+from verify.judge.verdict import STATES
 
 if TYPE_CHECKING:
     from verify.expected import Held
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from verify.judge.verdict import Verdict
 
 _ROOMY = 120
-_STATES = ("omega", "impulse", "attitude", "centre")
 # What a reason is made of.
 _RULE = "10 x attainable"
 _AS_A_SHIFT = "; as a shift of time: "
@@ -75,6 +75,8 @@ def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
         print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
     print_line(console, f"\n{counts}{_as_expected(verdicts, held)}")
+    if why := held.unjudged(verdicts):
+        print_line(console, f"nothing was judged: {why}")
     return text_of(console)
 
 
@@ -107,8 +109,8 @@ def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
-    state = max((v for v in compared if v.quantity in _STATES), key=_ratio)
-    drift = max((v for v in compared if v.quantity not in _STATES), key=_units, default=None)
+    state = max((v for v in compared if v.quantity in STATES), key=_ratio)
+    drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
     return (
         status,
         state.quantity,
@@ -168,7 +170,7 @@ def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
     _print_conventions(console, judged)
     print_line(console)
     if any(verdict.at is not None for verdict in judged.verdicts):
-        console.print(_quantities_table(judged.verdicts))
+        console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
         print_line(console)
         print_line(
             console, "allowed: ten times what rounding the input and every step would leave;"

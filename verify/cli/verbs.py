@@ -72,12 +72,14 @@ def _run(
     verdicts = [verdict for result in results for verdict in result.verdicts]
     held = hold(verdicts)
     status, messages = held.exit_status(verdicts), []
+    if status == WRONG_CALL:
+        messages.append(f"nothing was judged: {held.unjudged(verdicts)}")
     if folder is not None:
         try:
-            messages = [_write_reports(folder, results)]
+            messages.append(_write_reports(folder, results))
         except (OSError, ValueError) as error:
             # A run that took hours is shown in any case.
-            messages = [f"expected to write the reports, got {error} @ --out {folder}"]
+            messages.append(f"expected to write the reports, got {error} @ --out {folder}")
             status = WRONG_CALL
     found: dict[str, Any] = {
         "verdicts": [held.row(v) for v in verdicts],
@@ -210,7 +212,7 @@ def check(options: argparse.Namespace) -> Answer:
     scene, file = _scene_and_file(options.scene, options.file)
     asked = outputs(options)
     with working(f"check {options.file}"):
-        judged = judge_file(file, scene, rung(name), options.accept_conventions)
+        judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
     text = partial(check_text, judged, scene.name, name)
     again = [v for v in asked.baseline or () if _run_of(v) == _run_of(judged.verdicts[0])]
     to_ci = tell(asked, judged.verdicts, exit_status(judged.verdicts), again)

@@ -122,6 +122,7 @@ ANSWERS: Final = (
         why="a true state of the same motion at another time: it has every conserved quantity to "
         "the last digit, and all of its error is a shift of time",
         recast=_early,
+        wrong_start=True,
         told=True,
     ),
     Defect(

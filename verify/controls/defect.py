@@ -20,7 +20,8 @@ class Defect(Solver):
 
     ``scene`` is a shipped scene on which it shows and ``gate`` the quantity named for it, which must
     fail there. ``passes`` are the quantities of that scene that pass all the same, by the physics
-    that ``why`` gives; every other one fails. ``honest`` tells a solver that says it failed.
+    that ``why`` gives; every other one fails. The start passes too, unless the answer is wrong from the
+    start (``wrong_start``). ``honest`` tells a solver that says it failed.
 
     What is broken is any of: ``recast``, the problem that is solved in place of the one asked;
     ``equations``, its right-hand sides; ``solver``, who answers; ``spoil``, the answer.
@@ -38,6 +39,7 @@ class Defect(Solver):
     spoil: Callable[[Problem, Trajectory], Trajectory] | None = None
     twin: Solver = field(default_factory=Taylor)
     honest: bool = False
+    wrong_start: bool = False
     told: bool = False
     setting: str = "control"
 

@@ -72,6 +72,7 @@ class FixedStep(Solver):
     name: str
     setting: str = ""
     steps_per_sample: int = _STEPS_PER_SAMPLE
+    counts_steps = True
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()

@@ -17,13 +17,15 @@ from mpmath import mp
 
 from verify.exact.route import solution
 from verify.exact.solution import Unsettled
+from verify.judge.complete import Extent, complete_verdict, not_judged
 from verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from verify.judge.conventions.worlds import World
 from verify.judge.gyroscopic import gyroscopic_cause
+from verify.judge.initial import initial_verdict
 from verify.judge.inputs import input_rounding
 from verify.judge.judgement import Judgement, unjudged
 from verify.judge.partial import partial_judgement
-from verify.judge.regraded import Graded, graded, initial_verdict, merged, verdict_of
+from verify.judge.regraded import Graded, graded, merged, verdict_of
 from verify.judge.verdict import Status, Verdict, summary
 from verify.models.problem import NotRepresentable, adopt
 from verify.scenes.faults import Refused
@@ -97,16 +99,22 @@ class FileJudgement(Judgement):
 
 
 def judge_file(
-    file: TrajectoryFile, scene: Scene, rung: Rung, accept_conventions: bool = False
+    file: TrajectoryFile,
+    scene: Scene,
+    rung: Rung,
+    accept_conventions: bool = False,
+    partial: bool = False,
 ) -> FileJudgement:
     """Judge a file as arithmetic of the rung.
 
     What its columns are is that of solvers.file; its times are absolute, in the scene's unit, and each
     row is compared at its own time. With ``accept_conventions`` what was found out about it is corrected
-    before it is judged. Raises Refused if it has nothing to compare.
+    before it is judged. A file that lacks a part of what the scene asks has a row `complete` that is
+    undecided, or vacuous if a ``partial`` answer is asked for. Raises Refused if it has nothing to
+    compare.
     """
     groups = _comparable(file, scene)
-    notes = tuple(_notes(file, groups, scene))
+    asked, notes = scene, tuple(_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     scene = replace(scene, track=scene.track & _tracked(groups))
     found = Conventions((), World(scene), {})
@@ -114,7 +122,12 @@ def judge_file(
         found = conventions(compared, scene, rung)
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found)
-        notes += (*_no_start(answer.scene, answer.times), *_no_end(answer.scene, answer.times))
+        extent = Extent.of(answer.scene, answer.times, rung)
+        notes += (*_no_start(answer.scene, answer.times), *_no_end(answer, extent))
+        lack = list(not_judged(extent, [_noun(name) for name in _missing(groups, asked)]))
+        if lack and judged.record is not None:
+            complete = complete_verdict(scene, file.name, rung, lack, partial)
+            judged = replace(judged, verdicts=(*judged.verdicts, complete))
     except NotRepresentable as reason:
         judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
     except Unsettled as doubt:
@@ -200,13 +213,16 @@ def _notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterato
     for name in file.groups:
         if name not in groups:
             yield f"{' '.join(GROUPS[name])} not compared: {scene.name} does not track the {_noun(name)}"
-    has = {"attitude" if name == "quaternion" else name for name in groups}
-    for name in _wanted(scene):
-        noun = _noun(name)
-        if ("attitude" if name == "quaternion" else name) not in has:
-            other = " or r11 ... r33" if name == "quaternion" else ""
-            columns = " ".join(GROUPS[name])
-            yield f"the {noun} is not judged: the file has no {columns}{other}"
+    for name in _missing(groups, scene):
+        other = " or r11 ... r33" if name == "quaternion" else ""
+        columns = " ".join(GROUPS[name])
+        yield f"the {_noun(name)} is not judged: the file has no {columns}{other}"
+
+
+def _missing(groups: Sequence[str], scene: Scene) -> list[str]:
+    """The groups that the scene asks for and the file lacks."""
+    has = {"quaternion" if name == "attitude" else name for name in groups}
+    return [name for name in _wanted(scene) if name not in has]
 
 
 def _no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
@@ -216,15 +232,16 @@ def _no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
         yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
 
 
-def _no_end(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
+def _no_end(answer: _Answer, extent: Extent) -> Iterator[str]:
     """Whether the file stops before the scene does."""
-    start, end = scene.clock.start, scene.clock.instants[-1]
-    last = max(times) if end > start else min(times)
-    if abs(float(last - start)) < abs(float(end - start)) and (last - start) * (end - start) >= 0:
-        yield (
-            f"the last row is at t = {float(last):g}, and the scene ends at t = {float(end):g}: "
-            "the rest was not judged"
-        )
+    if extent.reaches_end or extent.rows[-1] < 0:
+        return
+    last = max(answer.times, key=lambda t: abs(t - answer.scene.clock.start))
+    end = float(answer.scene.clock.instants[-1])
+    yield (
+        f"the last row is at t = {float(last):g}, and the scene ends at t = {end:g}: "
+        "the rest was not judged"
+    )
 
 
 def _single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:

@@ -24,8 +24,10 @@ from mpmath import mp
 
 from verify.exact.condition import Transition, transition
 from verify.exact.gathering import Path, path
+from verify.exact.inputs import momentum
 from verify.exact.invariants import Invariant
 from verify.exact.looks import chosen, evenly
+from verify.exact.tangent import Flow
 from verify.judge.errors import Errors
 from verify.judge.magnitude import roundings
 from verify.scenes.motion import Motion
@@ -155,6 +157,15 @@ def _floor(given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int
 @lru_cache(maxsize=32)
 def _orbit(scene: Scene) -> Path:
     return path(scene)
+
+
+def radians(scene: Scene) -> float:
+    """The angle that the fastest of an orbit's rates turns through by its end."""
+    orbit = _orbit(scene)
+    flow = Flow.of(scene, momentum(scene).units)
+    rates = flow.rate(orbit.momentum) / float(flow.time)
+    times = np.array([abs(float(t)) for t in orbit.elapsed])
+    return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 
 def looked_at(scene: Scene) -> list[int]:

@@ -45,7 +45,7 @@ from verify.judge.rounding_class import (
     told,
 )
 from verify.judge.unit_quaternion import UNIT_QUATERNION
-from verify.judge.verdict import Status, Verdict, exit_status
+from verify.judge.verdict import COMPLETE, Status, Verdict, exit_status
 from verify.scenes.limit import Limit
 from verify.scenes.regular_file import read_bytes
 
@@ -81,7 +81,7 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     error beyond ten times the larger of what it was and half of what is attainable are regressions: below
     that, roundings drawn anew may explain it.
     """
-    rows = paired(baseline, made)
+    rows = paired(_compared(baseline), _compared(made))
     regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
     undecided: list[Departure] = []
     # This row is there only where it fails: of a sound run no baseline has one.
@@ -98,6 +98,11 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         changes += [] if other or grown else departures(old, new)
     regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
+
+
+def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
+    """All rows but that of the extent of an answer, which its own call has asked for or not."""
+    return (verdict for verdict in verdicts if verdict.quantity != COMPLETE)
 
 
 def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:

@@ -13,6 +13,13 @@ from verify.judge.verdict import Status
 # rounds a few times a step and for the tail of the distribution, and no room for one step in a
 # hundred done wrongly.
 FACTOR = 10
+# Steps that somebody else claims widen a gate as their square root, WIDENING times at most beyond
+# those of a method that resolves every sample and every hundredth of a radian. So 10^4 steps a radian
+# count: an RK4 of step 1e-4 on an orbit of one radian per unit of time claims no more.
+STEPS_PER_RADIAN = 100
+WIDENING = 10
+# And no more than a processor can do: a step is some dozens of dependent operations.
+STEPS_PER_SECOND = 10**8
 # A truth wider than this share of a bound cannot judge against it.
 _TRUTH_SHARE = 16
 # At an error of one the answer zero would do as well: such a bound forbids nothing.

@@ -22,6 +22,7 @@ from verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from verify.judge.provenance import provenance
 from verify.judge.record import GateRecord, Record
 from verify.judge.shift import Kind, Shift, time_shifts
+from verify.judge.steps import Steps, count_steps
 from verify.judge.unit_quaternion import unit_quaternion
 from verify.judge.verdict import Status, Verdict, exit_status
 from verify.models.problem import Problem
@@ -78,6 +79,7 @@ class _Run:
     problem: Problem
     solver: Solver
     trajectory: Trajectory
+    steps: Steps
 
     def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
         scene, trajectory = self.problem.scene, self.trajectory
@@ -98,23 +100,31 @@ class _Run:
         )
 
 
-def judgement(problem: Problem, solver: Solver, trajectory: Trajectory) -> Judgement:
+def judgement(
+    problem: Problem, solver: Solver, trajectory: Trajectory, seconds: float | None = None
+) -> Judgement:
     """Compare a trajectory with the exact solution of the same rounded data, and judge it.
 
-    A trajectory that is not finished, and a truth that cannot be had, are verdicts and raise nothing.
+    ``seconds`` is how long the answer took by the caller's clock, which limits the steps that a solver
+    may claim. A trajectory that is not finished, and a truth that cannot be had, are verdicts and raise
+    nothing.
     """
-    run = _Run(problem, solver, trajectory)
+    run = _Run(problem, solver, trajectory, Steps(trajectory.steps))
     main = main_quantity(problem.scene)
     if trajectory.outcome is not Outcome.FINISHED:
-        return Judgement((run.verdict(main, Status.FAIL, because=_unfinished(trajectory)),), None)
+        status = Status.UNAVAILABLE if trajectory.outcome.is_unavailable else Status.FAIL
+        return Judgement((run.verdict(main, status, because=_unfinished(trajectory)),), None)
     exact = solution(problem.given)
     try:
-        return _compare(run, exact)
+        steps = count_steps(problem, solver, trajectory.steps, seconds)
+        return _compare(replace(run, steps=steps), exact)
     except Unsettled as doubt:
         return Judgement((run.verdict(main, Status.UNDECIDED, because=str(doubt)),), None)
 
 
 def _unfinished(trajectory: Trajectory) -> str:
+    if trajectory.outcome.is_unavailable:
+        return str(trajectory.detail)
     detail = f" ({trajectory.detail})" if trajectory.detail else ""
     return f"a run that did not finish is not scored: it {trajectory.outcome.value}{detail}"
 
@@ -130,7 +140,7 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
     answer = trajectory.motion(bits + _SPARE_BITS)
     with mp.workprec(bits + _SPARE_BITS):
         with costs.of(CONDITION):
-            base = floor(given, problem.scene, problem.rung.unit_roundoff, trajectory.steps)
+            base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
         with costs.of(ERRORS):
             states = state_errors(given, truth, answer)
             shifts = time_shifts(given, exact, truth, answer, digits, states)
@@ -164,7 +174,7 @@ Gated = tuple[Verdict, GateRecord]
 
 def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated:
     attainable = base.of_state(errors)
-    finding = judge(errors, attainable, _reason(base, errors, attainable, "orbit"))
+    finding = judge(errors, attainable, _reason(run, base, errors, attainable, "orbit"))
     if shift is None:
         return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
     passed = finding.status is Status.PASS
@@ -197,16 +207,20 @@ def _conserved(
 ) -> Gated:
     """``attainable`` is what rounding the momenta leaves; under a clock its roundings do ``work`` too."""
     if work is not None:
-        steps = max(run.trajectory.steps, len(base.times))
+        steps = max(run.steps.counted, len(base.times))
         roundoff = run.problem.rung.unit_roundoff
         attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
-    reason = _reason(base, errors, attainable, "gradient") + (f", {BECAUSE}" if work else "")
+    loads = f", {BECAUSE}" if work else ""
+    reason = _reason(run, base, errors, attainable, "gradient", loads)
     finding = judge(errors, attainable, reason)
     return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
 
 
-def _reason(base: Floor, errors: Errors, attainable: Floats, carried: str) -> str:
-    return base.reason(attainable, index_of_largest(errors.doubles), carried)
+def _reason(
+    run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str, loads: str = ""
+) -> str:
+    told = f"{base.reason(attainable, index_of_largest(errors.doubles), carried)}{loads}"
+    return f"{told}; {run.steps.because}" if run.steps.because else told
 
 
 def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
@@ -287,7 +301,14 @@ def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ..
     )
 
 
-def unjudged(scene: Scene, solver: Solver, rung: Rung, status: Status, why: str) -> Judgement:
+def unjudged(
+    scene: Scene,
+    solver: Solver,
+    rung: Rung,
+    status: Status,
+    why: str,
+    outcome: Outcome = Outcome.NOT_REPRESENTABLE,
+) -> Judgement:
     """The judgement of a run that could not begin."""
     verdict = Verdict(
         scene=scene.name,
@@ -296,8 +317,8 @@ def unjudged(scene: Scene, solver: Solver, rung: Rung, status: Status, why: str)
         setting=solver.setting,
         quantity=main_quantity(scene),
         verdict=status,
-        outcome=Outcome.NOT_REPRESENTABLE.value if status is Status.REFUSED else "not started",
-        because=why,
+        outcome=outcome.value,
+        because=str(why),
         provenance=provenance(scene.digest),
     )
     return Judgement((verdict,), None)

@@ -18,12 +18,10 @@ from verify.judge.gates import FACTOR, index_of_largest, judge
 from verify.judge.inputs import InputRounding
 from verify.judge.judgement import Judgement
 from verify.judge.record import GateRecord, Record
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import STATES, Status, Verdict
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-INITIAL: Final = "initial state"
-STATES: Final = ("omega", "impulse", "attitude", "centre")
 # The gravest first.
 _GRAVITY: Final = (Status.FAIL, Status.UNDECIDED, Status.VACUOUS, Status.PASS)
 _RULE: Final = f"{FACTOR} x attainable; "
@@ -43,6 +41,14 @@ class Graded:
     attainable: Floats
     is_doubtful: bool
     reason: str
+
+    @classmethod
+    def of(
+        cls, verdict: Verdict, times: Floats, errors: Floats, attainable: Floats, reason: str
+    ) -> Graded:
+        """A gate whose verdict tells whether the truth was narrow enough."""
+        is_doubtful = verdict.verdict is Status.UNDECIDED
+        return cls(verdict, times, errors, attainable, is_doubtful, reason)
 
 
 def graded(judgement: Judgement, inputs: InputRounding, roundoff: float) -> list[Graded]:
@@ -68,8 +74,7 @@ def _graded(
         f"moves this by {moved[worst]:.2g}; "
         f"rounding: {verdict.because.split(_RULE)[-1]}"
     )
-    doubtful = verdict.verdict is Status.UNDECIDED
-    return Graded(verdict, times, np.array(gate.errors), both, doubtful, reason)
+    return Graded.of(verdict, times, np.array(gate.errors), both, reason)
 
 
 def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
@@ -105,53 +110,6 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
         ratio=finding.ratio,
         ratio_at=float(times[finding.ratio_at]),
     )
-
-
-def initial_verdict(gates: Sequence[Graded], start: float) -> Verdict | None:
-    """Whether the row at the start is the scene's initial state; None where there is no such row."""
-    found = []
-    for gate in gates:
-        if gate.verdict.quantity in STATES:
-            found += [(gate, int(k)) for k in np.flatnonzero(gate.times == start)[:1]]
-    if not found:
-        return None
-    ratios = [_ratio(gate.errors[k], gate.attainable[k]) for gate, k in found]
-    worst = index_of_largest(np.array(ratios))
-    gate, k = found[worst]
-    error, attainable = float(gate.errors[k]), float(gate.attainable[k])
-    passed = ratios[worst] <= FACTOR
-    said = (
-        f"the row at the start, t = {start:g}, is the scene's initial state"
-        if passed
-        else f"the row at the start, t = {start:g}, is not the scene's initial state: its "
-        f"{gate.verdict.quantity} is off by {error:.3g}, and everything after follows from it"
-    )
-    return replace(
-        gate.verdict,
-        quantity=INITIAL,
-        verdict=Status.PASS if passed else Status.FAIL,
-        max=error,
-        mean=error,
-        final=error,
-        at=start,
-        bound=FACTOR * attainable,
-        because=f"{said}; {FACTOR} x attainable, a rounding of the input and one of the row",
-        attainable=attainable,
-        ratio=float(ratios[worst]),
-        ratio_at=start,
-        time_shift=None,
-        residual=None,
-        shift=None,
-        trend=None,
-        remains=None,
-    )
-
-
-def _ratio(error: float, attainable: float) -> float:
-    """0 for no error, infinite where nothing is attainable but no error."""
-    if error == 0:
-        return 0.0
-    return error / attainable if attainable > 0 else float("inf")
 
 
 def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:

@@ -6,7 +6,18 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
+from typing import Any, Final
+
+# The quantities that say where the body is; all others compared are conserved.
+STATES: Final = ("omega", "impulse", "attitude", "centre")
+# Two rows that compare no quantity of their own: the start alone, and the extent of an answer.
+INITIAL: Final = "initial state"
+COMPLETE: Final = "complete"
+
+
+def is_conserved(quantity: str) -> bool:
+    """Whether a row of this name is that of a conserved quantity."""
+    return quantity not in (*STATES, INITIAL, COMPLETE)
 
 
 class Status(StrEnum):
@@ -65,6 +76,16 @@ class Verdict:
     seconds: float | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def is_conserved(self) -> bool:
+        """Whether the row is that of a conserved quantity."""
+        return is_conserved(self.quantity)
+
+    @property
+    def is_waived(self) -> bool:
+        """Whether the row says what an answer lacks to a caller who asked for a part of it."""
+        return self.quantity == COMPLETE and self.verdict is Status.VACUOUS
+
     def row(self) -> dict[str, Any]:
         """The row as JSON holds it: no NaN, no infinity. Its ``provenance`` is the verdict's own."""
         return {name: _json_number(value) for name, value in vars(self).items()}
@@ -82,9 +103,10 @@ def exit_status(verdicts: Iterable[Verdict]) -> int:
     """0 if nothing failed, 1 if a gate failed, 3 if nothing failed but something is undecided.
 
     A scene that the arithmetic had to refuse, or whose gate is vacuous, is no pass either: here both
-    count as undecided. Where such verdicts are expected, `verify.expected` knows of it.
+    count as undecided. Where such verdicts are expected, `verify.expected` knows of it. A part that
+    the caller has waived counts for nothing.
     """
-    found = {verdict.verdict for verdict in verdicts}
+    found = {verdict.verdict for verdict in verdicts if not verdict.is_waived}
     if Status.FAIL in found:
         return 1
     return 3 if found & {Status.UNDECIDED, Status.REFUSED, Status.VACUOUS} else 0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
-from verify.judge.verdict import Status
+from verify.judge.verdict import INITIAL, Status, is_conserved
 from verify.publish import sheets
 from verify.publish.cells import NOTHING, figure
 from verify.publish.data import versions
@@ -23,6 +23,7 @@ END: Final = "<!-- end of controls -->"
 _NOT_SEEN: Final = NOTHING
 # A heading and the quantities under it: of a body, one of them at most.
 _COLUMNS: Final = (
+    ("start", (INITIAL,)),
     ("state", MAIN),
     ("attitude", ("attitude",)),
     ("centre", ("centre",)),
@@ -46,6 +47,7 @@ _HOW: Final = (
     f"A {bold('bold')} number is a gate that *sees* the defect: the largest error over the bound of "
     f"that gate. {_NOT_SEEN} is a gate that does not: the defect passes. A gate sees no defect where "
     "its sound twin fails too.",
+    "*start* is the first sample alone, which every solver was given. "
     "*state* is omega, or the impulse, in body axes, and with *attitude* and *centre* it is what a "
     "comparison with the exact motion asks. All columns after these are conserved quantities: T the "
     "energy; H² and F² the squares of momentum and impulse, F·G and y3 the other two in body axes; "
@@ -213,7 +215,7 @@ def short(sights: Sequence[Sight]) -> str:
         [
             prose(sight.what),
             _summed(sight, lambda name: name == "T"),
-            _summed(sight, lambda name: name != "T" and name not in STATE_QUANTITIES),
+            _summed(sight, lambda name: name != "T" and is_conserved(name)),
             _summed(sight, lambda name: name in STATE_QUANTITIES),
         ]
         for sight in told

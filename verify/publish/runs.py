@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import STATES, Status, Verdict
 
-STATE_QUANTITIES = ("omega", "impulse", "attitude", "centre")
+STATE_QUANTITIES = STATES
 
 # The order of columns: energy, momenta in body axes, momenta in space. Others come after these.
 CONSERVED_QUANTITIES = (
@@ -54,7 +54,7 @@ class Run:
     @property
     def conserved(self) -> dict[str, Verdict]:
         """By quantity; empty for a run that was not compared with anything."""
-        return {v.quantity: v for v in self.verdicts if v.quantity not in STATE_QUANTITIES}
+        return {v.quantity: v for v in self.verdicts if v.is_conserved}
 
     @property
     def drifts(self) -> tuple[Verdict, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from verify.judge.verdict import Status, Verdict
+from verify.judge.verdict import Status, Verdict, is_conserved
 from verify.publish import data
 from verify.publish.replacement import replace_files
 from verify.publish.runs import STATE_QUANTITIES
@@ -48,7 +48,7 @@ class Sight:
 
     @property
     def conserved(self) -> tuple[str, ...]:
-        return tuple(name for name in self.quantities if name not in STATE_QUANTITIES)
+        return tuple(name for name in self.quantities if is_conserved(name))
 
     @property
     def state(self) -> tuple[str, ...]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import dataclass
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -12,6 +14,7 @@ LADDER = ("f32", "f64", "f80", "f128", "mp237")
 _LEAST_BITS = 24
 # The numbers of a verdict are doubles: errors of 2^-1000 still are, those of 2^-1075 are not.
 _MOST_BITS = 1000
+_USUAL_DIGITS = 15
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,22 @@ def exact_value(number: Any) -> Fraction:
     """
     numerator, denominator = number.as_integer_ratio()
     return Fraction(int(numerator), int(denominator))
+
+
+def shortest_decimal(value: Fraction, bits: int) -> str:
+    """The decimal of fewest digits that rounds to the same number of so many bits as a value does.
+
+    Numbers of usual size are written without an exponent.
+    """
+    wide = Rung("", bits)
+    asked = wide.round(value)
+    for digits in itertools.count(1):
+        context = Context(prec=digits, Emin=MIN_EMIN, Emax=MAX_EMAX)
+        found = context.divide(Decimal(asked.numerator), Decimal(asked.denominator))
+        if wide.round(Fraction(found)) == asked:
+            break
+    is_usual = -_USUAL_DIGITS <= found.adjusted() <= _USUAL_DIGITS
+    return format(found, "f") if is_usual else str(found).lower()
 
 
 def held_exactly(value: Fraction) -> Any:

@@ -26,7 +26,7 @@ from verify.scenes.precision import Rung
 from verify.solvers import process
 from verify.solvers.environment import Environment, NotMade, Tell, metadata
 from verify.solvers.options import options
-from verify.solvers.solver import Solver
+from verify.solvers.solver import Lack, Solver
 from verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "outside:"
@@ -117,7 +117,9 @@ def _prepare(entrant: Entrant, tell: Tell) -> Environment:
     try:
         environment.make(tell)
     except NotMade as reason:
-        _failed[environment.folder] = f"its environment could not be made: {reason}"
+        command = shlex.join(["pip", "install", *entrant.requirements])
+        sentence = f"its environment could not be made: {reason}; it takes: {command}"
+        _failed[environment.folder] = Lack(sentence, Outcome.NO_PACKAGE)
         raise
     _failed.pop(environment.folder, None)
     return environment
@@ -150,12 +152,13 @@ class Outside(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
-            return Trajectory(Outcome.NOT_STARTED, detail=reason)
+            outcome = reason.outcome if isinstance(reason, Lack) else Outcome.NOT_STARTED
+            return Trajectory(outcome, detail=str(reason))
         try:
             environment = _prepare(self.entrant, _log.warning)
-        except NotMade as reason:
-            detail = f"its environment could not be made: {reason}"
-            return Trajectory(Outcome.NOT_STARTED, detail=detail)
+        except NotMade:
+            # Remembered, so that it is the reason of what is unavailable from here on.
+            return self.solve(problem)
         command = shlex.join([*_interpreter(environment), *self._script_and_arguments()])
         return process.Process(f"{process.PREFIX}{command}", self.time_limit).solve(problem)
 

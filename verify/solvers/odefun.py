@@ -43,6 +43,7 @@ class Odefun(Solver):
     tol: Fraction | None = None
     degree: int | None = None
     setting: str = ""
+    counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
         if rung.name == "f64" or rung.emin is None:

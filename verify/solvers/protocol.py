@@ -54,7 +54,8 @@ The answer is one JSON object on standard output, and the exit status 0: a list 
     x1 x2 x3 y1 y2 y3    the impulses, body axes                 (kirchhoff)
     q0 q1 q2 q3          attitude, nearly unit, of either sign   (where tracked)
     c1 c2 c3             centre, space axes                      (where tracked)
-    steps                optional: the steps taken. The judge allows rounding its square root
+    steps                optional: the steps taken. The judge allows rounding its square root, and
+                         counts no more of them than are plausible (verify/judge/steps.py)
     evaluations          optional: the evaluations of the derivative
     seconds              optional: the propagation alone, by the program's own clock. Believed only if
                          the whole run, as it is measured from outside, took no less

@@ -21,13 +21,14 @@ import numpy as np
 from verify.models.problem import Problem
 from verify.scenes.precision import Rung, exact_value
 from verify.solvers.options import options
-from verify.solvers.solver import Solver
+from verify.solvers.solver import Lack, Solver
 from verify.solvers.straight_line import straight_line
 from verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
 PREFIX: Final = "scipy:"
 METHODS: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 
+_INSTALL: Final = "pip install 'taylor-verify[scipy]'"
 # What solve_ivp takes where nothing is said.
 _RTOL, _ATOL = "1e-3", "1e-6"
 # solve_ivp replaces a smaller one by this, and says so in a warning.
@@ -41,7 +42,11 @@ def unavailable(name: str, rung: Rung) -> str:
     if rung.name != "f64":
         return f"{name} is made in float64: f64 alone"
     if find_spec("scipy") is None:
-        return "SciPy is not installed: pip install 'taylor-verify[scipy]'"
+        return Lack(f"SciPy is not installed: {_INSTALL}", Outcome.NO_PACKAGE)
+    try:
+        import_module("scipy.integrate")
+    except ImportError as error:
+        return Lack(f"SciPy cannot be imported ({error}): {_INSTALL}", Outcome.NO_PACKAGE)
     return ""
 
 
@@ -55,6 +60,7 @@ class SciPy(Solver):
     rtol: float = float(_RTOL)
     atol: float = float(_ATOL)
     setting: str = ""
+    counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(self.name, rung)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from itertools import accumulate, pairwise
 from numbers import Rational
 from time import perf_counter
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 from mpmath import mp
@@ -21,21 +21,42 @@ from verify.solvers.trajectory import Outcome, Trajectory
 _RATIONAL_BITS = 4000
 
 
+class Lack(str):
+    """The reason why a solver cannot run, as a sentence, with its kind as an ``outcome``.
+
+    NO_PACKAGE: the sentence ends with the command that installs it. NO_FORMAT: the machine has no such
+    numbers. UNSUITED: the solver is not made for the question.
+    """
+
+    outcome: Outcome
+
+    def __new__(cls, sentence: str, outcome: Outcome) -> Lack:
+        lack = super().__new__(cls, sentence)
+        lack.outcome = outcome
+        return lack
+
+
 class Solver(ABC):
     """Something that answers a problem with a trajectory and never raises for a failed run.
 
     ``name`` is the word of the command line; ``setting`` tells two uses of one solver apart.
+    ``counts_steps`` tells the solvers whose steps are counted by code of this project. The steps that
+    anybody else claims are counted as far as the judge finds them plausible.
     """
 
     name: str
     setting: str = ""
+    counts_steps: ClassVar[bool] = False
 
     @abstractmethod
     def solve(self, problem: Problem) -> Trajectory:
         """The states at the problem's times, or the outcome that prevented them."""
 
     def unavailable(self, rung: Rung) -> str:
-        """Why this machine cannot run the solver on that rung; empty where it can."""
+        """Why this machine cannot run the solver on that rung; empty where it can.
+
+        A sentence that is no Lack says that the solver is not made for the rung.
+        """
         del rung
         return ""
 
@@ -43,6 +64,23 @@ class Solver(ABC):
         """Why the solver is not made for such a problem, known before it runs; empty where it is."""
         del problem
         return ""
+
+
+@final
+@dataclass(frozen=True)
+class Absent(Solver):
+    """A solver that cannot be loaded, because a package is missing."""
+
+    name: str
+    lack: Lack
+
+    def unavailable(self, rung: Rung) -> str:
+        del rung
+        return self.lack
+
+    def solve(self, problem: Problem) -> Trajectory:
+        del problem
+        return Trajectory(self.lack.outcome, detail=str(self.lack))
 
 
 @final

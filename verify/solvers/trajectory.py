@@ -34,9 +34,17 @@ class Outcome(Enum):
     MISSHAPEN = "answered with an array of the wrong shape"
     RAISED = "ended with an error"
     NOT_STARTED = "could not be started"
+    NO_PACKAGE = "not started: a package is missing"
+    NO_FORMAT = "not started: this machine lacks the number format"
+    UNSUITED = "not started: the solver does not run on it here"
     TIMED_OUT = "was stopped: the time limit was reached"
     CRASHED = "ended by a signal or with an exit status other than 0"
     MISANSWERED = "claimed success, but its answer is not what was asked for"
+
+    @property
+    def is_unavailable(self) -> bool:
+        """Whether nothing was run, by no fault of the solver."""
+        return self in (Outcome.NO_PACKAGE, Outcome.NO_FORMAT, Outcome.UNSUITED)
 
 
 class Postponed(Mapping[str, np.ndarray[Any, Any]]):

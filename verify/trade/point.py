@@ -88,7 +88,8 @@ def point(timed: Timed, accuracy: Accuracy | None) -> Point:
     """The point of a run; ``accuracy`` is None where there is no truth to compare with."""
     trajectory = timed.trajectory
     if trajectory.outcome is not Outcome.FINISHED:
-        started = trajectory.outcome is not Outcome.NOT_STARTED
+        outcome = trajectory.outcome
+        started = outcome is not Outcome.NOT_STARTED and not outcome.is_unavailable
         because = trajectory.detail or trajectory.outcome.value
         return Point(timed, Accuracy(), Standing.FAILED if started else Standing.NOT_RUN, because)
     if accuracy is None:

@@ -17,7 +17,7 @@ from verify.controls.traps.trap import Case, Gate
 from verify.exact.route import solution
 from verify.judge.gates import FACTOR
 from verify.judge.judgement import judgement
-from verify.judge.verdict import Verdict
+from verify.judge.verdict import INITIAL, Verdict
 from verify.models.problem import adopt
 from verify.run import run
 from verify.scenes import tensors
@@ -73,7 +73,7 @@ def _gate(verdict: Verdict) -> Gate:
 
 def driver_on(scene: Scene, rung: str = "f64") -> tuple[str, float | None]:
     """What the driver and the judge say of a scene, and its largest error."""
-    (verdict, *_) = run(scene, "taylor", rung).verdicts
+    verdict = next(v for v in run(scene, "taylor", rung).verdicts if v.quantity != INITIAL)
     said = f"{verdict.outcome}; state: {verdict.verdict.value}"
     return said, verdict.max
 

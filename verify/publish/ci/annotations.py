@@ -2,7 +2,7 @@
 
     ::error title=...::...     fail, and a regression
     ::warning title=...::...   undecided, vacuous, refused: the step is red by its exit status
-    ::notice title=...::...    unavailable
+    ::notice title=...::...    unavailable, and vacuous as --partial asks
 
 A scene that is a file is named, so that GitHub shows the line beside it. GitHub keeps the first ten
 lines of each level and step and drops the rest without a word, so the tenth counts the rest.
@@ -21,8 +21,8 @@ _LEVELS: Final = {
     Status.UNDECIDED: "warning",
     Status.VACUOUS: "warning",
     Status.REFUSED: "warning",
-    Status.UNAVAILABLE: "notice",
 }
+_HARMLESS: Final = "notice"
 _MOST: Final = 10
 
 
@@ -30,9 +30,13 @@ def annotation_lines(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()
     """The lines, errors first; none where every row is a pass."""
     shown = [case for case in cases(verdicts, remarks) if case.status is not Status.PASS]
     lines: list[str] = []
-    for level in dict.fromkeys(_LEVELS.values()):
-        lines += _of_level(level, [case for case in shown if _LEVELS[case.status] == level])
+    for level in (*dict.fromkeys(_LEVELS.values()), _HARMLESS):
+        lines += _of_level(level, [case for case in shown if _level(case) == level])
     return lines
+
+
+def _level(case: Case) -> str:
+    return _HARMLESS if case.is_harmless else _LEVELS[case.status]
 
 
 def _of_level(level: str, found: list[Case]) -> Iterator[str]:

@@ -1,7 +1,8 @@
 """A case: one row as a CI shows it, its verdict and what else is said of it taken together.
 
 A CI knows red and green, and the exit status has decided which: what is no pass, and not merely
-unavailable, is red here too, so that no table of test results is greener than the command.
+unavailable or waived by the caller, is red here too, so that no table of test results is greener than
+the command.
 """
 
 from __future__ import annotations
@@ -45,6 +46,12 @@ class Case:
     status: Status
     sentences: tuple[str, ...]
     verdict: Verdict | None
+
+    @property
+    def is_harmless(self) -> bool:
+        """Whether the row is no pass and yet leaves the exit status as it is."""
+        is_waived = self.verdict is not None and self.verdict.is_waived
+        return self.status is Status.UNAVAILABLE or (is_waived and self.status is Status.VACUOUS)
 
     @property
     def title(self) -> str:

@@ -83,6 +83,7 @@ class FixedStep(Solver):
     step: Fraction
     name: str
     setting: str = ""
+    counts_steps = True
 
     takes_moment: ClassVar[bool] = False
     in_principal_axes: ClassVar[bool] = False

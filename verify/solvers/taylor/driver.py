@@ -76,6 +76,7 @@ class Taylor(Solver):
     name: str = "taylor"
     setting: str = ""
     tolerance: Fraction | None = None
+    counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
         if self.tolerance is not None and not rung.round(self.tolerance) > 0:

@@ -19,6 +19,8 @@ from mpmath import libmp
 
 from verify.models.times import BinaryTimes, TypedTimes
 from verify.scenes.precision import Rung, exact_value, power_of_two
+from verify.solvers.solver import Lack
+from verify.solvers.trajectory import Outcome
 
 # hy.real(int) passes through a decimal string, which Python limits to 4300 digits.
 _LARGEST_INTEGER_BITS = 14000
@@ -99,13 +101,14 @@ def arithmetic(rung: Rung) -> Arithmetic:
 
 def unavailable(rung: Rung) -> str:
     """Why heyoka has no such number type on this machine; empty where it has."""
+    reason = ""
     if rung.name == "f80" and np.finfo(np.longdouble).nmant != 63:
-        return "the long double of this processor is not the 80-bit x87 format"
+        reason = "the long double of this processor is not the 80-bit x87 format"
     if rung.name == "f128" and not hasattr(hy, "real128"):
-        return "this build of heyoka has no float128"
+        reason = "this build of heyoka has no float128"
     if rung.name.startswith("mp") and not hasattr(hy, "real"):
-        return "this build of heyoka has no MPFR numbers"
-    return ""
+        reason = "this build of heyoka has no MPFR numbers"
+    return Lack(reason, Outcome.NO_FORMAT) if reason else ""
 
 
 def _longdouble(value: Fraction) -> Any:

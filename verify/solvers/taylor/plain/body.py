@@ -83,6 +83,7 @@ class Plain(Solver):
     name: str = "plain heyoka"
     setting: str = ""
     typed: bool = False
+    counts_steps = True
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(rung)
