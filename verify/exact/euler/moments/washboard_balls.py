@@ -149,23 +149,35 @@ class Turn:
 
     def _time(self, y: arb) -> arb:
         """t at an exact y >= 0, from the nearest place that is known."""
+        self._cross_teeth(y)
         k = bisect_left(self._places, y)
         if k < len(self._places) and self._places[k] == y:
             return self._times[k]
         beside = range(max(k - 1, 0), min(k + 1, len(self._places)))
         nearest = min(beside, key=lambda j: abs(self._places[j] - y))
-        way = acb.integral(
-            self._integrand,
-            acb(self._places[nearest]),
-            acb(y),
-            eval_limit=_EVALUATIONS_PER_BIT * ctx.prec,
-        ).real
+        time = self._times[nearest] + self._way(self._places[nearest], y)
+        self._places.insert(k, y)
+        self._times.insert(k, time)
+        return time
+
+    def _cross_teeth(self, y: arb) -> None:
+        """Sum the time tooth by tooth from the furthest known place to the tooth of y.
+
+        An adaptive integral over many teeth at once would halve its interval without an end.
+        """
+        while self._has_teeth and y * y > (last := self._places[-1]) * last + self._tooth:
+            stop = (last * last + self._tooth).sqrt().mid()
+            self._times.append(self._times[-1] + self._way(last, stop))
+            self._places.append(stop)
+
+    def _way(self, start: arb, stop: arb) -> arb:
+        """The time from one exact place to another, which are at most a few teeth apart."""
+        limit = _EVALUATIONS_PER_BIT * ctx.prec
+        way = acb.integral(self._integrand, acb(start), acb(stop), eval_limit=limit).real
         # Written so that what is not finite is not narrow.
         if not way.rad() <= abs(way) * arb(2) ** (-ctx.prec // 2):
             raise Undecidable
-        self._places.insert(k, y)
-        self._times.insert(k, self._times[nearest] + way)
-        return self._times[k]
+        return way
 
     def _root(self, y: arb) -> arb:
         """g^(1/2), which is positive."""
