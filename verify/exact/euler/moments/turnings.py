@@ -25,6 +25,10 @@ from verify.exact.solution import NoClosedForm
 
 # Each factor of ten takes a digit of the place on a tooth, and what is lost is computed in addition.
 MOST_TEETH: Final = 10**40
+TOO_MANY_TEETH: Final = (
+    f"the time asked for lies more than {MOST_TEETH:.0e} teeth of the washboard after the turning "
+    "point, and each factor of ten takes a digit of the place on a tooth"
+)
 _FIRST_BITS: Final = 128
 _MOST_BITS: Final = 8192
 _DOUBLINGS: Final = 1100

@@ -22,7 +22,7 @@ from typing import Final, final
 from flint import acb, arb, ctx
 
 from verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
-from verify.exact.euler.moments.turnings import MOST_TEETH, regime, turnings
+from verify.exact.euler.moments.turnings import MOST_TEETH, TOO_MANY_TEETH, regime, turnings
 from verify.exact.euler.moments.washboard import Washboard
 from verify.exact.euler.moments.washboard_speed import Speed, Swinging, speed
 from verify.exact.euler.moments.washboard_teeth import FarTeeth
@@ -139,10 +139,7 @@ class Turn:
     def _further(self, y: arb) -> arb:
         """How far beyond the furthest known place to look: twice as far."""
         if y * y * self._rate > MOST_TEETH * arb.pi():
-            raise Unsettled(
-                f"the time asked for lies more than {MOST_TEETH:.0e} teeth of the washboard after the "
-                "turning point, and each factor of ten takes a digit of every tooth"
-            )
+            raise Unsettled(TOO_MANY_TEETH)
         return (2 * y + 1 / self._rate.sqrt()).mid()
 
     def _time(self, y: arb) -> arb:

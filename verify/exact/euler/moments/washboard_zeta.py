@@ -18,6 +18,7 @@ from typing import Final, final
 
 from mpmath import mp, mpf
 
+from verify.exact.euler.moments.turnings import MOST_TEETH, TOO_MANY_TEETH
 from verify.exact.euler.moments.washboard_panels import Panels
 from verify.exact.solution import Unsettled
 
@@ -61,6 +62,8 @@ class ZetaTeeth:
         # The time of n teeth of which each is level: 2 ((a + n)^(1/2) - a^(1/2)).
         level, scaled = self._squared(mpf(0)) / self._rise, t * mp.sqrt(self._rise) / self._width
         n = scaled * mp.sqrt(level) + scaled**2 / 4
+        if n > MOST_TEETH:
+            raise Unsettled(TOO_MANY_TEETH)
         with mp.workdps(min(mp.dps, int(mp.log10(1 + n)) + _COUNTING_DIGITS)):
             for _ in range(_MOST_STEPS):
                 step = (t - self._crossed(n)) / self._slowness(n)
