@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 
 from verify.exact.elements import elements
 from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM, Unsettled
+from verify.exact.solution import NO_CLOSED_FORM
 from verify.scenes.bodies import ImmersedBody
 from verify.scenes.library import EXTREMES, WORST, names
 from verify.scenes.motion import Motion
@@ -56,9 +56,6 @@ def missed(scene: Scene, span: Fraction) -> mpf:
         return mp.norm(list(end - start)) / scale if scale else mp.norm(list(end))
 
 
-# It has no period, and an integral for each tooth that it runs over: far out it is undecided, and says so.
-BY_STEPS = {"euler/washboard-run"}
-
 # Two vectors of 40 digits; for each, what its length and its component may be off by.
 RETURNS = 4 * mpf(10) ** -DIGITS
 
@@ -68,10 +65,7 @@ def test_a_billion_periods_keep_forty_digits(name: str) -> None:
     """Every shipped closed form, all that it tracks; 1e9 units of time where there is no period."""
     scene = load(name)
     exact, once = solution(scene), period(scene)
-    if name in BY_STEPS:
-        with pytest.raises(Unsettled, match=r"more than \d+ teeth"):
-            exact.motion([Fraction(PERIODS)], DIGITS)
-    elif once is not None:
+    if once is not None:
         assert missed(scene, PERIODS * once) <= RETURNS
     else:
         motion = exact.motion([Fraction(PERIODS), -Fraction(PERIODS)], DIGITS)

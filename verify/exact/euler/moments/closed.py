@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from verify.exact.euler.moments.washboard import (
-    Washboard,
-    WashboardRegime,
-    is_triaxial,
-    washboard,
-)
+from verify.exact.euler.moments.washboard import Washboard, is_triaxial, washboard
 from verify.exact.solution import NoClosedForm, Solution
 from verify.scenes.motion import Quaternion
 from verify.scenes.scene import Scene
@@ -24,7 +19,7 @@ def enclosed(scene: Scene) -> Solution:
         from verify.exact.euler.moments.fixed_axis import FixedAxisBalls
 
         return FixedAxisBalls(board, _attitude(scene))
-    _refuse_what_has_none(scene, board)
+    _refuse_what_has_none(scene)
     from verify.exact.euler.moments.washboard_balls import WashboardBalls
 
     return WashboardBalls(board)
@@ -41,7 +36,7 @@ def closed_form(scene: Scene) -> Solution:
         from verify.exact.euler.moments.fixed_axis import FixedAxis
 
         return FixedAxis(board, _attitude(scene))
-    _refuse_what_has_none(scene, board)
+    _refuse_what_has_none(scene)
     from verify.exact.euler.moments.washboard_chebyshev import WashboardMotion
 
     return WashboardMotion(board)
@@ -56,17 +51,9 @@ def _attitude(scene: Scene) -> Quaternion | None:
     return scene.initial.attitude if "attitude" in scene.track else None
 
 
-def _refuse_what_has_none(scene: Scene, board: Washboard) -> None:
-    """Raise NoClosedForm for an attitude, and for a run too long to be followed tooth by tooth."""
-    from verify.exact.euler.moments.turnings import is_within_reach, regime
-
+def _refuse_what_has_none(scene: Scene) -> None:
+    """Raise NoClosedForm for an attitude."""
     if "attitude" in scene.track:
         raise NoClosedForm(
             "the attitude of a body with three different moments of inertia under a moment"
-        )
-    longest = scene.clock.instants[-1] - scene.clock.start
-    if regime(board) is WashboardRegime.RUN and not is_within_reach(board, longest):
-        raise NoClosedForm(
-            "the run passes too many teeth of the washboard in the time of the scene, and each takes an "
-            "integral"
         )

@@ -14,19 +14,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Final
 
 from flint import arb, ctx
 
-from verify.exact.balls import Undecidable, ball
+from verify.exact.balls import Undecidable
 from verify.exact.euler.moments.washboard import Washboard, WashboardRegime
 from verify.exact.euler.moments.washboard_speed import Growing, Speed, Swinging, speed
 from verify.exact.solution import NoClosedForm
 
-# A time is an integral over every tooth of the washboard between a turning point and the place asked
-# for, and each takes milliseconds.
-_MOST_TEETH: Final = 256
+# Each factor of ten takes a digit of the place on a tooth, and what is lost is computed in addition.
+MOST_TEETH: Final = 10**40
+# So far from its turn a body turns so much faster than the moment slows it that the first teeth are narrow
+# gaps in deep walls: at 1e15 they take ten seconds, and at 1e30 more than a minute.
+_MOST_BEFORE: Final = 10**20
+TOO_MANY_TEETH: Final = (
+    f"the time asked for lies more than {MOST_TEETH:.0e} teeth of the washboard after the turning "
+    "point, and each factor of ten takes a digit of the place on a tooth"
+)
 _FIRST_BITS: Final = 128
 _MOST_BITS: Final = 8192
 _DOUBLINGS: Final = 1100
@@ -63,21 +68,6 @@ def located(board: Washboard) -> Turnings:
         except Undecidable:
             bits *= 2
     raise NoClosedForm("the start is too near to a separatrix")
-
-
-def is_within_reach(board: Washboard, longest: Fraction) -> bool:
-    """Whether a run surely passes few enough teeth in this time, forward or backward, to be followed.
-
-    With r the amplitude of what swings in F, nu^2 <= A + slope sigma for A = nu0^2 + P + r, so that
-    sigma <= A^(1/2) t + slope t^2/4. What grows (kappa > 0) has no teeth.
-    """
-    if board.kappa > 0:
-        return True
-    with ctx.workprec(_FIRST_BITS):
-        F, t = Swinging(board), ball(abs(longest))
-        most = F.squared(arb(0)) + F.even + _swing(F) / (2 * F.rate)
-        sigma = most.nonnegative_part().sqrt() * t + F.slope * t * t / 4
-        return bool(sigma * F.rate < _MOST_TEETH * arb.pi())
 
 
 def turnings(board: Washboard) -> Turnings:
@@ -135,9 +125,11 @@ def _of_steep(F: Swinging) -> Turnings:
     if not board.nu:
         return Turnings(arb(0), None)
     amplitude = _swing(F) / (2 * F.rate)
-    reach = (F.squared(arb(0)) + 4 * amplitude + F.slope / F.rate) / F.slope
+    start, most = F.squared(arb(0)), 4 * amplitude
+    reach = (start + most + F.slope / F.rate) / F.slope
     _counted(reach * F.rate / arb.pi())
-    return Turnings(_root(F, arb(0), -reach.mid()), None)
+    before = ((start - most) / F.slope).max(arb(0))
+    return Turnings(_root(F, -before.mid(), -reach.mid()), None)
 
 
 def _of_teeth(F: Swinging) -> Turnings:
@@ -195,10 +187,10 @@ def _first(minimum: Callable[[int], arb]) -> int:
 
 def _counted(teeth: arb) -> int:
     """The whole part; raises NoClosedForm beyond what is computed."""
-    if not teeth < _MOST_TEETH:
-        if teeth > _MOST_TEETH - 1:
+    if not teeth < _MOST_BEFORE:
+        if teeth > _MOST_BEFORE - 1:
             raise NoClosedForm(
-                f"more than {_MOST_TEETH} teeth of the washboard lie between the start and the "
+                f"more than {_MOST_BEFORE:.0e} teeth of the washboard lie between the start and the "
                 "turning point: the moment is too weak"
             )
         raise Undecidable

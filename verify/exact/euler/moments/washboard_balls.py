@@ -22,16 +22,14 @@ from typing import Final, final
 from flint import acb, arb, ctx
 
 from verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
-from verify.exact.euler.moments.turnings import regime, turnings
+from verify.exact.euler.moments.turnings import MOST_TEETH, TOO_MANY_TEETH, regime, turnings
 from verify.exact.euler.moments.washboard import Washboard
 from verify.exact.euler.moments.washboard_speed import Speed, Swinging, speed
+from verify.exact.euler.moments.washboard_teeth import FarTeeth
 from verify.exact.solution import Unsettled
 
 _PRECISION_STEP: Final = 32
 _STEPS_PER_BIT: Final = 4
-# Each takes some ten milliseconds.
-_MOST_TEETH: Final = 512
-_TEETH_AHEAD: Final = 8
 # An integral over a tooth takes ten, one past a crest that is all but a double root a hundred. Where the
 # precision does not resolve the crest, no number of evaluations would.
 _EVALUATIONS_PER_BIT: Final = 200
@@ -66,8 +64,10 @@ class Turn:
 
     def __init__(self, speed: Speed, end: arb, side: int) -> None:
         self._end, self.side = end, side
-        self._quotient, self._unit = speed.quotient(end), 1 / speed.rate.sqrt()
-        self._has_teeth, self._tooth = isinstance(speed, Swinging), arb.pi() / speed.rate
+        self._quotient, self._rate = speed.quotient(end), speed.rate
+        self._teeth = FarTeeth(speed) if isinstance(speed, Swinging) else None
+        # The time at any place beyond the first teeth is this less the level there.
+        self._level: arb | None = None
         # Exact places, sorted, and the times at which the bead is there; it is at 0 at the turn.
         self._places, self._times = [arb(0)], [arb(0)]
 
@@ -137,35 +137,55 @@ class Turn:
         raise Undecidable
 
     def _further(self, y: arb) -> arb:
-        """How far beyond the furthest known place to look: over a few teeth more, or twice as far."""
-        if not self._has_teeth:
-            return (2 * y + self._unit).mid()
-        if y * y > _MOST_TEETH * self._tooth:
-            raise Unsettled(
-                f"the time asked for lies more than {_MOST_TEETH} teeth of the washboard after the turning "
-                "point, and each takes an integral"
-            )
-        return (y * y + _TEETH_AHEAD * self._tooth).sqrt().mid()
+        """How far beyond the furthest known place to look: twice as far."""
+        if y * y * self._rate > MOST_TEETH * arb.pi():
+            raise Unsettled(TOO_MANY_TEETH)
+        return (2 * y + 1 / self._rate.sqrt()).mid()
 
     def _time(self, y: arb) -> arb:
-        """t at an exact y >= 0, from the nearest place that is known."""
+        """t at an exact y >= 0, from the nearest known place or, where that is far, over all teeth."""
+        self._cross_teeth(y)
         k = bisect_left(self._places, y)
         if k < len(self._places) and self._places[k] == y:
             return self._times[k]
         beside = range(max(k - 1, 0), min(k + 1, len(self._places)))
         nearest = min(beside, key=lambda j: abs(self._places[j] - y))
-        way = acb.integral(
-            self._integrand,
-            acb(self._places[nearest]),
-            acb(y),
-            eval_limit=_EVALUATIONS_PER_BIT * ctx.prec,
-        ).real
+        if (
+            self._teeth is None
+            or self._level is None
+            or abs(y * y - self._places[nearest] ** 2) < 2 * self._teeth.width
+        ):
+            time = self._times[nearest] + self._way(self._places[nearest], y)
+        else:
+            time = self._level - self._teeth.level(self.sigma(y))
+        self._places.insert(k, y)
+        self._times.insert(k, time)
+        return time
+
+    def _cross_teeth(self, y: arb) -> None:
+        """Sum the time tooth by tooth from the turn to y, or to where the teeth are summed all at once.
+
+        An adaptive integral over many teeth would halve its interval without an end.
+        """
+        while self._teeth is not None and self._level is None:
+            last = self._places[-1]
+            if last * last >= self._teeth.first * self._teeth.width:
+                self._level = self._times[-1] + self._teeth.level(self.sigma(last))
+            elif y * y > last * last + self._teeth.width:
+                stop = (last * last + self._teeth.width).sqrt().mid()
+                self._times.append(self._times[-1] + self._way(last, stop))
+                self._places.append(stop)
+            else:
+                break
+
+    def _way(self, start: arb, stop: arb) -> arb:
+        """The time from one exact place to another, which are at most a few teeth apart."""
+        limit = _EVALUATIONS_PER_BIT * ctx.prec
+        way = acb.integral(self._integrand, acb(start), acb(stop), eval_limit=limit).real
         # Written so that what is not finite is not narrow.
         if not way.rad() <= abs(way) * arb(2) ** (-ctx.prec // 2):
             raise Undecidable
-        self._places.insert(k, y)
-        self._times.insert(k, self._times[nearest] + way)
-        return self._times[k]
+        return way
 
     def _root(self, y: arb) -> arb:
         """g^(1/2), which is positive."""

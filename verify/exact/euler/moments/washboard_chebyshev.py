@@ -24,6 +24,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Final, final
 
 import numpy as np
@@ -33,12 +34,16 @@ from verify.exact.balls import midpoint
 from verify.exact.euler.moments.turnings import Turnings, located, regime
 from verify.exact.euler.moments.washboard import Washboard
 from verify.exact.euler.moments.washboard_panels import Panels
+from verify.exact.euler.moments.washboard_zeta import ZetaTeeth
 from verify.exact.euler.orbit import converted
 from verify.exact.solution import Quantities, Settled
-from verify.scenes.precision import floor_log2
+from verify.scenes.precision import exact_value, floor_log2
 
 _OWN_GUARD_DIGITS: Final = 14
 _POLISHINGS: Final = 40
+_SPARE_BITS: Final = 8
+# After so many teeth from the turn the others are summed all at once.
+_FIRST_TEETH: Final = 4
 
 
 @final
@@ -55,7 +60,7 @@ class WashboardMotion(Settled):
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """``omega`` (n, 3), to about ``digits`` significant digits."""
         longest = max((abs(t) for t in elapsed), default=Fraction(0))
-        lost = math.ceil(_phase_digits(self._board, longest))
+        lost = math.ceil(_phase_digits(self._board, self._turnings, longest))
         with mp.workdps(digits + _OWN_GUARD_DIGITS + lost):
             motion = course(self._board, self._turnings)
             rows = [motion.omega(mp.convert(t)) for t in elapsed]
@@ -64,9 +69,10 @@ class WashboardMotion(Settled):
             return {"omega": +found}
 
 
-def _phase_digits(board: Washboard, longest: Fraction) -> float:
-    """The decimal digits before the point of the phase Omega sigma that could be reached in this time."""
-    furthest = (abs(board.nu) + abs(board.slope) * longest) * longest
+def _phase_digits(board: Washboard, ends: Turnings, longest: Fraction) -> float:
+    """The decimal digits before the point of the phase Omega sigma at the turn or in this time."""
+    turn = exact_value(midpoint(ends.lower))
+    furthest = (abs(board.nu) + abs(board.slope) * longest) * longest + abs(turn)
     squared = 1 + abs(board.kappa) * furthest**2
     return (floor_log2(squared) + 1) * math.log10(2) / 2
 
@@ -214,32 +220,73 @@ class Swing(Course):
 
 @final
 class Run(Course):
-    """Down to one end and up for ever."""
+    """Down to one end and up for ever; ``wave`` and ``lower`` have so many ``spare_bits``."""
 
-    def __init__(self, board: Washboard, wave: Wave, lower: mpf) -> None:
+    def __init__(self, board: Washboard, wave: Wave, lower: mpf, spare_bits: int) -> None:
         super().__init__(board, wave)
-        self._lower = lower
+        self._lower, self._spare_bits = lower, spare_bits
         self._places = Panels(lambda y: 2 / self._root(y), 1 / mp.sqrt(wave.rate))
-        since = self._places.at(mp.sqrt(abs(lower)))
+        self._teeth: ZetaTeeth | None = None
+        if isinstance(wave, _Cosine):
+            width = mp.pi / wave.rate
+            first = lower + _FIRST_TEETH * width
+            self._teeth = ZetaTeeth(self._squared, first, width, wave.slope)
+        since = self._time(mpf(0))
         self._lead = since if board.nu >= 0 else -since
 
+    @cached_property
+    def _first(self) -> mpf:
+        """The time from the turn to where the teeth are summed all at once."""
+        assert self._teeth is not None
+        return self._places.at(mp.sqrt(self._teeth.start - self._lower))
+
+    def _time(self, sigma: mpf) -> mpf:
+        """The time from the turn to a place."""
+        if self._teeth is None or sigma <= self._teeth.start:
+            return self._places.at(mp.sqrt(abs(sigma - self._lower)))
+        return self._first + self._teeth.time(sigma)
+
     def _swept(self, since: mpf) -> tuple[mpf, mpf]:
-        y = self._places.inverse(abs(since))
-        nu = y * self._root(y)
-        return self._lower + y * y, nu if since >= 0 else -nu
+        t = abs(since)
+        if self._teeth is not None and t > self._first:
+            sigma, nu = self._teeth.place(t - self._first)
+        else:
+            y = self._places.inverse(t)
+            sigma, nu = self._lower + y * y, y * self._root(y)
+        return sigma, nu if since >= 0 else -nu
 
     def _root(self, y: mpf) -> mpf:
         """G^(1/2)."""
-        return mp.sqrt(self.wave.quotient(self._lower, y * y))
+        with mp.extraprec(self._spare_bits):
+            quotient = self.wave.quotient(self._lower, y * y)
+        return mp.sqrt(quotient)
+
+    def _squared(self, start: mpf, x: mpf) -> mpf:
+        """F at start + x."""
+        with mp.extraprec(self._spare_bits):
+            squared = self.wave.squared(start + x)
+        return +squared
 
 
 def course(board: Washboard, ends: Turnings) -> Swing | Run:
     """The motion between these ends, at the ambient precision of mpmath."""
-    wave = _Cosine(board) if board.kappa < 0 else _Exponential(board)
-    lower = _end(wave, board, midpoint(ends.lower))
+    spare_bits = _spare_bits(board, ends) if ends.upper is None and board.kappa < 0 else 0
+    with mp.extraprec(spare_bits):
+        wave = _Cosine(board) if board.kappa < 0 else _Exponential(board)
+        lower = _end(wave, board, midpoint(ends.lower))
     if ends.upper is None:
-        return Run(board, wave, lower)
+        return Run(board, wave, lower, spare_bits)
     return Swing(board, wave, lower, _end(wave, board, midpoint(ends.upper)))
+
+
+def _spare_bits(board: Washboard, ends: Turnings) -> int:
+    """What F loses on the crests, where it is as small as it grows by on a tooth: its terms are not."""
+    turn = abs(exact_value(midpoint(ends.lower)))
+    terms = board.nu**2 + board.slope * turn + abs(board.even) + abs(board.odd)
+    phase = abs(board.kappa) * turn**2
+    rise = board.slope**2 / abs(board.kappa)
+    lost = floor_log2(1 + phase) + floor_log2(1 + terms**2 / rise)
+    return lost // 2 + _SPARE_BITS
 
 
 def _end(wave: Wave, board: Washboard, near: mpf) -> mpf:

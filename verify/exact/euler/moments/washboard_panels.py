@@ -24,7 +24,7 @@ _MOST_TRIES: Final = 400
 # Of the width at which the last coefficients should just be small enough.
 _MARGIN: Final = 0.9
 _LEAST_CHANGE: Final = 0.8
-_MOST_PANELS: Final = 4000
+_MOST_PANELS: Final = 2000
 _NEWTON_STEPS: Final = 60
 
 

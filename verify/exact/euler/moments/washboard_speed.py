@@ -65,17 +65,25 @@ class Speed(ABC):
     def quotient(self, end: arb) -> Quotient:
         """F(end + z)/z as a function of a complex z, entire, where F(end) = 0."""
         difference, away = self._quotient(end), _AWAY / self.rate
-        wide = arb(2) ** (_NODE_BITS - ctx.prec) / self.rate
 
         def of(z: acb) -> acb:
-            if not (z.abs_lower() > away and z.rad() > wide):
+            if not (z.abs_lower() > away and self.is_wide(z)):
                 return difference(z)
             middle = z.mid()
-            sigma, d = end + middle, z - middle
-            found = self.squared(sigma) + self.derivative(sigma) * d
-            return (found + self.bend(end + z) * d * d / 2) / z
+            return self.spread(end + middle, z - middle) / z
 
         return of
+
+    @final
+    def is_wide(self, z: acb) -> bool:
+        """Whether a ball of sigma is wider than a node of a quadrature."""
+        return bool(z.rad() > arb(2) ** (_NODE_BITS - ctx.prec) / self.rate)
+
+    @final
+    def spread(self, middle: acb, d: acb) -> acb:
+        """F(middle + d) for a wide d, by Taylor's formula: what is small by its second order stays so."""
+        found = self.squared(middle) + self.derivative(middle) * d
+        return found + self.bend(middle + d) * d * d / 2
 
     @abstractmethod
     def _quotient(self, end: arb) -> Quotient:
