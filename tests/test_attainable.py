@@ -121,7 +121,7 @@ def test_what_cancels_in_the_data_alone_is_known() -> None:
 
 @pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
 def test_one_error_is_carried_as_the_exact_motion_carries_it(asked: Scene) -> None:
-    """A component moved by 10^-20 on the way, and the rest of the way by the Taylor recursion."""
+    """A component moved by 10^-20 on the way, and the rest of the way by the Taylor route."""
     orbit = path(asked)
     # Of the times some tenth of the span from the start, and the last.
     place, end = 7, len(orbit.elapsed) - 1

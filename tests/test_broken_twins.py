@@ -1,6 +1,6 @@
 """Faults put into the closed forms on purpose, one kind after the other, and by what each is seen.
 
-The witness is the Taylor recursion, which knows nothing but the equations of motion. Both routes are
+The witness is the Taylor route, which knows nothing but the equations of motion. Both routes are
 broken alike wherever they decide a thing in common: two wrong routes would agree with each other.
 """
 

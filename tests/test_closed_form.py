@@ -59,7 +59,7 @@ def error(scene: Scene) -> float:
 
 
 def independent_error(problem: Problem) -> float:
-    """Against the Taylor recursion, which knows no elliptic function."""
+    """Against the Taylor route, which knows no elliptic function."""
     found = solver_named(NAME).solve(problem)
     assert found.outcome is Outcome.FINISHED, found.detail
     truth = TaylorSolution(problem.given).motion(problem.given.clock.elapsed, 20)

@@ -1,4 +1,4 @@
-"""The elements of an orbit against the motion by Taylor recursion, and the linearised equations."""
+"""The elements of an orbit against the motion by Taylor series, and the linearised equations."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def number(scene: Scene, name: str, digits: int = DIGITS) -> mpf:
 
 
 def moved(scene: Scene, quantity: str, *times: mpf) -> list[Any]:
-    """The quantity by Taylor recursion at these times since the start."""
+    """The quantity by Taylor series at these times since the start."""
     alone = replace(scene, track=scene.track & {"attitude"})
     return list(TaylorSolution(alone).motion([exact_value(t) for t in times], DIGITS)[quantity])
 

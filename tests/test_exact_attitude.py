@@ -63,7 +63,7 @@ def scene(name: str) -> Scene:
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_attitude_agrees_with_taylor(name: str) -> None:
-    """The closed form and the Taylor recursion, which share no formula, agree to 35 digits."""
+    """The closed form and the Taylor route, which share no formula, agree to 35 digits."""
     times = [Fraction(0), Fraction(7, 3), Fraction(-5, 2), Fraction(31)]
     closed = closed_form(scene(name)).motion(times, 38)["attitude"]
     series = TaylorSolution(scene(name)).motion(times, 38)["attitude"]

@@ -303,7 +303,7 @@ def test_any_body_agrees_with_mpmath(spin: FreeSpin, t: Fraction) -> None:
 
 @pytest.mark.parametrize("name", SPINS)
 def test_agrees_with_taylor(name: str) -> None:
-    """The Taylor recursion, which knows no elliptic function, finds the same motion."""
+    """The Taylor route, which knows no elliptic function, finds the same motion."""
     at = times("7/3", "-5/2", 11)
     found = enclosed(scene(SPINS[name])).motion(at, 40)
     assert overlap(found, TaylorSolution(scene(SPINS[name])).motion(at, 40))

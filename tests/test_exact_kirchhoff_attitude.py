@@ -176,7 +176,7 @@ def crossing(w: Array) -> Array:
 
 @by_motion
 def test_agrees_with_the_taylor_route(name: str) -> None:
-    """Attitude and centre are those of the Taylor recursion, both ways in time."""
+    """Attitude and centre are those of the Taylor route, both ways in time."""
     asked = scene(name)
     assert closed_form(asked).regime == MOTIONS[name][2]
     assert off_taylor(asked, [Fraction(3, 2), Fraction(-5, 2)]) <= AGREEMENT

@@ -204,7 +204,7 @@ BOTH_WAYS = exact("3/2", 4, "-7/3", 0, "1/1000000007")
 
 @by_case
 def test_agrees_with_taylor(solid: Clebsch, start: State, kind: str) -> None:
-    """Impulses, attitude and centre are those of the Taylor recursion, both ways in time."""
+    """Impulses, attitude and centre are those of the Taylor route, both ways in time."""
     problem = scene(solid, start)
     assert enclosed(problem).regime == kind
     assert agrees_with_taylor(problem, BOTH_WAYS)

@@ -1,4 +1,4 @@
-"""Closed forms under a constant moment: against the Taylor recursion, and put into the equations.
+"""Closed forms under a constant moment: against the Taylor route, and put into the equations.
 
 Legend as in verify.exact.euler.moments.regime.
 """
@@ -341,7 +341,7 @@ def test_nearly_across_is_nearly_the_transverse_motion() -> None:
     ],
 )
 def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> None:
-    """Both routes refuse, and the Taylor recursion takes over under the word for it."""
+    """Both routes refuse, and the Taylor route takes over under the word for it."""
     for route in ROUTES:
         with pytest.raises(NoClosedForm, match=what):
             solution(scene, route)

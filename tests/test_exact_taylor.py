@@ -1,4 +1,4 @@
-"""The Taylor recursion solves the equations of both texts, loads and all, to any digits."""
+"""The Taylor route solves the equations of both texts, loads and all, to any digits."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def test_the_comment_and_the_text_are_those_of_the_file() -> None:
 
 @pytest.mark.parametrize("scene", FRESH)
 def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
-    """Every number is within half a unit of its ninth digit of what the Taylor recursion finds."""
+    """Every number is within half a unit of its ninth digit of what the Taylor route finds."""
     asked, course = load(scene), made(scene)["course"]
     rows = range(0, INTERVALS + 1, 45)
     elapsed = [Fraction(repr(course["t"][k])) - asked.clock.start for k in rows]

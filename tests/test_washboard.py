@@ -1,4 +1,4 @@
-"""A triaxial body under a constant moment, in closed form: against the Taylor recursion and the equations.
+"""A triaxial body under a constant moment, in closed form: against the Taylor route and the equations.
 
 Legend as in verify.exact.euler.moments.washboard.
 """
@@ -487,7 +487,7 @@ def test_the_condition_comes_from_variational_equations(monkeypatch: pytest.Monk
     ],
 )
 def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> None:
-    """Both routes refuse, and the Taylor recursion takes over under the word for it."""
+    """Both routes refuse, and the Taylor route takes over under the word for it."""
     for route in ROUTES:
         with pytest.raises(NoClosedForm, match=what):
             solution(scene, route)

@@ -149,7 +149,7 @@ def test_teeth_that_all_but_stop_the_body_are_summed_too() -> None:
 
 
 def test_a_start_too_many_teeth_from_its_turn_has_no_closed_form() -> None:
-    """1e22 teeth are refused in words, and the Taylor recursion takes over."""
+    """1e22 teeth are refused in words, and the Taylor route takes over."""
     weak = axial(2, "1e-22", vector("1/2", "3/5", -3))
     for route in ROUTES:
         with pytest.raises(NoClosedForm, match=r"more than 1e\+20 teeth of the washboard"):
