@@ -75,7 +75,7 @@ def plain(lines: Iterable[str]) -> Iterator[str]:
 
 
 def function_of(name: str, thing: Any) -> Any:
-    """The function that a callable module, such as verify.exact, is called as; any other as it is."""
+    """The function that a callable module, such as taylor_verify.exact, is called as; any other as it is."""
     if isinstance(thing, ModuleType) and callable(thing):
         return getattr(thing, name.rpartition(".")[2])
     return thing
@@ -124,7 +124,7 @@ def linked_from_included(_app: Any, path: Path, _page: str, content: list[str]) 
 
 
 def setup(app: Any) -> None:
-    for name in ("verify.check", "verify.exact", "verify.run"):
+    for name in ("taylor_verify.check", "taylor_verify.exact", "taylor_verify.run"):
         import_module(name)
     app.connect("autodoc-process-docstring", told)
     app.connect("autodoc-process-signature", signed)

@@ -22,19 +22,19 @@ from unittest.mock import patch
 
 from mpmath import mpf
 
-from verify.exact.elements import elements
-from verify.exact.route import solution
-from verify.exact.sensitivity import sensitivity
-from verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
-from verify.models.problem import pose
-from verify.scenes.instants import EquallySpaced
-from verify.scenes.library import EXTREMES, STANDARD_SET, WORST, names
-from verify.scenes.motion import Clock
-from verify.scenes.precision import exact_value, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.taylor import driver
-from verify.solvers.taylor.driver import Taylor
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.sensitivity import sensitivity
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.instants import EquallySpaced
+from taylor_verify.scenes.library import EXTREMES, STANDARD_SET, WORST, names
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor.driver import Taylor
 
 ROUNDS = 5
 FEW_TIMES, FEW_DIGITS = 40, 50

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from trajectories import QUATERNION, VECTORS, Columns, named
 
-from verify.judge.conventions.readings import rotations
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Spin
-from verify.scenes.reader import load
+from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reader import load
 
 Array = np.ndarray[Any, Any]
 # omega after a step of length h, from I, omega, the moment M and h.

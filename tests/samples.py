@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 def vector(*entries: float | str) -> Vector:

@@ -16,31 +16,31 @@ from mpmath import libmp, mp
 from samples import CLEBSCH, TENSOR, vector
 from samples import LOADED as SOLID
 
-from verify.controls.traps.measured import free
-from verify.exact import gathering
-from verify.exact.condition import transition
-from verify.exact.gathering import Path, path
-from verify.exact.inputs import momentum
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.exact.variation import stepped
-from verify.judge import attainable
-from verify.judge.attainable import Floor, floor
-from verify.judge.errors import state_errors
-from verify.judge.judgement import judgement
-from verify.judge.magnitude import Magnitude, roundings
-from verify.judge.verdict import Status, Verdict
-from verify.models.problem import adopt
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Motion, Spin
-from verify.scenes.mpfr import in_mpfr
-from verify.scenes.precision import power_of_two, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector
-from verify.solvers.taylor.plain.body import Plain
+from taylor_verify.controls.traps.measured import free
+from taylor_verify.exact import gathering
+from taylor_verify.exact.condition import transition
+from taylor_verify.exact.gathering import Path, path
+from taylor_verify.exact.inputs import momentum
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.exact.variation import stepped
+from taylor_verify.judge import attainable
+from taylor_verify.judge.attainable import Floor, floor
+from taylor_verify.judge.errors import state_errors
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.judge.magnitude import Magnitude, roundings
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.models.problem import adopt
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.mpfr import in_mpfr
+from taylor_verify.scenes.precision import power_of_two, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
+from taylor_verify.solvers.taylor.plain.body import Plain
 
 Array = np.ndarray[Any, Any]
 U = 2.0**-53
@@ -303,7 +303,7 @@ def test_floor_does_not_know_the_units(shift: int, model: str) -> None:
 
 
 def _all_floors(asked: Scene) -> list[Array]:
-    from verify.exact.invariants import invariants
+    from taylor_verify.exact.invariants import invariants
 
     found, truth = _floor_of(asked, 40)
     floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact import balls as module
-from verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, midpoint, sign, upper
-from verify.exact.solution import Unsettled
-from verify.scenes.motion import Motion
-from verify.scenes.precision import exact_value, held_exactly
+from taylor_verify.exact import balls as module
+from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, midpoint, sign, upper
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import exact_value, held_exactly
 
 DIGITS = 20
 NOT_A_NUMBER, INFINITE, WIDE = arb("nan"), arb("inf"), arb(0, 1)

@@ -13,12 +13,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.cli import main, verbs
-from verify.judge.baseline import hold, load
-from verify.judge.rounding_class import FACTOR, LEVEL, compare
-from verify.judge.verdict import Status, Verdict, exit_status
-from verify.publish.report import load as load_report
-from verify.publish.report import write
+from taylor_verify.cli import main, verbs
+from taylor_verify.judge.baseline import hold, load
+from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
+from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.publish.report import load as load_report
+from taylor_verify.publish.report import write
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 PUBLISHED = REPORTS / "data" / "verdicts.json"

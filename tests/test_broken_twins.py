@@ -15,21 +15,21 @@ from typing import Any
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elliptic import Landen
-from verify.exact.euler import attitude, quaternion
-from verify.exact.euler import orbit as euler_orbit
-from verify.exact.euler.moduli import Moduli
-from verify.exact.euler.regime import FreeSpin
-from verify.exact.euler.theta import _Precession
-from verify.exact.kirchhoff import wave
-from verify.exact.kirchhoff.plane import Plane
-from verify.exact.kirchhoff.quartic import Nutation
-from verify.exact.route import solution
-from verify.exact.solution import Unsettled
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.motion import Motion, Spin
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.elliptic import Landen
+from taylor_verify.exact.euler import attitude, quaternion
+from taylor_verify.exact.euler import orbit as euler_orbit
+from taylor_verify.exact.euler.moduli import Moduli
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.euler.theta import _Precession
+from taylor_verify.exact.kirchhoff import wave
+from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 20
 # Both promise 20 digits of every vector and matrix.

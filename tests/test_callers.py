@@ -12,19 +12,19 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-import verify
-from verify.cli import main
-from verify.demand import demands
-from verify.explain import explanation
-from verify.judge.convergence import sweep
-from verify.judge.judgement import Judgement, NotPassed
-from verify.judge.verdict import Status
-from verify.models.problem import Problem
-from verify.scenes.faults import Refused
-from verify.scenes.library import cases_directory
-from verify.solvers.options import options
-from verify.solvers.registry import check_name
-from verify.trade.recommend import recommend
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.demand import demands
+from taylor_verify.explain import explanation
+from taylor_verify.judge.convergence import sweep
+from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.library import cases_directory
+from taylor_verify.solvers.options import options
+from taylor_verify.solvers.registry import check_name
+from taylor_verify.trade.recommend import recommend
 
 SCENE = "euler/generic"
 FILE = cases_directory() / "euler" / "generic.toml"
@@ -49,7 +49,7 @@ def still(problem: Problem) -> np.ndarray[Any, Any]:
 
 def outcome(solve: Callable[[Problem], Any]) -> str:
     """The reason of a run that is not scored, or how it ended."""
-    (first, *_) = verify.check(SCENE, solve).verdicts
+    (first, *_) = taylor_verify.check(SCENE, solve).verdicts
     return first.because if first.max is None else first.outcome
 
 
@@ -73,14 +73,14 @@ def outcome(solve: Callable[[Problem], Any]) -> str:
 )
 def test_times_of_every_kind_are_taken_exactly(time: Any, exact: Fraction) -> None:
     """A binary number is the rational it is, text and Decimal the one they write."""
-    expected = verify.exact(SCENE, [exact])["omega"]
-    assert np.all(verify.exact(SCENE, [time])["omega"] == expected)
+    expected = taylor_verify.exact(SCENE, [exact])["omega"]
+    assert np.all(taylor_verify.exact(SCENE, [time])["omega"] == expected)
 
 
 def test_an_array_of_times_is_a_sequence() -> None:
     """NumPy's integers and doubles are times; so is what an iterator yields."""
-    assert verify.exact(SCENE, np.arange(3))["omega"].shape == (3, 3)
-    assert verify.exact(SCENE, (t for t in np.linspace(0, 1, 2)))["omega"].shape == (2, 3)
+    assert taylor_verify.exact(SCENE, np.arange(3))["omega"].shape == (3, 3)
+    assert taylor_verify.exact(SCENE, (t for t in np.linspace(0, 1, 2)))["omega"].shape == (2, 3)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_an_array_of_times_is_a_sequence() -> None:
 def test_what_is_no_sequence_of_times_is_refused(times: Any, fault: str) -> None:
     """One sentence says what was expected, what came and where."""
     with pytest.raises(ValueError, match=fault) as refused:
-        verify.exact(SCENE, times)
+        taylor_verify.exact(SCENE, times)
     assert len(str(refused.value).splitlines()) == 1
 
 
@@ -118,13 +118,13 @@ def test_what_is_no_sequence_of_times_is_refused(times: Any, fault: str) -> None
 def test_digits_are_a_number_from_one_to_ten_thousand(digits: Any) -> None:
     """Zero digits are no answer, and text is no number."""
     with pytest.raises(ValueError, match=r"expected digits from 1 to 10000, got .* @ digits"):
-        verify.exact(SCENE, [1], digits=digits)
+        taylor_verify.exact(SCENE, [1], digits=digits)
 
 
 def test_a_route_is_one_of_three() -> None:
     """A misspelt route lists those that there are."""
     with pytest.raises(ValueError, match=r"expected a route \(arb, mpmath, taylor\), got 'ball'"):
-        verify.exact(SCENE, [1], route="ball")
+        taylor_verify.exact(SCENE, [1], route="ball")
 
 
 # Scenes, solvers, rungs and files.
@@ -134,11 +134,11 @@ def test_a_path_stands_wherever_a_path_may_stand(tmp_path: Path) -> None:
     """Every call takes a pathlib.Path for a scene, and `check` for a file too."""
     file = tmp_path / "mine.csv"
     file.write_text("t,w1,w2,w3\n0,0,0,0\n1,0,0,0\n")
-    assert verify.load(FILE).title
-    assert verify.exact(FILE, [1])["omega"].shape == (1, 3)
-    assert verify.run(FILE, COARSE).verdicts
-    assert verify.check(FILE, file).verdicts
-    assert verify.check(FILE, still).verdicts
+    assert taylor_verify.load(FILE).title
+    assert taylor_verify.exact(FILE, [1])["omega"].shape == (1, 3)
+    assert taylor_verify.run(FILE, COARSE).verdicts
+    assert taylor_verify.check(FILE, file).verdicts
+    assert taylor_verify.check(FILE, still).verdicts
     assert explanation(FILE, "f64")["title"]
     with pytest.raises(ValueError, match="expected a positive error"):
         recommend(FILE, -1)
@@ -147,7 +147,7 @@ def test_a_path_stands_wherever_a_path_may_stand(tmp_path: Path) -> None:
 @pytest.mark.parametrize("scene", [None, 3, {}, [SCENE]])
 def test_what_is_no_scene_is_refused(scene: Any) -> None:
     """A scene is a Scene, text or a path."""
-    for call in (verify.load, verify.run, lambda s: verify.exact(s, [1])):
+    for call in (taylor_verify.load, taylor_verify.run, lambda s: taylor_verify.exact(s, [1])):
         with pytest.raises(
             Refused, match="expected a path or the name of a shipped scene, got the"
         ):
@@ -157,12 +157,12 @@ def test_what_is_no_scene_is_refused(scene: Any) -> None:
 def test_what_is_no_solver_and_no_rung_is_refused() -> None:
     """`run` says where a callable belongs; a rung is named, or a Rung."""
     with pytest.raises(ValueError, match="expected a Solver or the name of one, got None"):
-        verify.run(SCENE, None)
-    with pytest.raises(ValueError, match=r"\(a callable is judged by verify.check\)"):
-        verify.run(SCENE, still)
+        taylor_verify.run(SCENE, None)
+    with pytest.raises(ValueError, match=r"\(a callable is judged by taylor_verify.check\)"):
+        taylor_verify.run(SCENE, still)
     for rung in (64, None, "f65"):
         with pytest.raises(ValueError, match="expected a rung f32, f64"):
-            verify.run(SCENE, COARSE, rung)
+            taylor_verify.run(SCENE, COARSE, rung)
 
 
 @pytest.mark.parametrize("answer", [None, np.zeros((3, 3)), {"t": [0]}, Table(np.zeros((3, 3)))])
@@ -171,7 +171,7 @@ def test_what_is_neither_callable_nor_file_is_refused(answer: Any) -> None:
     with pytest.raises(
         ValueError, match=r"expected a callable solve\(problem\) or a trajectory file"
     ):
-        verify.check(SCENE, answer)
+        taylor_verify.check(SCENE, answer)
 
 
 # States.
@@ -198,7 +198,7 @@ def test_a_table_is_refused_for_the_order_of_its_columns() -> None:
 @pytest.mark.parametrize("size", [1e200, 1e308, 10**5000, mp.mpf(10) ** 5000], ids=range(4))
 def test_answers_whose_square_is_no_double_are_judged(size: Any) -> None:
     """An answer may be as large as it likes: it fails, and nothing breaks."""
-    found = verify.check(SCENE, lambda p: [[size] * 3] * len(p.times))
+    found = taylor_verify.check(SCENE, lambda p: [[size] * 3] * len(p.times))
     assert found.verdicts[0].verdict is Status.FAIL
     assert not found.verdicts[0].max < 1e200
 
@@ -208,7 +208,7 @@ def test_answers_whose_square_is_no_double_are_judged(size: Any) -> None:
 
 @pytest.fixture(scope="module")
 def judgement() -> Judgement:
-    return verify.run(SCENE, COARSE)
+    return taylor_verify.run(SCENE, COARSE)
 
 
 @pytest.mark.parametrize(
@@ -298,12 +298,12 @@ def test_the_machines_faults_are_not_called_ours(
     def break_down(*_: Any) -> None:
         raise error
 
-    monkeypatch.setattr("verify.run.pose", break_down)
+    monkeypatch.setattr("taylor_verify.run.pose", break_down)
     assert main(["run", SCENE]) == 2
     told = capsys.readouterr().err
     assert expected in told
     assert "a fault of taylor-verify" not in told
-    monkeypatch.setattr("verify.run.pose", lambda *_: 1 / 0)
+    monkeypatch.setattr("taylor_verify.run.pose", lambda *_: 1 / 0)
     assert main(["run", SCENE]) == 2
     assert "a fault of taylor-verify" in capsys.readouterr().err
 
@@ -316,7 +316,9 @@ def test_the_truth_value_of_a_judgement_is_whether_it_passed(judgement: Judgemen
     assert not judgement
     assert not judgement.passed
     assert not Judgement((), None)
-    exact = verify.check(SCENE, lambda p: verify.exact(p.given, p.given.clock.instants)["omega"])
+    exact = taylor_verify.check(
+        SCENE, lambda p: taylor_verify.exact(p.given, p.given.clock.instants)["omega"]
+    )
     assert exact
     assert exact.passed
     exact.raise_for_failure()

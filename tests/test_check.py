@@ -17,21 +17,21 @@ from hypothesis import strategies as st
 from mpmath import mp
 from trajectories import MATRIX, VECTORS, Columns, columns_at, exact_columns, write_csv
 
-import verify
-from verify.cli import main
-from verify.exact.route import solution
-from verify.judge.answer import FileJudgement
-from verify.judge.inputs import input_rounding
-from verify.judge.verdict import COMPLETE, INITIAL, Status, Verdict
-from verify.models.problem import adopt, pose
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.faults import Refused
-from verify.scenes.motion import Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers.file import GROUPS, read
-from verify.solvers.values import exact, held
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.inputs import input_rounding
+from taylor_verify.judge.verdict import COMPLETE, INITIAL, Status, Verdict
+from taylor_verify.models.problem import adopt, pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.file import GROUPS, read
+from taylor_verify.solvers.values import exact, held
 
 F64 = rung("f64")
 SCENE = "euler/with-attitude"
@@ -39,7 +39,7 @@ OMEGA = VECTORS["omega"]
 
 
 def judged(file: str, scene: str, **options: Any) -> FileJudgement:
-    found = verify.check(scene, file, **options)
+    found = taylor_verify.check(scene, file, **options)
     assert isinstance(found, FileJudgement)
     return found
 
@@ -191,7 +191,7 @@ def test_matrices_of_a_loaded_body(tmp_path: Path) -> None:
     """With a moment the states are compared, and the balances that need no matrix."""
     scene = replace(load("euler/constant-moment"), track=frozenset({"attitude"}))
     columns = columns_at(scene, scene.clock.instants[::2], matrix=True)
-    found = verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
+    found = taylor_verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
     assert {v.quantity for v in found.verdicts} == {INITIAL, "omega", "attitude", "T", "H2"}
     assert {v.verdict for v in found.verdicts} == {Status.PASS}
 
@@ -311,7 +311,7 @@ def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
 
 def test_reference_trajectories_are_files(tmp_path: Path) -> None:
     """What `publish --reference` writes has 32 digits of the scene's own numbers: f64 is no bound."""
-    from verify.reference import reference
+    from taylor_verify.reference import reference
 
     columns = reference(load("euler/later-start"))["columns"]
     file = write_csv(tmp_path / "mine.csv", {n: v[:20] for n, v in columns.items()}, str)

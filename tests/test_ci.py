@@ -22,16 +22,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from samples import LISTED_INSTANTS
 
-from verify.cli import main
-from verify.judge.verdict import Status, Verdict, exit_status
-from verify.publish.ci import annotations, junit
-from verify.publish.ci.annotations import annotation_lines
-from verify.publish.ci.case import Remark, cases, sentence
-from verify.publish.ci.step_summary import step_summary
+from taylor_verify.cli import main
+from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.publish.ci import annotations, junit
+from taylor_verify.publish.ci.annotations import annotation_lines
+from taylor_verify.publish.ci.case import Remark, cases, sentence
+from taylor_verify.publish.ci.step_summary import step_summary
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads(
-    (ROOT / "verify/publish/schema/verdicts.schema.json").read_text(encoding="utf-8")
+    (ROOT / "verify/taylor_verify/publish/schema/verdicts.schema.json").read_text(encoding="utf-8")
 )
 ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
 EXAMPLE = ROOT / ".github" / "workflows" / "example.yml"
@@ -680,7 +680,9 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     """As GitHub would call it: two rungs, several scenes, a baseline; 1 if a row of that is gone."""
     command = Path("taylor-verify/bin/taylor-verify")
     command.parent.mkdir(parents=True)
-    command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m verify "$@"\n', encoding="utf-8")
+    command.write_text(
+        f'#!/bin/sh\nexec "{sys.executable}" -m taylor_verify "$@"\n', encoding="utf-8"
+    )
     command.chmod(0o755)
     Path("with space").mkdir()
     shutil.copy(short, "other.toml")

@@ -13,20 +13,20 @@ from typing import Any, final
 
 import pytest
 
-from verify.exact.route import solution
-from verify.judge.attainable import radians
-from verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
-from verify.judge.steps import count_steps
-from verify.judge.verdict import Status, Verdict
-from verify.models.problem import Problem, pose
-from verify.run import run
-from verify.scenes.motion import Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers import protocol
-from verify.solvers.solver import Callback, Solver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Trajectory
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.attainable import radians
+from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
+from taylor_verify.judge.steps import count_steps
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers import protocol
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
 
 SCENE = "euler/generic"
 MANY = 2**32 - 1

@@ -13,23 +13,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
 
-from verify.claims.claim import Claim, Residual, Verdict, examine, measured, worse
-from verify.claims.field import Element, Field, cross, dot, identity, rotation
-from verify.claims.heinbockel.equations import _left_of_70
-from verify.claims.heinbockel.rigid import rigid, unsymmetric
-from verify.claims.hydromechanics.algebraic import plain, quartics
-from verify.claims.hydromechanics.clebsch import body
-from verify.claims.hydromechanics.fourth import GENERIC, SECOND_CASE, STEKLOV, SYMMETRIC, integrals
-from verify.claims.hydromechanics.poles import leading_coefficients
-from verify.claims.hydromechanics.solid import loaded
-from verify.claims.trajectory import trajectory
-from verify.exact.invariants import invariants
-from verify.models.euler import heinbockel_moment
-from verify.models.kirchhoff import clebsch_rates, impulse_rates
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Clock, Impulse
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import is_positive_definite
+from taylor_verify.claims.claim import Claim, Residual, Verdict, examine, measured, worse
+from taylor_verify.claims.field import Element, Field, cross, dot, identity, rotation
+from taylor_verify.claims.heinbockel.equations import _left_of_70
+from taylor_verify.claims.heinbockel.rigid import rigid, unsymmetric
+from taylor_verify.claims.hydromechanics.algebraic import plain, quartics
+from taylor_verify.claims.hydromechanics.clebsch import body
+from taylor_verify.claims.hydromechanics.fourth import (
+    GENERIC,
+    SECOND_CASE,
+    STEKLOV,
+    SYMMETRIC,
+    integrals,
+)
+from taylor_verify.claims.hydromechanics.poles import leading_coefficients
+from taylor_verify.claims.hydromechanics.solid import loaded
+from taylor_verify.claims.trajectory import trajectory
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.models.euler import heinbockel_moment
+from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import is_positive_definite
 
 
 def triangle() -> Field:
@@ -211,7 +217,7 @@ def test_three_integrals_are_counted_for_every_body() -> None:
 def test_poles_have_the_exponents_that_the_integrals_give() -> None:
     """-1 belongs to the place of a pole and 2 to each of T, F^2, FG; the trace leaves two that add to 1."""
     np = pytest.importorskip("numpy")
-    from verify.claims.hydromechanics.poles import _jacobian
+    from taylor_verify.claims.hydromechanics.poles import _jacobian
 
     found = leading_coefficients(GENERIC)
     assert found

@@ -9,15 +9,14 @@ from typing import Any
 
 import pytest
 
-import verify
-from verify.claims.claim import Claim, Residual, Verdict
-from verify.claims.ledger import claims, examined
-from verify.claims.numbers import CITED
-from verify.cli import main
-from verify.publish.claims import page, write
-from verify.publish.page import MADE_BY
+from taylor_verify.claims.claim import Claim, Residual, Verdict
+from taylor_verify.claims.ledger import claims, examined
+from taylor_verify.claims.numbers import CITED
+from taylor_verify.cli import main
+from taylor_verify.publish.claims import page, write
+from taylor_verify.publish.page import MADE_BY
 
-ROOT = Path(verify.__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[1]
 PUBLISHED = ROOT / "reports" / "claims.md"
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}
@@ -83,7 +82,7 @@ def test_an_entry_that_lost_its_verdict_fails(
 ) -> None:
     """Exit status 1, and which verdict was expected; the row is told all the same."""
     changed = tuple(replace(c, verdict=Verdict.HOLDS) if c.id == QUICK else c for c in claims())
-    monkeypatch.setattr("verify.claims.ledger.claims", lambda: changed)
+    monkeypatch.setattr("taylor_verify.claims.ledger.claims", lambda: changed)
     assert main(["claims", QUICK, "--json"]) == 1
     captured = capsys.readouterr()
     assert json.loads(captured.out)[0]["recorded"] == "holds"
@@ -117,7 +116,7 @@ def test_a_ledger_that_lost_a_verdict_is_not_published(
     """Exit status 1, and no page."""
     (quick,) = (c for c in claims() if c.id == QUICK)
     monkeypatch.setattr(
-        "verify.claims.ledger.claims", lambda: (replace(quick, verdict=Verdict.HOLDS),)
+        "taylor_verify.claims.ledger.claims", lambda: (replace(quick, verdict=Verdict.HOLDS),)
     )
     assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
     assert f"@ {QUICK}" in capsys.readouterr().err

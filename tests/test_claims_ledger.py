@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from verify.claims.claim import Claim, Verdict, examine, measured
-from verify.claims.ledger import UnknownClaim, claims, find
-from verify.claims.numbers import CITED, NUMBERED, SENTENCES, in_order
+from taylor_verify.claims.claim import Claim, Verdict, examine, measured
+from taylor_verify.claims.ledger import UnknownClaim, claims, find
+from taylor_verify.claims.numbers import CITED, NUMBERED, SENTENCES, in_order
 
 LEDGER = claims()
 MUTATIONS = [(claim, name) for claim in LEDGER for name in claim.mutants]

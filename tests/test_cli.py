@@ -18,18 +18,18 @@ import pytest
 from mpmath import mp
 from samples import LISTED_INSTANTS
 
-import verify
-from verify.cli import main, verbs
-from verify.judge.verdict import Status
-from verify.models.form import Form
-from verify.models.problem import Problem
-from verify.scenes import library, tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Spin
-from verify.scenes.precision import LADDER
-from verify.solvers import registry
+import taylor_verify
+from taylor_verify.cli import main, verbs
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.form import Form
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import LADDER
+from taylor_verify.solvers import registry
 
-ROOT = Path(verify.__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[1]
 GENERIC = library.cases_directory() / "euler" / "generic.toml"
 REFUSED = sorted((library.cases_directory() / "refused").glob("*.toml"))
 # Two instants that no double tells apart.
@@ -47,11 +47,11 @@ def short(tmp_path: Path) -> Path:
 
 
 def command(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "verify", *arguments]
+    return [sys.executable, "-m", "taylor_verify", *arguments]
 
 
 def environment(**changed: str) -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(ROOT), **changed}
+    return {**os.environ, "PYTHONPATH": str(ROOT / "verify"), **changed}
 
 
 # What is asked without a scene.
@@ -88,7 +88,7 @@ def test_every_verb_has_help_with_an_example(capsys: Captured, verb: list[str]) 
 def test_help_imports_nothing_heavy() -> None:
     """`--help` answers before numpy, mpmath, heyoka or rich are imported."""
     script = (
-        "import sys\nfrom verify.cli import main\n"
+        "import sys\nfrom taylor_verify.cli import main\n"
         "try: main(['run', '--help'])\nexcept SystemExit: pass\n"
         "print(sorted({'numpy', 'mpmath', 'heyoka', 'rich', 'flint', 'multiprocessing'}"
         " & set(sys.modules)))"
@@ -201,7 +201,7 @@ def test_the_exit_status_is_that_of_the_gravest_verdict(
     """One such verdict among passes decides."""
     from dataclasses import replace
 
-    found = verify.run(str(short))
+    found = taylor_verify.run(str(short))
     marred = replace(found.verdicts[0], verdict=Status(status))
     judgement = replace(found, verdicts=(*found.verdicts, marred))
     monkeypatch.setattr(verbs, "_judge", lambda *_: [judgement])
@@ -344,7 +344,7 @@ def test_reports_that_fail_at_the_end_cost_no_results(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("verify.publish.report.write", full)
+    monkeypatch.setattr("taylor_verify.publish.report.write", full)
     assert main(["run", str(short), "--out", str(tmp_path / "out")]) == 2
     out, error = capsys.readouterr()
     assert "3 pass" in out
@@ -469,7 +469,7 @@ def test_an_error_nobody_foresaw_is_one_line_with_its_place(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
 ) -> None:
     """It names the scene, the rung, the error and the file it rose in."""
-    monkeypatch.setattr("verify.run.pose", lambda *_: 1 // 0)
+    monkeypatch.setattr("taylor_verify.run.pose", lambda *_: 1 // 0)
     assert main(["run", str(short)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
@@ -602,9 +602,11 @@ def is_running(pid: int) -> bool:
 
 
 def test_importing_verify_imports_nothing_else() -> None:
-    """`import verify` alone brings in neither numpy nor heyoka, nor any room."""
-    script = "import sys, verify; print([m for m in sys.modules if m.startswith(('verify.', "
-    script += "'numpy', 'heyoka', 'mpmath'))])"
+    """`import taylor_verify` alone brings in neither numpy nor heyoka, nor any room."""
+    script = (
+        "import sys, taylor_verify; print([m for m in sys.modules if m.startswith("
+        "('taylor_verify.', 'numpy', 'heyoka', 'mpmath'))])"
+    )
     done = subprocess.run(
         [sys.executable, "-c", script],
         env=environment(),
@@ -617,18 +619,24 @@ def test_importing_verify_imports_nothing_else() -> None:
 
 @pytest.mark.parametrize(
     "first",
-    ["verify.exact.route", "verify.judge.judgement", "verify.run", "verify.check", "verify.cli"],
+    [
+        "taylor_verify.exact.route",
+        "taylor_verify.judge.judgement",
+        "taylor_verify.run",
+        "taylor_verify.check",
+        "taylor_verify.cli",
+    ],
 )
 def test_the_four_functions_work_whatever_was_imported_first(first: str) -> None:
     """load, exact, run and check are callable after any room has been imported."""
     script = (
-        f"import {first}\nimport verify, verify.check, verify.exact.solution\n"
-        f"scene = verify.load({str(GENERIC)!r})\n"
-        "motion = verify.exact(scene, [0, '1/2'], 20)\n"
+        f"import {first}\nimport taylor_verify, taylor_verify.check, taylor_verify.exact.solution\n"
+        f"scene = taylor_verify.load({str(GENERIC)!r})\n"
+        "motion = taylor_verify.exact(scene, [0, '1/2'], 20)\n"
         "assert motion['omega'].shape == (2, 3)\n"
-        "assert callable(verify.run) and callable(verify.check)\n"
-        "from verify import check, exact, load, run\n"
-        "assert exact is verify.exact and run is verify.run\n"
+        "assert callable(taylor_verify.run) and callable(taylor_verify.check)\n"
+        "from taylor_verify import check, exact, load, run\n"
+        "assert exact is taylor_verify.exact and run is taylor_verify.run\n"
     )
     done = subprocess.run([sys.executable, "-c", script], env=environment(), capture_output=True)
     assert done.stderr == b""
@@ -658,10 +666,10 @@ def by_mpmath(problem: Problem) -> list[list[Any]]:
 
 def test_a_solver_of_ones_own_is_judged_by_its_numbers(short: Path) -> None:
     """mpmath's own integrator passes every gate; the same numbers one part in 10^9 off do not."""
-    good = verify.check(str(short), by_mpmath)
+    good = taylor_verify.check(str(short), by_mpmath)
     assert {v.quantity for v in good.verdicts} == {"omega", "T", "H2"}
     assert {v.verdict for v in good.verdicts} == {Status.PASS}
-    off = verify.check(str(short), lambda problem: np.array(by_mpmath(problem)) * (1 + 1e-9))
+    off = taylor_verify.check(str(short), lambda problem: np.array(by_mpmath(problem)) * (1 + 1e-9))
     assert {v.verdict for v in off.verdicts} == {Status.FAIL}
 
 
@@ -680,7 +688,7 @@ def test_a_solver_of_ones_own_is_judged_by_its_numbers(short: Path) -> None:
 )
 def test_a_solver_that_fails_has_a_verdict(short: Path, solve: Any, outcome: str) -> None:
     """Whatever a stranger's code does, the judgement is `fail` and its outcome says how."""
-    found = verify.check(str(short), solve)
+    found = taylor_verify.check(str(short), solve)
     assert {v.verdict for v in found.verdicts} == {Status.FAIL}
     assert outcome in found.verdicts[0].outcome
     json.dumps([v.row() for v in found.verdicts], allow_nan=False)

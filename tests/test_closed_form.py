@@ -10,22 +10,22 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from verify.exact.taylor import TaylorSolution
-from verify.judge.errors import largest, state_errors
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers import closed_form
-from verify.solvers.registry import check_name, solver_named
-from verify.solvers.trajectory import Outcome
-from verify.trade.accuracy import Truth
-from verify.trade.plain_doubles import cases, plain_doubles
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.errors import largest, state_errors
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import closed_form
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.trade.accuracy import Truth
+from taylor_verify.trade.plain_doubles import cases, plain_doubles
 
 pytest.importorskip("scipy", reason="an optional extra: taylor-verify[scipy]")
 

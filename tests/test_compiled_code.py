@@ -14,11 +14,11 @@ from typing import Any
 import heyoka as hy
 import pytest
 
-from verify.models.problem import pose
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers.taylor import cache
-from verify.solvers.taylor.driver import compiled
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.taylor import cache
+from taylor_verify.solvers.taylor.driver import compiled
 
 
 @pytest.fixture
@@ -155,7 +155,7 @@ def test_one_damaged_folder_is_kept(folder: Path) -> None:
 def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) -> None:
     """Two processes that share a damaged cache both come to their answers, and warn once."""
     script = (
-        "import sys\nfrom verify.run import run\n"
+        "import sys\nfrom taylor_verify.run import run\n"
         "for scene in sys.argv[1:]:\n"
         "    assert run(scene).verdicts[0].verdict.value == 'pass'\n"
     )

@@ -11,10 +11,10 @@ from xml.etree import ElementTree
 import pytest
 from trajectories import columns_at, write_csv
 
-import verify
-from verify.cli import main
-from verify.judge.verdict import COMPLETE, Status, Verdict
-from verify.scenes.reader import load
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.verdict import COMPLETE, Status, Verdict
+from taylor_verify.scenes.reader import load
 
 SCENE = "euler/with-attitude"
 OMEGA = ("t", "w1", "w2", "w3")
@@ -30,7 +30,7 @@ def file_of(path: Path, rows: Sequence[int], names: Sequence[str] = (), scene: s
 
 
 def complete(file: str, scene: str = SCENE, partial: bool = False) -> Verdict | None:
-    found = verify.check(scene, file, partial=partial)
+    found = taylor_verify.check(scene, file, partial=partial)
     rows = {verdict.quantity: verdict for verdict in found.verdicts}
     assert {v.verdict for name, v in rows.items() if name != COMPLETE} == {Status.PASS}
     return rows.get(COMPLETE)
@@ -106,7 +106,7 @@ def test_a_summed_clock_is_at_the_end(end: float, tmp_path: Path) -> None:
     assert end != 20.0
     scene = load(SCENE)
     columns = columns_at(scene, [*scene.clock.instants[:-1], Fraction(end)])
-    found = verify.check(SCENE, write_csv(tmp_path / "mine.csv", columns))
+    found = taylor_verify.check(SCENE, write_csv(tmp_path / "mine.csv", columns))
     assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
     assert not any("not judged" in note for note in found.notes)
 

@@ -11,15 +11,15 @@ import pytest
 from mpmath import libmp, mp, mpf
 from samples import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
 
-from verify.exact import condition
-from verify.exact.condition import Derivatives, derivatives, transition
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.exact.variation import transition_table
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import (
+from taylor_verify.exact import condition
+from taylor_verify.exact.condition import Derivatives, derivatives, transition
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.exact.variation import transition_table
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import (
     Matrix,
     Vector,
     apply,

@@ -10,19 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.controls.answers import ANSWERS
-from verify.controls.defect import Defect
-from verify.controls.defects import DEFECTS
-from verify.controls.sight import RUNG, Sight, Twins, document, sights
-from verify.exact.invariants import invariants
-from verify.judge.gates import FACTOR
-from verify.judge.unit_quaternion import UNIT_QUATERNION
-from verify.judge.verdict import INITIAL, Status, Verdict
-from verify.models.problem import pose
-from verify.publish import controls, proof, report
-from verify.publish import sights as stored
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
+from taylor_verify.controls.answers import ANSWERS
+from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.defects import DEFECTS
+from taylor_verify.controls.sight import RUNG, Sight, Twins, document, sights
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
+from taylor_verify.judge.verdict import INITIAL, Status, Verdict
+from taylor_verify.models.problem import pose
+from taylor_verify.publish import controls, proof, report
+from taylor_verify.publish import sights as stored
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
 NAMED = {defect.name: defect for defect in DEFECTS}

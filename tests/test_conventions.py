@@ -25,18 +25,18 @@ from trajectories import (
     write_csv,
 )
 
-import verify
-from verify.judge.answer import FileJudgement
-from verify.judge.conventions.axes import AXES, Frames
-from verify.judge.conventions.readings import readings, rotations
-from verify.judge.conventions.search import EXPLAINS, conventions
-from verify.judge.verdict import Status
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers.file import read
+import taylor_verify
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.conventions.axes import AXES, Frames
+from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.judge.conventions.search import EXPLAINS, conventions
+from taylor_verify.judge.verdict import Status
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.file import read
 
 Sound = Mapping[str, Sequence[float]]
 OMEGA = VECTORS["omega"]
@@ -44,7 +44,7 @@ OMEGA = VECTORS["omega"]
 
 def judged(path: Path, scene: str, columns: Sound, accept: bool = False) -> FileJudgement:
     file = write_csv(path / "mine.csv", columns)
-    found = verify.check(scene, file, accept_conventions=accept)
+    found = taylor_verify.check(scene, file, accept_conventions=accept)
     assert isinstance(found, FileJudgement)
     return found
 

@@ -14,11 +14,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.judge.convergence import Sweep, convergence, sweep
-from verify.models.problem import Problem
-from verify.scenes.motion import Clock
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.judge.convergence import Sweep, convergence, sweep
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, Any]
 HALVED = [2.0**-k for k in range(1, 11)]

@@ -19,16 +19,16 @@ from typing import Any
 import pytest
 from worked import DOCS, ROOT, blocks, work
 
-import verify
-from verify import exact
-from verify.cli import answer
-from verify.cli.arguments import parse
-from verify.exact.solution import NO_CLOSED_FORM
-from verify.judge.verdict import Status, Verdict
-from verify.scenes.library import names
-from verify.scenes.precision import LADDER
-from verify.solvers.registry import NAMES
-from verify.solvers.trajectory import Outcome
+import taylor_verify
+from taylor_verify import exact
+from taylor_verify.cli import answer
+from taylor_verify.cli.arguments import parse
+from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.precision import LADDER
+from taylor_verify.solvers.registry import NAMES
+from taylor_verify.solvers.trajectory import Outcome
 
 PAGES = sorted(page for page in DOCS.rglob("*.md") if "_build" not in page.parts)
 PUBLIC = [
@@ -145,9 +145,9 @@ def test_the_table_of_results_has_both_models_and_every_state() -> None:
 
 
 def regimes() -> set[str]:
-    """Every word that a module of verify.exact has for a regime: in an enumeration, or alone."""
+    """Every word that a module of taylor_verify.exact has for a regime: in an enumeration, or alone."""
     found: set[str] = set()
-    for module in pkgutil.walk_packages(exact.__path__, "verify.exact."):
+    for module in pkgutil.walk_packages(exact.__path__, "taylor_verify.exact."):
         for name, value in vars(importlib.import_module(module.name)).items():
             if inspect.isclass(value) and issubclass(value, StrEnum) and name.endswith("Regime"):
                 found |= {regime.value for regime in value}
@@ -196,7 +196,7 @@ def test_every_exit_status_is_documented() -> None:
 
 def test_every_exception_told_of_exists() -> None:
     """The exceptions that errors.md names are classes of exceptions."""
-    told = re.findall(r"^\| `(verify[\w.]+)`", text_of("errors.md"), re.MULTILINE)
+    told = re.findall(r"^\| `(taylor_verify[\w.]+)`", text_of("errors.md"), re.MULTILINE)
     assert len(told) >= 5
     for name in told:
         module, _, kind = name.rpartition(".")
@@ -276,8 +276,10 @@ def test_a_docstring_tells_of_every_argument(name: str) -> None:
 
 
 def test_every_call_is_in_the_reference() -> None:
-    """The names of `import verify` are documented under those names."""
-    assert {f"verify.{name}" for name in verify.__all__} <= {name for _, name in PUBLIC}
+    """The names of `import taylor_verify` are documented under those names."""
+    assert {f"taylor_verify.{name}" for name in taylor_verify.__all__} <= {
+        name for _, name in PUBLIC
+    }
 
 
 # Docstrings are plain text.
@@ -298,10 +300,12 @@ def test_an_indented_block_of_a_docstring_is_verbatim() -> None:
 
 
 def test_a_callable_module_is_told_of_as_its_function() -> None:
-    """`verify.exact` has the arguments and the docstring of the function that it is called as."""
+    """`taylor_verify.exact` has the arguments and the docstring of the function that it is called as."""
     module = configuration()
-    found = module.signed(None, "function", "verify.exact", verify.exact, None, "", "")
+    found = module.signed(
+        None, "function", "taylor_verify.exact", taylor_verify.exact, None, "", ""
+    )
     assert found[0].startswith("(scene: Scene | str | os.PathLike[str], times:")
     lines = ["something else"]
-    module.told(None, "function", "verify.exact", verify.exact, None, lines)
+    module.told(None, "function", "taylor_verify.exact", taylor_verify.exact, None, lines)
     assert lines[0].startswith("The exact motion at absolute times")

@@ -12,22 +12,22 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.euler.elements import disturbance
-from verify.exact.euler.regime import FreeSpin
-from verify.exact.kirchhoff.elements import discriminant, stability
-from verify.exact.kirchhoff.quartic import Nutation, value
-from verify.exact.taylor import TaylorSolution
-from verify.explain import explanation
-from verify.judge.carrying import Carrying, carrying
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.library import names
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.precision import exact_value
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.euler.elements import disturbance
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff.elements import discriminant, stability
+from taylor_verify.exact.kirchhoff.quartic import Nutation, value
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.explain import explanation
+from taylor_verify.judge.carrying import Carrying, carrying
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
 
 DIGITS = 30
 # A number of 30 digits, times rates of some units, moves a motion by less than this.

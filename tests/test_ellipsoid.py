@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.balls import ball
-from verify.exact.ellipsoid import deviation, inertias
-from verify.scenes import ellipsoid
-from verify.scenes.bodies import COEFFICIENT_BITS, Ellipsoid
-from verify.scenes.ellipsoid import lamb_integrals
-from verify.scenes.precision import exact_value
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.ellipsoid import deviation, inertias
+from taylor_verify.scenes import ellipsoid
+from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Ellipsoid
+from taylor_verify.scenes.ellipsoid import lamb_integrals
+from taylor_verify.scenes.precision import exact_value
 
 BITS = COEFFICIENT_BITS
 # Rounding to nearest is off by 2^-BITS of the number at most; the rest is for what precedes it.

@@ -8,17 +8,17 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
-import verify
-from verify.exact.ellipsoid import deviation, formed_to, told
-from verify.exact.route import solution
-from verify.explain import explanation
-from verify.models.problem import pose
-from verify.scenes import library
-from verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
-from verify.scenes.faults import Refused
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load, read
-from verify.scenes.tensors import cross, dot
+import taylor_verify
+from taylor_verify.exact.ellipsoid import deviation, formed_to, told
+from taylor_verify.exact.route import solution
+from taylor_verify.explain import explanation
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import library
+from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load, read
+from taylor_verify.scenes.tensors import cross, dot
 
 BITS = COEFFICIENT_BITS
 # Rounding to nearest is off by 2^-BITS of the number at most; the rest is for what precedes it.
@@ -111,10 +111,10 @@ def test_both_routes_read_the_same_rationals() -> None:
 def test_the_exact_motion_is_that_of_the_ellipsoid_to_any_digits() -> None:
     """At 150 digits the motion is that of the shape, which the body of 120 digits no longer is."""
     scene = replace(load("kirchhoff/ellipsoid-prolate"), track=frozenset())
-    best = verify.exact(formed_to(scene, 250), [3], 160)["linear_impulse"][0]
-    found = verify.exact(scene, [3], 150)["linear_impulse"][0]
+    best = taylor_verify.exact(formed_to(scene, 250), [3], 160)["linear_impulse"][0]
+    found = taylor_verify.exact(scene, [3], 150)["linear_impulse"][0]
     coarse = replace(scene, body=replace(scene.body, ellipsoid=None))
-    other = verify.exact(coarse, [3], 150)["linear_impulse"][0]
+    other = taylor_verify.exact(coarse, [3], 150)["linear_impulse"][0]
     with mp.workdps(170):
         assert mp.norm(list(found - best)) <= mpf(10) ** -149 * mp.norm(list(best))
         assert mp.norm(list(other - best)) > mpf(10) ** -130

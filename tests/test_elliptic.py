@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.elliptic import Landen, complete_k, jacobi
+from taylor_verify.exact.elliptic import Landen, complete_k, jacobi
 
 DIGITS = 50
 # jacobi() works with ten bits more than asked for, against some sixty roundings on the way; what is

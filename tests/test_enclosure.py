@@ -13,19 +13,19 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 from samples import GENERAL, LOADED, QUATERNION, one_instant, vector
 
-from verify.exact.balls import ball, balls
-from verify.exact.enclosure import box, course, placing, tube
-from verify.exact.enclosure.course import Course, Row
-from verify.exact.enclosure.placing import Place
-from verify.exact.enclosure.system import posed
-from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import Unsettled
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Impulse, Spin, State
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import ZERO_MATRIX, diagonal
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.enclosure import box, course, placing, tube
+from taylor_verify.exact.enclosure.course import Course, Row
+from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin, State
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import ZERO_MATRIX, diagonal
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 

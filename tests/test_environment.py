@@ -15,14 +15,14 @@ from typing import Any
 import pytest
 from samples import THREE_INSTANTS
 
-from verify.models.problem import Problem, pose
-from verify.scenes.precision import rung
-from verify.scenes.reader import read
-from verify.solvers import entrant
-from verify.solvers.entrant import entrants, prepare
-from verify.solvers.environment import Environment, NotMade, metadata
-from verify.solvers.registry import check_name, solver_named
-from verify.solvers.trajectory import Outcome
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import read
+from taylor_verify.solvers import entrant
+from taylor_verify.solvers.entrant import entrants, prepare
+from taylor_verify.solvers.environment import Environment, NotMade, metadata
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome
 
 
 def problem(on: str = "f64") -> Problem:

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.euler import attitude
-from verify.exact.euler.jacobi import closed_form
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Spin
-from verify.scenes.scene import Scene
+from taylor_verify.exact.euler import attitude
+from taylor_verify.exact.euler.jacobi import closed_form
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.scene import Scene
 
 TILTED = (
     Fraction(1),

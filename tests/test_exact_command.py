@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.cli import main
-from verify.exact.printed import decimal_text
-from verify.exact.rotation import rotation_matrix
-from verify.scenes.motion import Spin
-from verify.scenes.reader import load
+from taylor_verify.cli import main
+from taylor_verify.exact.printed import decimal_text
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reader import load
 
 SCENE = """
 title = "A body of one's own"

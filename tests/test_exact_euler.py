@@ -13,16 +13,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.euler.jacobi import FreeRotation, closed_form
-from verify.exact.euler.orbit import Orbit, principal_frame
-from verify.exact.euler.regime import FreeSpin, Regime
-from verify.exact.solution import NoClosedForm
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Spin
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact.euler.jacobi import FreeRotation, closed_form
+from taylor_verify.exact.euler.orbit import Orbit, principal_frame
+from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 50
 ELLIPTIC = (Regime.MAX_AXIS, Regime.MIN_AXIS)
@@ -228,7 +228,7 @@ def pace(spin: FreeSpin) -> Fraction:
 
 
 def theta_route(spin: FreeSpin, t: Fraction, digits: int = 220) -> list[mpf]:
-    """omega(t) of a triaxial orbit by the textbook, with nothing taken from verify.exact.
+    """omega(t) of a triaxial orbit by the textbook, with nothing taken from taylor_verify.exact.
 
     Moments and axes come from mpmath's symmetric eigenvalue routine, the functions from its theta
     functions, the start from the addition theorem; m' is 1 - m, so that ``digits`` must be lavish.

@@ -15,23 +15,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact import balls
-from verify.exact.balls import Enclosed, Enclosure, ball
-from verify.exact.euler import jacobi, phase, theta
-from verify.exact.euler.moduli import Moduli
-from verify.exact.euler.orbit import Orbit
-from verify.exact.euler.principal import principal_balls
-from verify.exact.euler.regime import FreeSpin, Regime
-from verify.exact.euler.theta import FreeRotationBalls, enclosed, quaternions
-from verify.exact.euler.tumbling import Tumbling
-from verify.exact.solution import NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
-from verify.scenes.precision import exact_value
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact import balls
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball
+from taylor_verify.exact.euler import jacobi, phase, theta
+from taylor_verify.exact.euler.moduli import Moduli
+from taylor_verify.exact.euler.orbit import Orbit
+from taylor_verify.exact.euler.principal import principal_balls
+from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.euler.theta import FreeRotationBalls, enclosed, quaternions
+from taylor_verify.exact.euler.tumbling import Tumbling
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 50
 LONG = Fraction(10) ** 12

@@ -9,15 +9,15 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.kirchhoff.jacobi import closed_form
-from verify.exact.kirchhoff.quartic import Nutation, RealRoots, value
-from verify.exact.solution import NoClosedForm, Solution
-from verify.scenes.bodies import Clebsch, ImmersedBody
-from verify.scenes.motion import Clock, Impulse
-from verify.scenes.precision import power_of_two
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector, diagonal
+from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.quartic import Nutation, RealRoots, value
+from taylor_verify.exact.solution import NoClosedForm, Solution
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector, diagonal
 
 State = Sequence[Fraction]  # x1 x2 x3 y1 y2 y3
 Six = list[mpf]

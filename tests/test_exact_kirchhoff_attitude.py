@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.kirchhoff import orbit
-from verify.exact.kirchhoff.attitude import CayleyKlein
-from verify.exact.kirchhoff.centre import Rise
-from verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
-from verify.exact.kirchhoff.quartic import Nutation
-from verify.exact.kirchhoff.regime import turning_points
-from verify.exact.kirchhoff.wave import SquareIntegral
-from verify.exact.kirchhoff.zeta import SquaredSine
-from verify.exact.rotation import rotation_matrix
-from verify.exact.solution import Quantities
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import Clebsch, ImmersedBody
-from verify.scenes.motion import Clock, Impulse, Motion
-from verify.scenes.scene import Scene
+from taylor_verify.exact.kirchhoff import orbit
+from taylor_verify.exact.kirchhoff.attitude import CayleyKlein
+from taylor_verify.exact.kirchhoff.centre import Rise
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.regime import turning_points
+from taylor_verify.exact.kirchhoff.wave import SquareIntegral
+from taylor_verify.exact.kirchhoff.zeta import SquaredSine
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Quantities
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 

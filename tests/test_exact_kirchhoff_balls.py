@@ -19,22 +19,22 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.balls import Undecidable, ball
-from verify.exact.kirchhoff import course as course_module
-from verify.exact.kirchhoff import lattice as lattice_module
-from verify.exact.kirchhoff.course import Course, course
-from verify.exact.kirchhoff.jacobi import closed_form
-from verify.exact.kirchhoff.lattice import Periods
-from verify.exact.kirchhoff.quartic import Nutation
-from verify.exact.kirchhoff.weierstrass import NutatingBody, Orbit, enclosed
-from verify.exact.solution import NoClosedForm, Unsettled
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import Clebsch, ImmersedBody
-from verify.scenes.library import names
-from verify.scenes.motion import Clock, Impulse, Motion
-from verify.scenes.precision import exact_value
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.kirchhoff import course as course_module
+from taylor_verify.exact.kirchhoff import lattice as lattice_module
+from taylor_verify.exact.kirchhoff.course import Course, course
+from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.lattice import Periods
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.weierstrass import NutatingBody, Orbit, enclosed
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 30
 WHOLE = frozenset({"attitude", "centre"})

@@ -10,14 +10,14 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
-from verify.exact.kirchhoff.quartic import Nutation, Polynomial, repeated_root, value
-from verify.exact.kirchhoff.regime import regime
-from verify.exact.solution import Quantities
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import Clebsch
-from verify.scenes.motion import Clock, Impulse, Motion
-from verify.scenes.scene import Scene
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
+from taylor_verify.exact.kirchhoff.quartic import Nutation, Polynomial, repeated_root, value
+from taylor_verify.exact.kirchhoff.regime import regime
+from taylor_verify.exact.solution import Quantities
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import Clebsch
+from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 40
 # Both routes promise DIGITS of |x| and of |y|, which here are below 10.

@@ -7,17 +7,17 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.kirchhoff import displaced, turned
-from verify.exact.kirchhoff.displaced import centred
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Clock, Impulse, Motion
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff import displaced, turned
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
 
 TIMES = [Fraction(-3, 2), Fraction(0), Fraction(5, 2)]
 DIGITS = 30

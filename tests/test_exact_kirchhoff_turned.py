@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.invariants import invariants
-from verify.exact.kirchhoff.jacobi import closed_form
-from verify.exact.kirchhoff.turned import Turned, upright
-from verify.exact.kirchhoff.weierstrass import enclosed
-from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import Clebsch, ImmersedBody
-from verify.scenes.motion import Clock, Impulse
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import diagonal
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.turned import Turned, upright
+from taylor_verify.exact.kirchhoff.weierstrass import enclosed
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import diagonal
 
 WHOLE = frozenset({"attitude", "centre"})
 TIMES = [Fraction(-3, 2), Fraction(0), Fraction(7, 2)]

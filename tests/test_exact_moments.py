@@ -1,6 +1,6 @@
 """Closed forms under a constant moment: against the Taylor route, and put into the equations.
 
-Legend as in verify.exact.euler.moments.regime.
+Legend as in taylor_verify.exact.euler.moments.regime.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.euler.moments import erf
-from verify.exact.euler.moments.kummer import KummerTurn
-from verify.exact.euler.moments.regime import LoadedSpin
-from verify.exact.euler.quaternion import Quaternion
-from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import IDENTITY, Clock, Motion, Spin
-from verify.scenes.precision import exact_value
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.euler.moments import erf
+from taylor_verify.exact.euler.moments.kummer import KummerTurn
+from taylor_verify.exact.euler.moments.regime import LoadedSpin
+from taylor_verify.exact.euler.quaternion import Quaternion
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 40
 ROUTES = ("arb", "mpmath")
@@ -290,7 +290,7 @@ def test_a_chirp_that_bends_the_wrong_way_is_caught(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The equations of motion see the sign of the quadratic term of phi."""
-    monkeypatch.setattr("verify.exact.euler.moments.regime.LoadedSpin", WrongSign)
+    monkeypatch.setattr("taylor_verify.exact.euler.moments.regime.LoadedSpin", WrongSign)
     assert not equation_residual(load(f"euler/{name}"), "arb", Fraction(2)) <= mpf("1e-3")
 
 

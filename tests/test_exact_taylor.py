@@ -12,13 +12,13 @@ import pytest
 from mpmath import libmp, mp, mpf
 from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
-from verify.exact.route import solution
-from verify.exact.solution import Unsettled
-from verify.exact.taylor import TaylorSolution, arcs
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Motion, Spin
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector, diagonal, scaled
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.taylor import TaylorSolution, arcs
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 
-import verify
-from verify.judge.judgement import Judgement
-from verify.judge.verdict import Status
-from verify.models.problem import Problem
-from verify.solvers.solver import Callback, Solver
-from verify.solvers.trajectory import Outcome, Trajectory
+import taylor_verify
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 pytest_plugins = ["pytester"]
 
@@ -41,8 +41,8 @@ class Array:
 
 
 WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
-    "check": lambda solve: verify.check("euler/rest", solve),
-    "run": lambda solve: verify.run("euler/rest", Callback(solve)),
+    "check": lambda solve: taylor_verify.check("euler/rest", solve),
+    "run": lambda solve: taylor_verify.run("euler/rest", Callback(solve)),
 }
 
 
@@ -60,13 +60,13 @@ def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
 @pytest.mark.parametrize("code", CODES)
 def test_sys_exit_in_a_solver_class_is_a_failed_solver(code: Any) -> None:
     """A Solver of one's own may break its contract, and does not end its caller."""
-    (verdict,) = verify.run("euler/rest", Leaving(code)).verdicts
+    (verdict,) = taylor_verify.run("euler/rest", Leaving(code)).verdicts
     assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
 
 
 def test_sys_exit_in_the_answer_is_a_failed_solver() -> None:
     """An answer may be an object, which leaves when it is asked for its numbers."""
-    (verdict,) = verify.check("euler/rest", lambda problem: Array()).verdicts
+    (verdict,) = taylor_verify.check("euler/rest", lambda problem: Array()).verdicts
     assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
 
 
@@ -84,8 +84,8 @@ def test_an_interrupt_stays_an_interrupt(way: Any) -> None:
 def test_a_script_whose_solver_leaves_comes_to_its_end() -> None:
     """The exit status of a script is its own, and not that of the solver it judges."""
     script = (
-        "import sys, verify\n"
-        "judged = verify.check('euler/rest', lambda problem: sys.exit(0))\n"
+        "import sys, taylor_verify\n"
+        "judged = taylor_verify.check('euler/rest', lambda problem: sys.exit(0))\n"
         "sys.exit(0 if judged.verdicts[0].verdict == 'pass' else 7)\n"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 7

@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-import verify
-from verify.cli import main, verbs
-from verify.expected import Held, hold
-from verify.judge.verdict import Status, Verdict, exit_status
-from verify.scenes import expected, library
-from verify.scenes.expected import Expectation, Expectations, left_out, read, shipped
-from verify.scenes.faults import Refused
-from verify.scenes.precision import LADDER
-from verify.scenes.reader import load
-from verify.solvers.trajectory import Outcome
+import taylor_verify
+from taylor_verify.cli import main, verbs
+from taylor_verify.expected import Held, hold
+from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.scenes import expected, library
+from taylor_verify.scenes.expected import Expectation, Expectations, left_out, read, shipped
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.precision import LADDER
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.trajectory import Outcome
 
 Captured = pytest.CaptureFixture[str]
 SCENE = "extremes/euler-a"
@@ -170,7 +170,7 @@ def test_nothing_else_is_held_to_it(came: Status, changed: dict[str, str]) -> No
 @pytest.fixture(scope="module")
 def long_separatrix() -> Any:
     """The judgement of a scene whose omega is rightly vacuous on f64."""
-    return verify.run(LONG)
+    return taylor_verify.run(LONG)
 
 
 @pytest.fixture
@@ -234,7 +234,7 @@ def test_what_came_as_expected_leaves_a_junit_file_green(
     assert main(["run", LONG, "--junit", str(file)]) == 0
     assert 'failures="0"' in file.read_text()
     assert "<error" not in file.read_text()
-    monkeypatch.setattr("verify.expected.shipped", Expectations)
+    monkeypatch.setattr("taylor_verify.expected.shipped", Expectations)
     assert main(["run", LONG, "--junit", str(file)]) == 1
     assert "expected pass, got vacuous" in file.read_text()
     capsys.readouterr()
@@ -266,7 +266,9 @@ def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys:
 def test_what_is_left_out_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """No job holds a run that is left out, and a scene with no rung left has no job."""
     made: list[Any] = []
-    monkeypatch.setattr("verify.standard.run_all", lambda jobs, _, **how: made.extend(jobs) or [])
+    monkeypatch.setattr(
+        "taylor_verify.standard.run_all", lambda jobs, _, **how: made.extend(jobs) or []
+    )
     verbs._judge(["a", "b"], "taylor", ["f64", "mp237"], [("a", "mp237"), ("b", "f64")])
     assert [(job.scene, job.rungs) for job in made] == [("a", ("f64",)), ("b", ("mp237",))]
     made.clear()

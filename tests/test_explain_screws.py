@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.explain import explanation
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Impulse
-from verify.scenes.reader import load
+from taylor_verify.explain import explanation
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.reader import load
 
 GENERAL = "kirchhoff/general-body"
 # Fifteen digits are written, of numbers of size one and of products of a few of them.

@@ -13,22 +13,22 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-import verify
-from verify.cli import main
-from verify.exact.elements import elements
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.scenes import library, tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Solver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Trajectory
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
 
 NAMES: Final = library.names(library.EXTREMES)
 _DIGITS: Final = 20
@@ -275,7 +275,9 @@ class Flushed(Solver):
 )
 def test_a_body_that_never_flips_has_no_green_state(name: str) -> None:
     """Its state fails, or the gate says that it sees nothing there; it is never a pass."""
-    verdicts = {v.quantity: v.verdict for v in verify.run(f"extremes/{name}", Flushed()).verdicts}
+    verdicts = {
+        v.quantity: v.verdict for v in taylor_verify.run(f"extremes/{name}", Flushed()).verdicts
+    }
     states = {"omega", "impulse", "attitude"}.intersection(verdicts)
     assert states
     assert not [quantity for quantity in states if verdicts[quantity] is Status.PASS]

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 from test_publish import NAN, PROVENANCE, VERSIONS, passed
 
-from verify.cli import main
-from verify.judge.verdict import Status, Verdict
-from verify.publish import data, extremes
-from verify.publish.extremes import Expected
-from verify.publish.page import MADE_BY
-from verify.publish.report import publish, write
+from taylor_verify.cli import main
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish import data, extremes
+from taylor_verify.publish.extremes import Expected
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.report import publish, write
 
 WHY = "one roundoff grows to the size of the motion"
 VACUOUS = passed("extremes/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0)
@@ -169,7 +169,7 @@ def test_the_command_fails_at_a_mismatch(
         found = passed(scene, "f64", "omega", verdict=verdict)
         return [SimpleNamespace(verdicts=(found,))]
 
-    monkeypatch.setattr("verify.standard.run_all", answered)
+    monkeypatch.setattr("taylor_verify.standard.run_all", answered)
     call = ["publish", "--extremes", "--from", str(tmp_path), "--json"]
     assert main(call) == status
     captured = capsys.readouterr()

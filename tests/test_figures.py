@@ -9,17 +9,17 @@ from statistics import median
 
 import pytest
 
-from verify.exact.euler.jacobi import FreeRotation
-from verify.exact.euler.orbit import Orbit
-from verify.exact.kirchhoff.jacobi import NutatingBody
-from verify.exact.route import solution
-from verify.judge.verdict import STATES, Status, Verdict
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, RigidBody
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.precision import LADDER
-from verify.scenes.scene import Scene
+from taylor_verify.exact.euler.jacobi import FreeRotation
+from taylor_verify.exact.euler.orbit import Orbit
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.verdict import STATES, Status, Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import LADDER
+from taylor_verify.scenes.scene import Scene
 
 BODIES = 32
 PERIODS = 15

@@ -18,10 +18,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pyarrow import parquet
 
-import verify
-from verify.scenes.faults import Refused
-from verify.solvers.file import read
-from verify.solvers.formats.column import BYTES, COLUMNS, ROWS
+import taylor_verify
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.solvers.file import read
+from taylor_verify.solvers.formats.column import BYTES, COLUMNS, ROWS
 
 NAMES = ("t", "w1", "w2", "w3")
 LONG = 3 * ROWS.most
@@ -30,8 +30,8 @@ MOST_MEGABYTES = 300
 
 READ = """
 import sys
-from verify.scenes.faults import Refused
-from verify.solvers.file import read
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.solvers.file import read
 try:
     read(sys.argv[1])
 except Refused as refused:
@@ -103,7 +103,7 @@ def test_too_many_rows_are_refused_in_bounded_memory(
     """Millions of rows are refused before they are made numbers, in every format."""
     file = tmp_path / name
     write(file)
-    place = str(Path(verify.__file__).parents[1])
+    place = str(Path(taylor_verify.__file__).parents[1])
     ended = subprocess.run(
         [sys.executable, "-c", READ, str(file)],
         env={**os.environ, "PYTHONPATH": place},

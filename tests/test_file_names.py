@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.publish.file_names import of_scene, of_solver
-from verify.scenes import library
+from taylor_verify.publish.file_names import of_scene, of_solver
+from taylor_verify.scenes import library
 
 NEAR = ("a/b", "a-b", "a/b/c", "a-b/c", "a/b-c", "a/worst/b", "a/worst-b", "a-worst-b", "a/worst")
 NAMES = st.text(alphabet="ab-_/.%", min_size=1, max_size=6)

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from samples import THREE_INSTANTS
 
-from verify.cli import main
-from verify.folder_lock import LOCK, Occupied, alone_in
+from taylor_verify.cli import main
+from taylor_verify.folder_lock import LOCK, Occupied, alone_in
 
 Captured = pytest.CaptureFixture[str]
 
@@ -58,7 +58,7 @@ def test_a_second_holder_is_refused_and_the_next_is_not(tmp_path: Path) -> None:
 def test_the_lock_of_a_killed_process_is_free(tmp_path: Path) -> None:
     """Its file is left behind, and is in nobody's way."""
     script = (
-        "import sys, time\nfrom pathlib import Path\nfrom verify.folder_lock import alone_in\n"
+        "import sys, time\nfrom pathlib import Path\nfrom taylor_verify.folder_lock import alone_in\n"
         "with alone_in(Path(sys.argv[1])):\n    print(flush=True)\n    time.sleep(600)\n"
     )
     command = [sys.executable, "-c", script, str(tmp_path)]
@@ -128,7 +128,7 @@ def test_a_second_run_into_one_folder_is_refused(
 def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
     """The first comes to its end with the reports it would have had alone."""
     folder = tmp_path / "out"
-    command = [sys.executable, "-m", "verify", "run", "--rung", "f64", "--out", str(folder)]
+    command = [sys.executable, "-m", "taylor_verify", "run", "--rung", "f64", "--out", str(folder)]
     scenes = ["euler/generic", "euler/with-attitude", "kirchhoff/whole-motion"]
     with subprocess.Popen([*command, *scenes], stderr=subprocess.PIPE, text=True) as first:
         deadline = time.monotonic() + 60
@@ -161,7 +161,7 @@ MEASURED = [
 
 def test_every_option_of_publish_is_here() -> None:
     """These tests ask for all that `publish` may be asked for."""
-    from verify.cli.arguments import parse
+    from taylor_verify.cli.arguments import parse
 
     known = vars(parse(["publish"])).keys()
     others = {"folder", "seconds", "seed", "periods", "long", "outside", "json", "act"}
@@ -208,7 +208,7 @@ def test_the_reports_of_the_checkout_are_meant_below_it_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`publish` finds the reports of the checkout from any folder of it."""
-    from verify.cli.folders import reports_folder
+    from taylor_verify.cli.folders import reports_folder
 
     (tmp_path / "pyproject.toml").write_text('[project]\nname = "taylor-verify"\n')
     (tmp_path / "cases").mkdir()

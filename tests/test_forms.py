@@ -11,19 +11,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.models.choice import axis_of_symmetry
-from verify.models.form import CLEBSCH_NAMES, Form, clebsch_equations, kirchhoff_equations
-from verify.models.general import in_general_form, whole_form
-from verify.models.problem import Problem, pose
-from verify.models.rates import Linearised
-from verify.models.special import ClebschAbout, PrincipalEuler, TensorEuler
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.library import names
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.models.choice import axis_of_symmetry
+from taylor_verify.models.form import CLEBSCH_NAMES, Form, clebsch_equations, kirchhoff_equations
+from taylor_verify.models.general import in_general_form, whole_form
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.rates import Linearised
+from taylor_verify.models.special import ClebschAbout, PrincipalEuler, TensorEuler
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 SCENES = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
 CLOCK = Clock(Fraction(0), (Fraction(0), Fraction(1)))

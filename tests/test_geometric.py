@@ -13,27 +13,27 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
 
-from verify.cli import main
-from verify.judge.convergence import sweep
-from verify.judge.judgement import judgement
-from verify.judge.verdict import INITIAL, Status, Verdict
-from verify.models.frame import rotation
-from verify.models.problem import Problem, pose
-from verify.run import run
-from verify.scenes.motion import Clock
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers import registry
-from verify.solvers.geometric import fixed_step, midpoint, moser_veselov
-from verify.solvers.geometric.fixed_step import Body, FixedStep, Step
-from verify.solvers.geometric.methods import METHODS
-from verify.solvers.geometric.methods import named as geometric
-from verify.solvers.geometric.midpoint import ImplicitMidpoint
-from verify.solvers.geometric.moser_veselov import MoserVeselov
-from verify.solvers.geometric.vectors import Quaternion, Vector
-from verify.solvers.registry import check_name, solver_named
-from verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.cli import main
+from taylor_verify.judge.convergence import sweep
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.judge.verdict import INITIAL, Status, Verdict
+from taylor_verify.models.frame import rotation
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import registry
+from taylor_verify.solvers.geometric import fixed_step, midpoint, moser_veselov
+from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step
+from taylor_verify.solvers.geometric.methods import METHODS
+from taylor_verify.solvers.geometric.methods import named as geometric
+from taylor_verify.solvers.geometric.midpoint import ImplicitMidpoint
+from taylor_verify.solvers.geometric.moser_veselov import MoserVeselov
+from taylor_verify.solvers.geometric.vectors import Quaternion, Vector
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 ORDERS = {
     "implicit-midpoint": 2,

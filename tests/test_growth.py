@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from verify.judge.growth import (
+from taylor_verify.judge.growth import (
     BIAS,
     BOUNDED,
     EXACT,
@@ -27,7 +27,7 @@ from verify.judge.growth import (
     student,
     word,
 )
-from verify.judge.verdict import Status
+from taylor_verify.judge.verdict import Status
 
 Draw = Callable[[np.random.Generator, int], np.ndarray]
 

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.growth import checkpoint, course
-from verify.growth.checkpoint import OfAnotherError, Progress
-from verify.growth.errors import PHASE, lane_errors, told
-from verify.growth.experiment import experiment
-from verify.growth.question import Question
-from verify.models.problem import Problem
-from verify.scenes.precision import exact_value, rung
-from verify.scenes.reader import load
-from verify.solvers.taylor.ensemble import Lane
-from verify.solvers.trajectory import Outcome
+from taylor_verify.exact.route import solution
+from taylor_verify.growth import checkpoint, course
+from taylor_verify.growth.checkpoint import OfAnotherError, Progress
+from taylor_verify.growth.errors import PHASE, lane_errors, told
+from taylor_verify.growth.experiment import experiment
+from taylor_verify.growth.question import Question
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.taylor.ensemble import Lane
+from taylor_verify.solvers.trajectory import Outcome
 
 SHORT = 10**3.5
 
@@ -32,7 +32,7 @@ def question(name: str = "euler/about-max-axis", on: str = "f64", **changed: Any
 
 
 def several_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("verify.growth.question.PIECE_PERIODS", 400)
+    monkeypatch.setattr("taylor_verify.growth.question.PIECE_PERIODS", 400)
 
 
 # The question

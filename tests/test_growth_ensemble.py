@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.judge.errors import state_errors
-from verify.models.form import Named
-from verify.models.problem import Problem, pose
-from verify.scenes.motion import Clock
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers.taylor.driver import LONGEST_STEP
-from verify.solvers.taylor.ensemble import Ensemble, Lane, batch_width
-from verify.solvers.trajectory import Outcome, Trajectory, from_scaled
-from verify.trade.starts import nearby
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.errors import state_errors
+from taylor_verify.models.form import Named
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.taylor.driver import LONGEST_STEP
+from taylor_verify.solvers.taylor.ensemble import Ensemble, Lane, batch_width
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+from taylor_verify.trade.starts import nearby
 
 # More than one batch of any processor, and no multiple of a power of two.
 LANES = 19

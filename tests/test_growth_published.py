@@ -12,20 +12,20 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from verify.cli import main
-from verify.growth import published
-from verify.growth.errors import PHASE
-from verify.growth.experiment import Experiment, Found, experiment
-from verify.growth.published import Entry
-from verify.growth.question import Question
-from verify.judge.growth import BIAS
-from verify.judge.verdict import Status
-from verify.publish import growth as pages
-from verify.publish.pictures import growth as diagram
-from verify.publish.pictures.picture import plotting
-from verify.publish.pictures.style import PAGE_WIDTH
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
+from taylor_verify.cli import main
+from taylor_verify.growth import published
+from taylor_verify.growth.errors import PHASE
+from taylor_verify.growth.experiment import Experiment, Found, experiment
+from taylor_verify.growth.published import Entry
+from taylor_verify.growth.question import Question
+from taylor_verify.judge.growth import BIAS
+from taylor_verify.judge.verdict import Status
+from taylor_verify.publish import growth as pages
+from taylor_verify.publish.pictures import growth as diagram
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
 
 SHORT = 10**3.5
 
@@ -156,10 +156,10 @@ def test_a_run_that_was_stopped_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Stopped between two pieces, the same command ends with the same numbers as one that was not."""
-    monkeypatch.setattr("verify.growth.question.PIECE_PERIODS", 500)
+    monkeypatch.setattr("taylor_verify.growth.question.PIECE_PERIODS", 500)
     call = ["publish", "--growth", "--periods", "3163", "--from"]
     assert main([*call, str(tmp_path / "whole")]) == 0
-    say = "verify.cli.growth_publish._Progress.__call__"
+    say = "taylor_verify.cli.growth_publish._Progress.__call__"
 
     def stopped(_progress: object, _label: str, done: int, _of: int) -> None:
         if done == 5:

@@ -11,10 +11,10 @@ import pytest
 from first_order import Kick, engine, explicit, implicit, in_space_axes, none
 from trajectories import VECTORS, Columns, columns_at, exact_columns, write_csv
 
-import verify
-from verify.cli import main
-from verify.judge.answer import FileJudgement
-from verify.scenes.reader import load
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.scenes.reader import load
 
 OMEGA = VECTORS["omega"]
 WORDS = {
@@ -26,7 +26,7 @@ WORDS = {
 
 def causes(path: Path, scene: str, columns: Columns) -> list[str]:
     """The notes of a file that name the gyroscopic term."""
-    found = verify.check(scene, write_csv(path / "mine.csv", columns))
+    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
     assert isinstance(found, FileJudgement)
     return [note for note in found.notes if "gyroscopic" in note]
 

@@ -17,13 +17,12 @@ from rich.table import Table
 from rich.text import Text
 from samples import LISTED_INSTANTS
 
-import verify
-from verify.cli import main
-from verify.cli.console import EscapingConsole, new_console, print_line, text_of
-from verify.cli.streams import escaped
-from verify.publish import sheets
+from taylor_verify.cli import main
+from taylor_verify.cli.console import EscapingConsole, new_console, print_line, text_of
+from taylor_verify.cli.streams import escaped
+from taylor_verify.publish import sheets
 
-ROOT = Path(verify.__file__).parents[1]
+ROOT = Path(__file__).resolve().parents[1]
 # Clear the screen, ring, a title for the window, the same in C1, and a turn of the direction.
 STEERING = "\x1b[2J\x07\x1b]0;x\x07\x9b31m\u202e"
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2028\u2029]")
@@ -119,7 +118,7 @@ def test_a_terminal_gets_styles_and_no_commands(steering_scene: Path) -> None:
     """On a terminal of its own the answer has colours, and no control sequence beside them."""
     leader, follower = pty.openpty()
     ended = run(
-        [sys.executable, "-m", "verify", "explain", str(steering_scene)],
+        [sys.executable, "-m", "taylor_verify", "explain", str(steering_scene)],
         stdout=follower,
         stderr=follower,
         cwd=ROOT,

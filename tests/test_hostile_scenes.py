@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from samples import LISTED_INSTANTS
 
-from verify.scenes.clock_reader import MOST_SAMPLES
-from verify.scenes.faults import Refused
-from verify.scenes.reader import MOST_BYTES, load, read
+from taylor_verify.scenes.clock_reader import MOST_SAMPLES
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.reader import MOST_BYTES, load, read
 
 # What a scene of a hundred kilobytes may take: a second where the machine is busy.
 PATIENCE = 5.0

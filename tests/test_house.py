@@ -14,7 +14,7 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-PACKAGE: Final = Path(__file__).resolve().parents[1] / "verify"
+PACKAGE: Final = Path(__file__).resolve().parents[1] / "verify" / "taylor_verify"
 
 Sources = Mapping[str, str]
 """Module name to source text; a package goes by its own name, as in an import."""
@@ -24,7 +24,7 @@ Sources = Mapping[str, str]
 
 
 class Import(NamedTuple):
-    """One imported name in full, such as ``verify.judge.verdict.Verdict``."""
+    """One imported name in full, such as ``taylor_verify.judge.verdict.Verdict``."""
 
     target: str
     line: int
@@ -90,52 +90,58 @@ def within(name: str, *roots: str) -> bool:
 
 
 def room(module: str) -> str:
-    """The room of a module: ``exact`` for ``verify.exact.euler.jacobi``, empty at the top level."""
+    """The room of a module: ``exact`` for ``taylor_verify.exact.euler.jacobi``, empty at the top level."""
     parts = module.split(".")
     return parts[1] if len(parts) > 1 else ""
 
 
 def keeps_its_walls(module: str, source: str) -> Iterator[str]:
     """exact, models and solvers import nothing from the rooms they are walled off from."""
-    forbidden = [f"verify.{other}" for other in WALLS.get(room(module), ())]
+    forbidden = [f"taylor_verify.{other}" for other in WALLS.get(room(module), ())]
     for target, line, _ in imports(source):
         if within(target, *forbidden):
             yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
 
 
 def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
-    """scenes imports nothing of verify but scenes."""
+    """scenes imports nothing of taylor_verify but scenes."""
     if room(module) == "scenes":
-        yield from _beyond(["verify.scenes"], module, source)
+        yield from _beyond(["taylor_verify.scenes"], module, source)
 
 
 def publish_reads_verdicts(module: str, source: str) -> Iterator[str]:
     """publish imports judge.verdict and judge.record only, and scenes for its type hints."""
     if room(module) == "publish":
-        readable = ["verify.publish", "verify.judge.verdict", "verify.judge.record"]
-        yield from _beyond(readable, module, source, for_types=["verify.scenes"])
+        readable = [
+            "taylor_verify.publish",
+            "taylor_verify.judge.verdict",
+            "taylor_verify.judge.record",
+        ]
+        yield from _beyond(readable, module, source, for_types=["taylor_verify.scenes"])
 
 
 def stands_in_its_own_environment(module: str, source: str) -> Iterator[str]:
-    """A program in solvers/outside imports nothing of verify: its environment has no verify."""
-    if within(module, "verify.solvers.outside"):
+    """A program in solvers/outside imports nothing of taylor_verify: its environment lacks it."""
+    if within(module, "taylor_verify.solvers.outside"):
         yield from _beyond([], module, source)
 
 
 def _beyond(
     allowed: list[str], module: str, source: str, for_types: Iterable[str] = ()
 ) -> Iterator[str]:
-    """What a module imports of verify beyond these; type hints may use ``for_types`` too."""
+    """What a module imports of taylor_verify beyond these; type hints may use ``for_types`` too."""
     for target, line, for_types_only in imports(source):
         readable = [*allowed, *for_types] if for_types_only else allowed
-        if within(target, "verify") and not within(target, *readable):
-            expected = " or ".join(readable) or "nothing of verify"
+        if within(target, "taylor_verify") and not within(target, *readable):
+            expected = " or ".join(readable) or "nothing of taylor_verify"
             yield f"expected {expected}, got {target} @ {module}:{line}"
 
 
 def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
     """heyoka is imported only in models and in solvers/taylor."""
-    placed = within(module, "verify.models") or module.startswith("verify.solvers.taylor")
+    placed = within(module, "taylor_verify.models") or module.startswith(
+        "taylor_verify.solvers.taylor"
+    )
     for target, line, _ in imports(source):
         if within(target, "heyoka") and not placed:
             yield f"expected heyoka in models or solvers/taylor, got {target} @ {module}:{line}"
@@ -143,7 +149,9 @@ def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
 
 def is_silent(module: str, source: str) -> Iterator[str]:
     """Printing is for cli and progress, and for the programs in solvers/outside."""
-    if within(module, "verify.cli", "verify.progress", "verify.solvers.outside"):
+    if within(
+        module, "taylor_verify.cli", "taylor_verify.progress", "taylor_verify.solvers.outside"
+    ):
         return
     for target, line, _ in imports(source):
         if within(target, "rich", "sys.stdout", "sys.stderr"):
@@ -291,33 +299,78 @@ def test_the_walls_have_something_behind_them(name: str) -> None:
 
 
 PLANTED = [
-    (keeps_its_walls, "verify.exact.theta", "from verify.models.euler import field", "models"),
-    (keeps_its_walls, "verify.exact.theta", "from verify import solvers", "solvers"),
-    (keeps_its_walls, "verify.exact.theta", "import verify.judge.errors as e", "judge"),
-    (keeps_its_walls, "verify.exact.euler.theta", "def f():\n import verify.publish", "publish"),
-    (keeps_its_walls, "verify.exact", "import_module('verify.controls.signs')", "controls"),
-    (keeps_its_walls, "verify.models.euler", "from verify.exact.theta import q", "exact"),
-    (keeps_its_walls, "verify.solvers.taylor", "from verify.judge import errors", "judge"),
-    (scenes_stand_alone, "verify.scenes.reader", "from verify.run import run", "verify.run"),
-    (publish_reads_verdicts, "verify.publish.plots", "from verify.judge import gates", "gates"),
-    (publish_reads_verdicts, "verify.publish.plots", "import verify.scenes.scene", "scenes"),
-    (heyoka_has_its_place, "verify.judge.errors", "import heyoka as hy", "heyoka"),
-    (heyoka_has_its_place, "verify.solvers.scipy", "from heyoka import par", "heyoka.par"),
-    (is_silent, "verify.judge.errors", "print(1)", "print()"),
-    (is_silent, "verify.run", "from rich.console import Console", "rich.console"),
-    (is_silent, "verify.run", "import sys\nsys.stderr.write('')", "sys.stderr"),
+    (
+        keeps_its_walls,
+        "taylor_verify.exact.theta",
+        "from taylor_verify.models.euler import field",
+        "models",
+    ),
+    (keeps_its_walls, "taylor_verify.exact.theta", "from taylor_verify import solvers", "solvers"),
+    (
+        keeps_its_walls,
+        "taylor_verify.exact.theta",
+        "import taylor_verify.judge.errors as e",
+        "judge",
+    ),
+    (
+        keeps_its_walls,
+        "taylor_verify.exact.euler.theta",
+        "def f():\n import taylor_verify.publish",
+        "publish",
+    ),
+    (
+        keeps_its_walls,
+        "taylor_verify.exact",
+        "import_module('taylor_verify.controls.signs')",
+        "controls",
+    ),
+    (
+        keeps_its_walls,
+        "taylor_verify.models.euler",
+        "from taylor_verify.exact.theta import q",
+        "exact",
+    ),
+    (
+        keeps_its_walls,
+        "taylor_verify.solvers.taylor",
+        "from taylor_verify.judge import errors",
+        "judge",
+    ),
+    (
+        scenes_stand_alone,
+        "taylor_verify.scenes.reader",
+        "from taylor_verify.run import run",
+        "taylor_verify.run",
+    ),
+    (
+        publish_reads_verdicts,
+        "taylor_verify.publish.plots",
+        "from taylor_verify.judge import gates",
+        "gates",
+    ),
+    (
+        publish_reads_verdicts,
+        "taylor_verify.publish.plots",
+        "import taylor_verify.scenes.scene",
+        "scenes",
+    ),
+    (heyoka_has_its_place, "taylor_verify.judge.errors", "import heyoka as hy", "heyoka"),
+    (heyoka_has_its_place, "taylor_verify.solvers.scipy", "from heyoka import par", "heyoka.par"),
+    (is_silent, "taylor_verify.judge.errors", "print(1)", "print()"),
+    (is_silent, "taylor_verify.run", "from rich.console import Console", "rich.console"),
+    (is_silent, "taylor_verify.run", "import sys\nsys.stderr.write('')", "sys.stderr"),
     (
         stands_in_its_own_environment,
-        "verify.solvers.outside.julia",
-        "from verify.scenes import scene",
-        "verify.scenes",
+        "taylor_verify.solvers.outside.julia",
+        "from taylor_verify.scenes import scene",
+        "taylor_verify.scenes",
     ),
-    (imports_in_full, "verify.exact.theta", "from ..models import euler", "..models"),
-    (imports_in_full, "verify.exact.theta", "from mpmath import *", "mpmath.*"),
-    (names_a_noun, "verify.exact.utils", "", "utils"),
-    (names_a_noun, "verify.core.exact", "", "core"),
-    (says_what_it_is, "verify.exact.theta", "x = 1", "docstring"),
-    (is_small, "verify.exact.theta", "x = 1\n" * 401, "401"),
+    (imports_in_full, "taylor_verify.exact.theta", "from ..models import euler", "..models"),
+    (imports_in_full, "taylor_verify.exact.theta", "from mpmath import *", "mpmath.*"),
+    (names_a_noun, "taylor_verify.exact.utils", "", "utils"),
+    (names_a_noun, "taylor_verify.core.exact", "", "core"),
+    (says_what_it_is, "taylor_verify.exact.theta", "x = 1", "docstring"),
+    (is_small, "taylor_verify.exact.theta", "x = 1\n" * 401, "401"),
 ]
 
 
@@ -337,14 +390,17 @@ def test_every_rule_has_a_planted_fault() -> None:
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("verify.exact.theta", "from verify.scenes.scene import Scene"),
-        ("verify.models.euler", "import heyoka as hy"),
-        ("verify.solvers.taylor.step", "from heyoka import par"),
-        ("verify.publish.plots", "from verify.judge.verdict import Verdict"),
-        ("verify.publish.plots", "if TYPE_CHECKING:\n from verify.scenes.scene import Scene"),
-        ("verify.judge.errors", "from verify.modelscope import x"),
-        ("verify.cli", "from rich.console import Console\nprint(1)"),
-        ("verify.exact.theta", "x = 1\n" * 399),
+        ("taylor_verify.exact.theta", "from taylor_verify.scenes.scene import Scene"),
+        ("taylor_verify.models.euler", "import heyoka as hy"),
+        ("taylor_verify.solvers.taylor.step", "from heyoka import par"),
+        ("taylor_verify.publish.plots", "from taylor_verify.judge.verdict import Verdict"),
+        (
+            "taylor_verify.publish.plots",
+            "if TYPE_CHECKING:\n from taylor_verify.scenes.scene import Scene",
+        ),
+        ("taylor_verify.judge.errors", "from taylor_verify.modelscope import x"),
+        ("taylor_verify.cli", "from rich.console import Console\nprint(1)"),
+        ("taylor_verify.exact.theta", "x = 1\n" * 399),
     ],
 )
 def test_a_sound_module_passes(module: str, source: str) -> None:
@@ -356,9 +412,9 @@ def test_a_sound_module_passes(module: str, source: str) -> None:
 def test_a_circle_is_found_through_a_function() -> None:
     """An import inside a function closes a circle, and the circle is named in importing order."""
     sources = {
-        "verify.a": "from verify.b import x",
-        "verify.b": "def f():\n from verify.c import y",
-        "verify.c": "import verify.a",
+        "taylor_verify.a": "from taylor_verify.b import x",
+        "taylor_verify.b": "def f():\n from taylor_verify.c import y",
+        "taylor_verify.c": "import taylor_verify.a",
     }
     found = circle(sources)
     assert set(found) == set(sources)
@@ -369,8 +425,8 @@ def test_a_circle_is_found_through_a_function() -> None:
 def test_a_type_hint_closes_no_circle() -> None:
     """An import for type hints alone is not executed, so it is no part of a circle."""
     sources = {
-        "verify.a": "from verify.b import x",
-        "verify.b": "if TYPE_CHECKING:\n from verify.a import y",
+        "taylor_verify.a": "from taylor_verify.b import x",
+        "taylor_verify.b": "if TYPE_CHECKING:\n from taylor_verify.a import y",
     }
     assert circle(sources) == []
 
@@ -378,12 +434,12 @@ def test_a_type_hint_closes_no_circle() -> None:
 def test_a_detour_is_found() -> None:
     """exact may not reach models by way of a room that may import both."""
     sources = {
-        "verify.exact.theta": "from verify.trade.front import x",
-        "verify.trade.front": "from verify.models.euler import y",
-        "verify.models.euler": "",
+        "taylor_verify.exact.theta": "from taylor_verify.trade.front import x",
+        "taylor_verify.trade.front": "from taylor_verify.models.euler import y",
+        "taylor_verify.models.euler": "",
     }
     assert [fault.partition(", got ")[2] for fault in detours(sources)] == [
-        "verify.models.euler @ verify.exact.theta"
+        "taylor_verify.models.euler @ taylor_verify.exact.theta"
     ]
 
 

@@ -11,16 +11,16 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
-from verify import hunt
-from verify.cli import main
-from verify.hunt import FAMILIES, Catch, Family, Found
-from verify.judge.gates import FACTOR
-from verify.judge.verdict import Status, Verdict
-from verify.publish import worst
-from verify.run import run
-from verify.scenes import library
-from verify.scenes.faults import Refused
-from verify.scenes.reader import load
+from taylor_verify import hunt
+from taylor_verify.cli import main
+from taylor_verify.hunt import FAMILIES, Catch, Family, Found
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish import worst
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.reader import load
 
 KEPT = library.names(library.WORST)
 EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)

@@ -10,19 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-import verify
-from verify.cli import main
-from verify.judge.baseline import hold
-from verify.judge.gates import FACTOR
-from verify.judge.judgement import Judgement
-from verify.judge.rounding_class import compare
-from verify.judge.verdict import INITIAL, Status, Verdict
-from verify.models.problem import Problem
-from verify.run import run
-from verify.scenes.motion import Clock
-from verify.scenes.reader import load
-from verify.solvers.solver import Callback
-from verify.solvers.taylor.driver import Taylor
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.baseline import hold
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.rounding_class import compare
+from taylor_verify.judge.verdict import INITIAL, Status, Verdict
+from taylor_verify.models.problem import Problem
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor.driver import Taylor
 
 SCENES = ["euler/generic", "euler/later-start", "euler/full-tensor", "kirchhoff/whole-motion"]
 Rows = np.ndarray[Any, Any]
@@ -66,7 +66,7 @@ def test_a_sound_run_starts_where_it_was_told(scene: str, on: str) -> None:
 
 def test_a_wrong_start_is_said_first() -> None:
     """The row fails with the size of the error, and so does the state at that sample."""
-    first, omega, *_ = verify.check("euler/generic", answered(first_moved)).verdicts
+    first, omega, *_ = taylor_verify.check("euler/generic", answered(first_moved)).verdicts
     assert (first.quantity, first.verdict) == (INITIAL, Status.FAIL)
     assert first.max == pytest.approx(1e-6, rel=0.05)
     assert "is not the scene's initial state: its omega is off by 9.79e-07" in first.because
@@ -75,7 +75,7 @@ def test_a_wrong_start_is_said_first() -> None:
 
 def test_a_wrong_end_is_no_wrong_start() -> None:
     """What is wrong later only fails later."""
-    first, omega, *_ = verify.check("euler/generic", answered(last_moved)).verdicts
+    first, omega, *_ = taylor_verify.check("euler/generic", answered(last_moved)).verdicts
     assert (first.verdict, omega.verdict) == (Status.PASS, Status.FAIL)
 
 
@@ -85,7 +85,7 @@ def test_a_start_of_nan_fails() -> None:
     def spoil(rows: Rows) -> Rows:
         return np.where(np.arange(len(rows))[:, None] == 0, np.nan, rows)
 
-    first, *_ = verify.check("euler/generic", answered(spoil)).verdicts
+    first, *_ = taylor_verify.check("euler/generic", answered(spoil)).verdicts
     assert (first.quantity, first.verdict) == (INITIAL, Status.FAIL)
 
 
@@ -114,8 +114,8 @@ def test_older_rows_without_it_are_compared_in_an_orderly_way() -> None:
 
 def test_a_start_that_got_worse_is_a_regression() -> None:
     """With the row in the baseline a start that is wrong now has regressed."""
-    before = rows(verify.check("euler/generic", answered(lambda found: found)))
-    now = rows(verify.check("euler/generic", answered(first_moved)))
+    before = rows(taylor_verify.check("euler/generic", answered(lambda found: found)))
+    now = rows(taylor_verify.check("euler/generic", answered(first_moved)))
     held = hold(before, now)
     assert held.status == 1
     assert INITIAL in {found.quantity for found in held.regressions}

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.exact.elements import elements
-from verify.exact.looks import evenly
-from verify.judge import inputs
-from verify.judge.inputs import input_rounding
-from verify.scenes.motion import Clock, Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.looks import evenly
+from taylor_verify.judge import inputs
+from taylor_verify.judge.inputs import input_rounding
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 F64 = rung("f64")
 HALVES, SAMPLES = 24, 145

@@ -13,20 +13,20 @@ import pytest
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.invariants import invariants
-from verify.exact.kirchhoff import integrable
-from verify.exact.kirchhoff.integrable import Fourth, fourth_integral
-from verify.exact.taylor import TaylorSolution
-from verify.judge.verdict import Status
-from verify.models.problem import pose
-from verify.run import run
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Impulse, Motion
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.kirchhoff import integrable
+from taylor_verify.exact.kirchhoff.integrable import Fourth, fourth_integral
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import pose
+from taylor_verify.run import run
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 SCENES = {
     "clebsch-second-case": "clebsch2",

@@ -22,11 +22,11 @@ from samples import (
     vector,
 )
 
-from verify.exact.invariants import Invariant, invariants
-from verify.exact.taylor import TaylorSolution
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Motion, Spin
-from verify.scenes.scene import Scene
+from taylor_verify.exact.invariants import Invariant, invariants
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 

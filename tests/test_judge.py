@@ -10,23 +10,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.route import solution
-from verify.exact.solution import Settled, Unsettled
-from verify.judge.attainable import Floor, floor
-from verify.judge.drifts import drifts
-from verify.judge.errors import Errors, arc_length, largest, state_errors
-from verify.judge.gates import FACTOR, index_of_largest, judge
-from verify.judge.verdict import Status, Verdict, exit_status, summary
-from verify.models.problem import pose
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Motion, Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Callback
-from verify.solvers.taylor.driver import Taylor
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Settled, Unsettled
+from taylor_verify.judge.attainable import Floor, floor
+from taylor_verify.judge.drifts import drifts
+from taylor_verify.judge.errors import Errors, arc_length, largest, state_errors
+from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
+from taylor_verify.judge.verdict import Status, Verdict, exit_status, summary
+from taylor_verify.models.problem import pose
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor.driver import Taylor
 
 
 def errors_of(values: list[float], radius: float = 0.0) -> Errors:
@@ -307,7 +307,7 @@ class Doubtful(Settled):
 
 def test_truth_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where two precisions never agree there is no verdict but undecided, and it is not green."""
-    from verify.judge import judgement
+    from taylor_verify.judge import judgement
 
     with pytest.raises(Unsettled):
         Doubtful().motion([Fraction(1)], 20)

@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_publish import MIXED, RECORD
 
-from verify.cli import main
-from verify.publish.paper import files, html, latex, latex_table, latex_text
-from verify.publish.paper.latex_table import TURNED, UPRIGHT, Cell, Table
-from verify.publish.paper.parsed import Page
-from verify.publish.report import publish, write
+from taylor_verify.cli import main
+from taylor_verify.publish.paper import files, html, latex, latex_table, latex_text
+from taylor_verify.publish.paper.latex_table import TURNED, UPRIGHT, Cell, Table
+from taylor_verify.publish.paper.parsed import Page
+from taylor_verify.publish.report import publish, write
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 PUBLISHED = [path for path in files.PAGES if (REPORTS / path).exists()]

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from test_publish import MIXED, RECORD
 
-from verify.publish.markdown import Column, code, prose, table
-from verify.publish.paper import files, latex
-from verify.publish.paper.parsed import Page
-from verify.publish.report import publish, write
+from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.paper import files, latex
+from taylor_verify.publish.paper.parsed import Page
+from taylor_verify.publish.report import publish, write
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 

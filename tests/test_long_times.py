@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.library import EXTREMES, WORST, names
-from verify.scenes.motion import Motion
-from verify.scenes.precision import exact_value
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.library import EXTREMES, WORST, names
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 40
 PERIODS = 10**9

@@ -12,32 +12,38 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.condition import derivatives, transition
-from verify.exact.rates import rates
-from verify.exact.route import solution
-from verify.exact.sensitivity import sensitivity
-from verify.exact.solution import NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.judge.verdict import Status
-from verify.models import euler
-from verify.models.algebra import add, apply, cross
-from verify.models.euler import heinbockel_moment, momentum_rate
-from verify.models.form import Equations, Named, euler_equations, kirchhoff_equations, labelled
-from verify.models.kirchhoff import velocities
-from verify.models.manufactured import Loaded
-from verify.models.problem import Problem, pose
-from verify.run import run
-from verify.scenes import library
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.manufactured import Manufactured, Wave
-from verify.scenes.motion import Clock
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load, read
-from verify.scenes.scene import Scene
-from verify.solvers.registry import solver_named
-from verify.solvers.solver import Callback, Solver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Trajectory
+from taylor_verify.exact.condition import derivatives, transition
+from taylor_verify.exact.rates import rates
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.sensitivity import sensitivity
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models import euler
+from taylor_verify.models.algebra import add, apply, cross
+from taylor_verify.models.euler import heinbockel_moment, momentum_rate
+from taylor_verify.models.form import (
+    Equations,
+    Named,
+    euler_equations,
+    kirchhoff_equations,
+    labelled,
+)
+from taylor_verify.models.kirchhoff import velocities
+from taylor_verify.models.manufactured import Loaded
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.manufactured import Manufactured, Wave
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load, read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
 
 NAMES = library.names("manufactured")
 EULER = "manufactured/euler-full-tensor"

@@ -11,22 +11,22 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.route import solution
-from verify.exact.taylor import arcs
-from verify.judge.balances import clock_work
-from verify.judge.judgement import Judgement
-from verify.judge.verdict import Status
-from verify.models.problem import Problem
-from verify.run import run
-from verify.scenes.bodies import RigidBody
-from verify.scenes.manufactured import Manufactured
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Callback, Solver
-from verify.solvers.straight_line import straight_line
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Trajectory
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import arcs
+from taylor_verify.judge.balances import clock_work
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem
+from taylor_verify.run import run
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.straight_line import straight_line
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
 
 EULER = "manufactured/euler-tones"
 KIRCHHOFF = "manufactured/kirchhoff-tones"

@@ -18,20 +18,20 @@ import pytest
 from mpmath import mp, mpf
 from trajectories import columns_at, write_csv
 
-import verify
-from verify.exact.route import solution
-from verify.judge.inputs import _numbers, _with_factors
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, adopt, pose
-from verify.run import run
-from verify.scenes import library
-from verify.scenes.motion import Clock
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers import protocol
-from verify.solvers.process import named
-from verify.solvers.trajectory import Outcome
+import taylor_verify
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.inputs import _numbers, _with_factors
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, adopt, pose
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import protocol
+from taylor_verify.solvers.process import named
+from taylor_verify.solvers.trajectory import Outcome
 
 NAMES = library.names("manufactured")
 EULER = "manufactured/euler-tones"
@@ -173,7 +173,7 @@ def written(scene: Scene, folder: Path, **columns: Any) -> str:
 def test_a_sound_file_passes(name: str, tmp_path: Path) -> None:
     """The exact motion of numbers rounded where the scene writes them passes, balances and all."""
     scene = load(name)
-    found = verify.check(scene, written(scene, tmp_path))
+    found = taylor_verify.check(scene, written(scene, tmp_path))
     assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
     assert {"T"} < {verdict.quantity for verdict in found.verdicts}
     assert found.conventions == ()
@@ -184,7 +184,7 @@ def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> 
     scene = load(EULER)
     columns = columns_at(scene, scene.clock.instants)
     columns["w2"][len(columns["w2"]) // 2] += 1e-12
-    found = verify.check(scene, write_csv(tmp_path / "file.csv", columns))
+    found = taylor_verify.check(scene, write_csv(tmp_path / "file.csv", columns))
     failed = {v.quantity for v in found.verdicts if v.verdict is Status.FAIL}
     assert failed == {"omega", "T", "H2"}
 
@@ -193,7 +193,7 @@ def test_a_late_file_is_said_to_be_late(tmp_path: Path) -> None:
     """Loads have a time of their own: a file whose clock is late by 1e-6 is told so, and does not pass."""
     scene = load(EULER)
     columns = columns_at(scene, scene.clock.instants)
-    late = verify.check(
+    late = taylor_verify.check(
         scene,
         write_csv(tmp_path / "file.csv", {**columns, "t": [t + 1e-6 for t in columns["t"]]}),
     )

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
+from taylor_verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 

@@ -25,29 +25,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
 
-from verify.controls.defects import DEFECTS, Defect
-from verify.judge.attainable import floor
-from verify.judge.errors import largest, state_errors
-from verify.judge.gates import FACTOR
-from verify.models.form import (
+from taylor_verify.controls.defects import DEFECTS, Defect
+from taylor_verify.judge.attainable import floor
+from taylor_verify.judge.errors import largest, state_errors
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.models.form import (
     Form,
     Named,
     clebsch_equations,
     euler_equations,
     kirchhoff_equations,
 )
-from verify.models.frame import rotation
-from verify.models.problem import Problem, pose
-from verify.models.special import ClebschAbout
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.motion import IDENTITY, Clock, Impulse, Motion, Quaternion, Spin
-from verify.scenes.precision import rung
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
-from verify.solvers.solver import Solver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.models.frame import rotation
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.special import ClebschAbout
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import IDENTITY, Clock, Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 # Images are formed and compared at this many bits, three times those of the finest rung used.
 BITS = 300

@@ -9,19 +9,19 @@ import pytest
 from flint import arb, fmpq
 from mpmath import mp
 
-from verify.models.euler import angular_velocity, heinbockel_moment, momentum_rate
-from verify.models.form import Form, clebsch_equations, euler_equations, kirchhoff_equations
-from verify.models.frame import attitude_rate, centre_rate, rotation
-from verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
-from verify.models.problem import NotRepresentable, Problem, pose
-from verify.models.rates import Linearised
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.library import names
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.models.euler import angular_velocity, heinbockel_moment, momentum_rate
+from taylor_verify.models.form import Form, clebsch_equations, euler_equations, kirchhoff_equations
+from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
+from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
+from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 EULER_STATES = ("H1", "H2", "H3", "e0", "e1", "e2", "e3")
 EULER_PARAMETERS = ("K11", "K12", "K13", "K22", "K23", "K33", "M1", "M2", "M3")

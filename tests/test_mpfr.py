@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact.invariants import invariants
-from verify.exact.route import solution
-from verify.scenes.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
-from verify.scenes.reader import load
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.route import solution
+from taylor_verify.scenes.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
+from taylor_verify.scenes.reader import load
 
 OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
 

@@ -12,13 +12,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from verify.cli import main
-from verify.judge.verdict import Status
-from verify.run import run
-from verify.solvers import entrant
-from verify.solvers import scipy as solver
-from verify.solvers.environment import Environment, NotMade
-from verify.solvers.trajectory import Outcome
+from taylor_verify.cli import main
+from taylor_verify.judge.verdict import Status
+from taylor_verify.run import run
+from taylor_verify.solvers import entrant
+from taylor_verify.solvers import scipy as solver
+from taylor_verify.solvers.environment import Environment, NotMade
+from taylor_verify.solvers.trajectory import Outcome
 
 SCENE = "euler/generic"
 INSTALL = "pip install 'taylor-verify[scipy]'"
@@ -43,9 +43,9 @@ def with_broken_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [n for n in sys.modules if n.startswith("verify.solvers.taylor")]:
+    for name in [n for n in sys.modules if n.startswith("taylor_verify.solvers.taylor")]:
         monkeypatch.delitem(sys.modules, name)
-    taylor = sys.modules.get("verify.solvers")
+    taylor = sys.modules.get("taylor_verify.solvers")
     monkeypatch.delattr(taylor, "taylor", raising=False)
     monkeypatch.setitem(sys.modules, "heyoka", None)
 

@@ -8,12 +8,12 @@ from fractions import Fraction
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.route import solution
-from verify.scenes.motion import Motion, Spin
-from verify.scenes.precision import exact_value
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
 # A turn is known to thirty digits and each row to 25.

@@ -8,16 +8,16 @@ from fractions import Fraction
 import pytest
 from mpmath import mp
 
-from verify.judge.verdict import Status
-from verify.models.problem import pose
-from verify.run import run
-from verify.scenes.motion import Clock
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers import odefun
-from verify.solvers.registry import check_name, solver_named
-from verify.solvers.trajectory import Outcome
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import pose
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import odefun
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome
 
 NAME = "mpmath:odefun"
 

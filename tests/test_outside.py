@@ -16,15 +16,15 @@ from typing import Any
 import pytest
 from samples import THREE_INSTANTS
 
-from verify.models.problem import Problem, pose
-from verify.scenes.precision import rung
-from verify.scenes.reader import load, read
-from verify.solvers import protocol
-from verify.solvers.entrant import SCRIPTS, Entrant, entrants, named, prepare
-from verify.solvers.environment import NotMade, metadata
-from verify.solvers.registry import NAMES, OUTSIDE, check_name, solver_named
-from verify.solvers.trajectory import Outcome, Trajectory
-from verify.trade.accuracy import Truth
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load, read
+from taylor_verify.solvers import protocol
+from taylor_verify.solvers.entrant import SCRIPTS, Entrant, entrants, named, prepare
+from taylor_verify.solvers.environment import NotMade, metadata
+from taylor_verify.solvers.registry import NAMES, OUTSIDE, check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.trade.accuracy import Truth
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 # Both models, each of the five states, backwards, loads, and instants that leave out the start.
@@ -190,7 +190,7 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
 
 
 def error(asked: Problem, answer: protocol.Answer) -> float:
-    from verify.solvers.solver import Callback
+    from taylor_verify.solvers.solver import Callback
 
     return Truth(asked).accuracy(Callback(lambda _: answer.states).solve(asked)).worst
 

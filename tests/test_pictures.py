@@ -18,12 +18,12 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from verify.publish.pictures import prices, time_by_rung, trade
-from verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
-from verify.publish.pictures.panels import panels_of
-from verify.publish.pictures.picture import Picture, plotting, save
-from verify.publish.pictures.series import front_of, series_of
-from verify.publish.pictures.style import (
+from taylor_verify.publish.pictures import prices, time_by_rung, trade
+from taylor_verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
+from taylor_verify.publish.pictures.panels import panels_of
+from taylor_verify.publish.pictures.picture import Picture, plotting, save
+from taylor_verify.publish.pictures.series import front_of, series_of
+from taylor_verify.publish.pictures.style import (
     KINDS,
     PAGE_WIDTH,
     bits_of,
@@ -33,7 +33,7 @@ from verify.publish.pictures.style import (
     look_of_rung,
     place_of_rung,
 )
-from verify.publish.pictures.wording import label_of, power_of_ten
+from taylor_verify.publish.pictures.wording import label_of, power_of_ten
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -208,7 +208,7 @@ def test_a_program_of_ones_own_borrows_no_look() -> None:
 def test_an_unknown_look_is_the_same_in_every_process() -> None:
     """Not even with another hash seed does an unknown name look different."""
     code = (
-        "from verify.publish.pictures.style import look_of;"
+        "from taylor_verify.publish.pictures.style import look_of;"
         "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
     )
     seen = {
@@ -310,9 +310,9 @@ def test_the_front_is_that_of_the_trade(crowded: dict) -> None:
 
 def test_the_front_agrees_with_the_judgement() -> None:
     """The front of a real trade-off, from its document alone, is the one that the trade names."""
-    from verify.scenes.reader import load
-    from verify.trade.setting import settings as all_settings
-    from verify.trade.trade_off import trade_off
+    from taylor_verify.scenes.reader import load
+    from taylor_verify.trade.setting import settings as all_settings
+    from taylor_verify.trade.trade_off import trade_off
 
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
@@ -513,7 +513,7 @@ def test_alt_texts_need_no_matplotlib() -> None:
     rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from verify.publish.pictures import trade, prices, time_by_rung\n"
+        "from taylor_verify.publish.pictures import trade, prices, time_by_rung\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -20,10 +20,10 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.ticker import FixedLocator
 
-from verify.cli import main
-from verify.publish import gallery
-from verify.publish.gallery import Stored
-from verify.publish.pictures import (
+from taylor_verify.cli import main
+from taylor_verify.publish import gallery
+from taylor_verify.publish.gallery import Stored
+from taylor_verify.publish.pictures import (
     axis_path,
     centre_path,
     errors_over_time,
@@ -32,10 +32,10 @@ from verify.publish.pictures import (
     potential,
     shifts,
 )
-from verify.publish.pictures.palette import lightness
-from verify.publish.pictures.picture import Picture, plotting, save
-from verify.publish.pictures.solids import norm_of, scale
-from verify.publish.pictures.view import Ellipsoid, View, pieces
+from taylor_verify.publish.pictures.palette import lightness
+from taylor_verify.publish.pictures.picture import Picture, plotting, save
+from taylor_verify.publish.pictures.solids import norm_of, scale
+from taylor_verify.publish.pictures.view import Ellipsoid, View, pieces
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 STORED = Stored(REPORTS)

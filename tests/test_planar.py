@@ -9,19 +9,19 @@ from typing import Any
 import pytest
 from mpmath import mp, mpf
 
-from verify.exact.elements import elements
-from verify.exact.kirchhoff.planar import closed_form, enclosed
-from verify.exact.kirchhoff.plane import plane, regime
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.models.problem import pose
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Clock, Impulse
-from verify.scenes.precision import LADDER, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff.planar import closed_form, enclosed
+from taylor_verify.exact.kirchhoff.plane import plane, regime
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
 
 DIGITS = 25
 TIMES = [Fraction(1, 3), Fraction(5), Fraction(-7, 2), Fraction(9)]

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from latex2mathml.converter import convert
 
-from verify.cli import main
-from verify.exact.kirchhoff.displaced import centred
-from verify.exact.kirchhoff.turned import upright
-from verify.exact.printed import document
-from verify.exact.route import solution
-from verify.explain import explanation
-from verify.portrait import (
+from taylor_verify.cli import main
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.route import solution
+from taylor_verify.explain import explanation
+from taylor_verify.portrait import (
     DIGITS,
     FIGURES,
     INTERVALS,
@@ -29,12 +29,12 @@ from verify.portrait import (
     portrait,
     roots,
 )
-from verify.publish import portraits
-from verify.publish.file_names import of_scene
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.library import names
-from verify.scenes.motion import Impulse
-from verify.scenes.reader import load
+from taylor_verify.publish import portraits
+from taylor_verify.publish.file_names import of_scene
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "reports" / portraits.FOLDER
@@ -56,7 +56,9 @@ def stored(scene: str) -> dict[str, Any]:
 def made(scene: str) -> dict[str, Any]:
     """A portrait whose run is left out: the rest does not depend on it, and it is most of the time."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("verify.portrait.explanation", lambda scene, rung: {"cost": {"seconds": 1.0}})
+        patch.setattr(
+            "taylor_verify.portrait.explanation", lambda scene, rung: {"cost": {"seconds": 1.0}}
+        )
         return portrait(load(scene))
 
 
@@ -310,7 +312,7 @@ def test_the_command_writes_one_file_a_scene(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`publish --portraits` tells each scene as it ends; in the file is all that `explain` says."""
-    monkeypatch.setattr("verify.scenes.library.names", lambda: ("euler/rest",))
+    monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: ("euler/rest",))
     assert main(["publish", "--portraits", "--from", str(tmp_path)]) == 0
     out, err = capfd.readouterr()
     assert "1/1 euler/rest" in err

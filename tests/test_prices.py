@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from verify.models.general import in_general_form
-from verify.models.problem import Problem
-from verify.publish import prices as page
-from verify.scenes.precision import rung
-from verify.solvers.taylor.pace import Pace
-from verify.trade import prices
-from verify.trade.variants import Variant, variants
+from taylor_verify.models.general import in_general_form
+from taylor_verify.models.problem import Problem
+from taylor_verify.publish import prices as page
+from taylor_verify.scenes.precision import rung
+from taylor_verify.solvers.taylor.pace import Pace
+from taylor_verify.trade import prices
+from taylor_verify.trade.variants import Variant, variants
 
 F64 = rung("f64")
 NAMES = [variant.name for variant in variants()]

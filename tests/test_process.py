@@ -24,16 +24,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from samples import THREE_INSTANTS
 
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.precision import rung
-from verify.scenes.reader import load, read
-from verify.solvers import protocol
-from verify.solvers.process import DEFAULT_LIMIT, LIMIT_VARIABLE, Process, named
-from verify.solvers.registry import check_name, solver_named
-from verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load, read
+from taylor_verify.solvers import protocol
+from taylor_verify.solvers.process import DEFAULT_LIMIT, LIMIT_VARIABLE, Process, named
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 OUTSIDE = Path(protocol.__file__).with_name("outside")
 SCENES = [
@@ -420,9 +420,7 @@ def test_a_terminated_run_takes_its_program_along(tmp_path: Path) -> None:
     waits = (
         f"import os, time; open({str(marker)!r}, 'w').write(f'{{os.getpid()}}.'); time.sleep(600)"
     )
-    script = (
-        f"import sys\nfrom verify.run import run\nrun('euler/rest', {program(tmp_path, waits)!r})\n"
-    )
+    script = f"import sys\nfrom taylor_verify.run import run\nrun('euler/rest', {program(tmp_path, waits)!r})\n"
     ours = subprocess.Popen([sys.executable, "-c", script])
     try:
         deadline = time.monotonic() + 60

@@ -6,8 +6,8 @@ from time import sleep
 
 import pytest
 
-from verify.cli import progress
-from verify.cli.progress import PROGRESS, working
+from taylor_verify.cli import progress
+from taylor_verify.cli.progress import PROGRESS, working
 
 
 def test_news_of_long_work_is_told(

@@ -18,14 +18,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from verify.judge.record import GateRecord, Record
-from verify.judge.verdict import Status, Verdict
-from verify.publish import data, tables
-from verify.publish.cells import NOTHING, figure
-from verify.publish.markdown import code, prose
-from verify.publish.page import MADE_BY
-from verify.publish.report import load, publish, write
-from verify.publish.runs import GRAVITY, place_of_rung
+from taylor_verify.judge.record import GateRecord, Record
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish import data, tables
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import code, prose
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.report import load, publish, write
+from taylor_verify.publish.runs import GRAVITY, place_of_rung
 
 VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
 PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
@@ -230,7 +230,7 @@ def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
 # Files.
 
 
-@pytest.mark.parametrize("broken", ["verify.publish.data._json", "pathlib.Path.write_text"])
+@pytest.mark.parametrize("broken", ["taylor_verify.publish.data._json", "pathlib.Path.write_text"])
 def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
     """A disk that is full in the middle of writing leaves every old byte and nothing new."""
     before = contents(report)
@@ -304,16 +304,16 @@ def test_data_that_are_no_verdicts_are_refused(report: Path, text: str, fault: s
 def test_publishing_imports_no_physics(report: Path) -> None:
     """Publishing, in a process of its own, loads no integrator, no arithmetic and no other room."""
     program = (
-        "import sys; from verify.publish.report import publish; publish(sys.argv[1]);"
+        "import sys; from taylor_verify.publish.report import publish; publish(sys.argv[1]);"
         "print(*sys.modules)"
     )
     ran = subprocess.run(
         [sys.executable, "-c", program, str(report)], capture_output=True, text=True, check=True
     )
     loaded = set(ran.stdout.split())
-    assert "verify.publish.tables" in loaded
+    assert "taylor_verify.publish.tables" in loaded
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
-    rooms = {name.split(".")[1] for name in loaded if name.startswith("verify.")}
+    rooms = {name.split(".")[1] for name in loaded if name.startswith("taylor_verify.")}
     assert rooms == {"publish", "judge"}
 
 

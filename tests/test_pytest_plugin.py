@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from verify.demand import Demand, demands, report
-from verify.judge.verdict import Status, Verdict
-from verify.run import run
-from verify.scenes.reader import read
+from taylor_verify.demand import Demand, demands, report
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.reader import read
 
 pytest_plugins = ["pytester"]
 
@@ -44,7 +44,7 @@ def _as_in_another_project(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def session(pytester: pytest.Pytester, tests: str, *options: str) -> pytest.RunResult:
     pytester.makepyfile(SOLVERS + tests)
-    plugins = ("-p", "verify.pytest_plugin", "-p", "no:cacheprovider")
+    plugins = ("-p", "taylor_verify.pytest_plugin", "-p", "no:cacheprovider")
     return pytester.runpytest_inprocess(*plugins, *options)
 
 
@@ -194,7 +194,7 @@ def test_the_note_of_a_worker_reaches_the_summary(pytester: pytest.Pytester) -> 
         SOLVERS
         + 'def test_blind(verify_solver):\n    verify_solver("euler/generic", still, only="T")\n'
     )
-    plugins = ("-p", "verify.pytest_plugin", "-p", "xdist.plugin", "-n", "1")
+    plugins = ("-p", "taylor_verify.pytest_plugin", "-p", "xdist.plugin", "-n", "1")
     result = pytester.runpytest_subprocess(*plugins)
     result.assert_outcomes(passed=1)
     result.stdout.fnmatch_lines(["*= taylor-verify =*", "*conserved quantities alone*"])
@@ -413,13 +413,15 @@ def test_the_plugin_alone_imports_nothing_heavy() -> None:
     script = (
         "import sys, pytest\n"
         "before = set(sys.modules)\n"
-        "import verify.pytest_plugin\n"
+        "import taylor_verify.pytest_plugin\n"
         "print(*sorted(m for m in set(sys.modules) - before if m.partition('.')[0] != '__mp_main__'))"
     )
     done = subprocess.run([sys.executable, "-c", script], check=True, stdout=subprocess.PIPE)
     loaded = set(done.stdout.decode().split())
-    assert {"verify", "verify.pytest_plugin"} <= loaded
-    assert {name for name in loaded if name.startswith("verify.")} == {"verify.pytest_plugin"}
+    assert {"taylor_verify", "taylor_verify.pytest_plugin"} <= loaded
+    assert {name for name in loaded if name.startswith("taylor_verify.")} == {
+        "taylor_verify.pytest_plugin"
+    }
     assert not HEAVY & {name.partition(".")[0] for name in loaded}
 
 
@@ -430,12 +432,13 @@ def test_a_session_without_a_scene_loads_nothing_heavy(pytester: pytest.Pytester
         import sys
 
         def test_mine():
-            assert "verify.pytest_plugin" in sys.modules
-            assert {{n for n in sys.modules if n.startswith("verify.")}} == {{"verify.pytest_plugin"}}
+            assert "taylor_verify.pytest_plugin" in sys.modules
+            mine = {{name for name in sys.modules if name.startswith("taylor_verify.")}}
+            assert mine == {{"taylor_verify.pytest_plugin"}}
             assert not {HEAVY!r} & set(sys.modules)
         """
     )
-    result = pytester.runpytest_subprocess("-p", "verify.pytest_plugin")
+    result = pytester.runpytest_subprocess("-p", "taylor_verify.pytest_plugin")
     result.assert_outcomes(passed=1)
 
 
@@ -451,5 +454,7 @@ def test_scenes_are_collected_without_the_heavy_modules(pytester: pytest.Pyteste
             verify_scene(lambda problem: [problem.given.initial.omega] * len(problem.times))
         """
     )
-    result = pytester.runpytest_subprocess("-p", "verify.pytest_plugin", "-k", "euler/spherical")
+    result = pytester.runpytest_subprocess(
+        "-p", "taylor_verify.pytest_plugin", "-k", "euler/spherical"
+    )
     assert result.parseoutcomes()["passed"] == 1

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.publish import quoted, report
-from verify.publish.quoted import BEGIN, END
+from taylor_verify.publish import quoted, report
+from taylor_verify.publish.quoted import BEGIN, END
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 PAGE = f"before\n\n{BEGIN}\n\nstale\n\n{END}\n\nafter\n"

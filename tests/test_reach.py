@@ -10,18 +10,18 @@ from math import inf, log10, nan
 import pytest
 from mpmath import mp
 
-import verify
-from verify.exact.elements import elements
-from verify.judge.gates import FACTOR
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.taylor.driver import Taylor, at_tolerance
-from verify.trade import reach
-from verify.trade.attainability import least_error, left_out, narrowest
-from verify.trade.families import QUARTERS, Family, at_quarters, families, family, period_of
-from verify.trade.recommend import MARGIN, OutOfReach, recommend
-from verify.trade.setting import setting
+import taylor_verify
+from taylor_verify.exact.elements import elements
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.trade import reach
+from taylor_verify.trade.attainability import least_error, left_out, narrowest
+from taylor_verify.trade.families import QUARTERS, Family, at_quarters, families, family, period_of
+from taylor_verify.trade.recommend import MARGIN, OutOfReach, recommend
+from taylor_verify.trade.setting import setting
 
 F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")
 MEMBERS = [(one, value) for one in families() for value in one.values]
@@ -110,7 +110,9 @@ def test_errors_and_floors_are_the_judges(name: str, value: str) -> None:
     found = measured(one, value)["f64"]
     asked = at_quarters(one.scene(value), found.periods)
     states = {"omega", "impulse", "attitude"}
-    verdicts = [v for v in verify.run(asked, Taylor(), "f64").verdicts if v.quantity in states]
+    verdicts = [
+        v for v in taylor_verify.run(asked, Taylor(), "f64").verdicts if v.quantity in states
+    ]
     assert found.errors[-1] == pytest.approx(max(v.max for v in verdicts), rel=1e-3)
     # The judge's stands at the sample of its largest error, ours is the largest of all samples.
     assert max(v.attainable for v in verdicts) <= 1.001 * found.floors[-1]
@@ -213,7 +215,7 @@ def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
     """A floor of one rounding a sample is no more than that of the steps that the solver takes."""
     for name in ("f32", "f64"):
         least = least_error(generic, rung(name))
-        (_, omega, *_) = verify.run(generic, Taylor(), name).verdicts
+        (_, omega, *_) = taylor_verify.run(generic, Taylor(), name).verdicts
         assert least is not None
         assert 0 < least <= omega.attainable * FACTOR
         assert omega.max <= FACTOR * omega.attainable

@@ -15,14 +15,14 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from verify.cli import main
-from verify.publish import reach as page
-from verify.publish.cells import NOTHING
-from verify.publish.pictures import digits_map
-from verify.publish.pictures.palette import TEXT_CONTRAST, contrast, lightness
-from verify.publish.pictures.picture import plotting
-from verify.publish.pictures.style import PAGE_WIDTH
-from verify.trade import reach
+from taylor_verify.cli import main
+from taylor_verify.publish import reach as page
+from taylor_verify.publish.cells import NOTHING
+from taylor_verify.publish.pictures import digits_map
+from taylor_verify.publish.pictures.palette import TEXT_CONTRAST, contrast, lightness
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.trade import reach
 
 # The page
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.cli.arguments import parse
-from verify.scenes.library import names
+from taylor_verify.cli.arguments import parse
+from taylor_verify.scenes.library import names
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -87,5 +87,5 @@ def test_the_python_shown_is_python() -> None:
     python = [text for language, text in BLOCKS if language == "python"]
     for text in python:
         compile(text, "README.md", "exec")
-    assert any("verify.check(" in text for text in python)
+    assert any("taylor_verify.check(" in text for text in python)
     assert any("verify_solver" in text for text in python)

@@ -16,17 +16,17 @@ from typing import Any
 
 import pytest
 
-from verify.cli import main
-from verify.exact.printed import document
-from verify.exact.route import solution
-from verify.exact.solution import Unsettled
-from verify.parallel import Failed, _document
-from verify.publish import reference_files
-from verify.publish.page import MADE_BY
-from verify.reference import DIGITS, reference, references
-from verify.scenes.bodies import RigidBody
-from verify.scenes.library import names
-from verify.scenes.reader import load
+from taylor_verify.cli import main
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.parallel import Failed, _document
+from taylor_verify.publish import reference_files
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.reference import DIGITS, reference, references
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "reports" / "reference"
@@ -312,7 +312,7 @@ def test_the_verb_writes_the_folder(
     reference_files.write(tmp_path, [reference(load("euler/generic")) | {"scene": "euler/gone"}])
     mine = tmp_path / "reference" / "mine.json"
     mine.write_text("{}\n", encoding="utf-8")
-    monkeypatch.setattr("verify.scenes.library.names", lambda: scenes)
+    monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: scenes)
     assert main(["publish", "--reference", "--from", str(tmp_path), "--json"]) == 0
     out, err = capsys.readouterr()
     assert all(f"/2 {scene}\n" in err for scene in scenes)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from verify.scenes import library
-from verify.scenes.faults import Refused
-from verify.scenes.reader import load
+from taylor_verify.scenes import library
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.reader import load
 
 FILES = sorted((library.cases_directory() / "refused").glob("*.toml"))
 FRAGMENT, COUNT = "# refused: ", "# faults: "

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from verify.cli import main, verbs
-from verify.judge import rounding_class
-from verify.judge.rounding_class import FACTOR, LEVEL, compare
-from verify.judge.verdict import Status, Verdict
-from verify.publish.report import load, write
+from taylor_verify.cli import main, verbs
+from taylor_verify.judge import rounding_class
+from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish.report import load, write
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 Floats = np.ndarray[Any, np.dtype[np.float64]]

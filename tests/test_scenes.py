@@ -12,20 +12,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.exact.kirchhoff.quartic import Nutation
-from verify.exact.kirchhoff.regime import regime
-from verify.exact.route import solution
-from verify.models.problem import pose
-from verify.scenes import library, tensors
-from verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from verify.scenes.body_reader import obeys_triangle_inequality
-from verify.scenes.faults import Refused
-from verify.scenes.motion import IDENTITY, Impulse, Spin
-from verify.scenes.precision import rung
-from verify.scenes.reader import load, read
-from verify.scenes.scene import Scene
-from verify.scenes.table import LARGEST_EXPONENT, exact_number
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.regime import regime
+from taylor_verify.exact.route import solution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.body_reader import obeys_triangle_inequality
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.motion import IDENTITY, Impulse, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load, read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.table import LARGEST_EXPONENT, exact_number
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 ORDERS = tuple(permutations(range(3)))
 INTEGERS = st.integers(-(10**12), 10**12)
@@ -431,7 +431,7 @@ def test_each_orbit_lies_on_the_side_that_its_reason_says(name: str) -> None:
     assert ORBITS[name](ratio - middle)
 
 
-# The words of verify/exact/kirchhoff/regime.py, and the free bodies of Clebsch's form that move so.
+# The words of exact/kirchhoff/regime.py, and the free bodies of Clebsch's form that move so.
 MOTIONS = {
     "rest": ("rest",),
     "euler-top": ("zero-impulse", "euler-top"),
@@ -773,7 +773,7 @@ def test_a_path_is_a_path_and_a_name_a_name() -> None:
 
 def test_the_cases_must_exist(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a folder of cases there is an error, and not a green run of no scenes."""
-    monkeypatch.setattr(library, "__file__", "/nowhere/verify/scenes/library.py")
+    monkeypatch.setattr(library, "__file__", "/nowhere/verify/taylor_verify/scenes/library.py")
     with pytest.raises(FileNotFoundError, match="cases"):
         library.names()
 

@@ -12,24 +12,24 @@ import pytest
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from verify.exact.balls import ball, midpoint
-from verify.exact.elements import elements
-from verify.exact.kirchhoff.general import screws_beside
-from verify.exact.kirchhoff.screws import (
+from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff.general import screws_beside
+from taylor_verify.exact.kirchhoff.screws import (
     Screw,
     Stability,
     is_steady,
     screws,
     turn_of,
 )
-from verify.exact.taylor import TaylorSolution
-from verify.models.problem import pose
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Impulse
-from verify.scenes.precision import LADDER, exact_value, rung
-from verify.scenes.reader import load
-from verify.scenes.tensors import Matrix
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import LADDER, exact_value, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.tensors import Matrix
 
 F2 = Fraction(5, 4)
 

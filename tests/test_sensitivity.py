@@ -13,18 +13,18 @@ import pytest
 from mpmath import mp, mpf
 from samples import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
 
-from verify.exact import sensitivity as module
-from verify.exact.condition import derivatives
-from verify.exact.inputs import body_input
-from verify.exact.rotation import rotation_matrix
-from verify.exact.route import solution
-from verify.exact.sensitivity import Sensitivity, sensitivity
-from verify.exact.solution import Unsettled
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector, diagonal, scaled
+from taylor_verify.exact import sensitivity as module
+from taylor_verify.exact.condition import derivatives
+from taylor_verify.exact.inputs import body_input
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.sensitivity import Sensitivity, sensitivity
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 Twin = Callable[[Sensitivity], Sensitivity]

@@ -18,26 +18,26 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 from trajectories import VECTORS, columns_at, write_csv
 
-from verify.check import check
-from verify.exact.rates import rates
-from verify.exact.route import solution
-from verify.exact.solution import Solution
-from verify.judge.errors import state_errors
-from verify.judge.judgement import judgement
-from verify.judge.shift import Kind, Shift, time_shifts
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.publish.report import load as load_report
-from verify.publish.report import write
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Motion, Spin
-from verify.scenes.precision import exact_value, power_of_two, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Callback
-from verify.solvers.taylor.driver import Taylor
+from taylor_verify.check import check
+from taylor_verify.exact.rates import rates
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.errors import state_errors
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.judge.shift import Kind, Shift, time_shifts
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.publish.report import load as load_report
+from taylor_verify.publish.report import write
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.precision import exact_value, power_of_two, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor.driver import Taylor
 
 Course = Callable[[float], Fraction]
 DIGITS = 25

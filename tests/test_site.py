@@ -17,17 +17,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.cli import main
-from verify.publish.pictures.palette import PAPER, contrast
-from verify.publish.site import motion, work
-from verify.publish.site.builder import MADE_BY, build, contents
-from verify.publish.site.links import Links, way
-from verify.publish.site.looks import DARK_PAPER, LINE_CONTRAST, Palette
-from verify.publish.site.mathml import inline, mathml
-from verify.publish.site.prose import Prose, sections, slug_of
-from verify.publish.site.scene_page import ScenePage
-from verify.publish.site.source import Report
-from verify.solvers.file import read
+from taylor_verify.cli import main
+from taylor_verify.publish.pictures.palette import PAPER, contrast
+from taylor_verify.publish.site import motion, work
+from taylor_verify.publish.site.builder import MADE_BY, build, contents
+from taylor_verify.publish.site.links import Links, way
+from taylor_verify.publish.site.looks import DARK_PAPER, LINE_CONTRAST, Palette
+from taylor_verify.publish.site.mathml import inline, mathml
+from taylor_verify.publish.site.prose import Prose, sections, slug_of
+from taylor_verify.publish.site.scene_page import ScenePage
+from taylor_verify.publish.site.source import Report
+from taylor_verify.solvers.file import read
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 SCENES = ("euler/with-attitude", "euler/constant-moment", "kirchhoff/whole-motion")
@@ -299,7 +299,7 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     }
     for markdown, expected in links.items():
         assert expected in prose(tmp_path).html(markdown, "tables/x.md", "tables/x.html")
-    for markdown in ("[a](../../verify/run.py)", "[a](../data/none.json)"):
+    for markdown in ("[a](../../verify/taylor_verify/run.py)", "[a](../data/none.json)"):
         assert "<a" not in prose(tmp_path).html(markdown, "tables/x.md", "tables/x.html")
 
 

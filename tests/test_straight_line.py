@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.models.problem import Problem, pose
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.solvers.straight_line import _Code, straight_line
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.solvers.straight_line import _Code, straight_line
 
 SCENES = (
     *("euler/full-tensor", "euler/with-attitude", "euler/constant-moment", "euler/spherical"),

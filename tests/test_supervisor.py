@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 from samples import THREE_INSTANTS
 
-from verify.models.problem import pose
-from verify.scenes.precision import rung
-from verify.scenes.reader import read
-from verify.solvers import process, supervisor
-from verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import read
+from taylor_verify.solvers import process, supervisor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="orphans are adopted on Linux")
 
@@ -143,7 +143,7 @@ def test_the_death_of_the_caller_ends_them(
 ) -> None:
     """A caller that is killed has no time for anything, and its program ends all the same."""
     program.write_text(HIDES + HANG)
-    script = f"from verify.run import run\nrun('euler/rest', {name(program)!r})\n"
+    script = f"from taylor_verify.run import run\nrun('euler/rest', {name(program)!r})\n"
     with subprocess.Popen([sys.executable, "-c", script]) as caller:
         deadline = time.monotonic() + 60
         while len(numbers(hidden)) < 2 and time.monotonic() < deadline:

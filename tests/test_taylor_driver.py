@@ -16,23 +16,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.models.times import rounded_times
-from verify.run import run
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.instants import EquallySpaced
-from verify.scenes.motion import Clock, Spin
-from verify.scenes.precision import LADDER, power_of_two, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Callback
-from verify.solvers.taylor import driver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.taylor.numbers import arithmetic
-from verify.solvers.trajectory import Outcome
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.times import rounded_times
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.instants import EquallySpaced
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.precision import LADDER, power_of_two, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.trajectory import Outcome
 
 RUNGS = (*LADDER, "mp24", "mp100", "mp1000")
 
@@ -207,7 +207,7 @@ def test_unfinished_run_fails_without_a_number(
     outcome: Outcome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
-    from verify.solvers.taylor import driver
+    from taylor_verify.solvers.taylor import driver
 
     monkeypatch.setattr(driver, "_propagate", lambda *_: (outcome, 7, [], 0.0))
     (verdict,) = run("euler/generic", "taylor", "f64").verdicts
@@ -218,7 +218,7 @@ def test_unfinished_run_fails_without_a_number(
 
 def test_step_limit_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that needs more steps than it is allowed stops and says so."""
-    from verify.solvers.taylor import driver
+    from taylor_verify.solvers.taylor import driver
 
     monkeypatch.setattr(driver, "_STEPS_PER_RADIAN", 0)
     long = spinning((Fraction(3, 4), Fraction(-1, 2), Fraction(7, 8)), Fraction(10**6))
@@ -320,7 +320,7 @@ def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
     Samples are read off the steps: if a step ended at each, there would be thousands.
     """
-    from verify.solvers.taylor import driver
+    from taylor_verify.solvers.taylor import driver
 
     monkeypatch.setattr(driver, "_FEWEST_LOOKS", 24)
     few, many = (
@@ -333,7 +333,7 @@ def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
 def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """How MPFR's calls are compiled changes what they cost, and not a bit of what they compute."""
-    from verify.solvers.taylor import driver
+    from taylor_verify.solvers.taylor import driver
 
     problem = pose(load("euler/with-attitude"), rung("mp113"))
     found = []
@@ -347,7 +347,7 @@ def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) 
 
 def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
     """Coefficients are parameters: another body, start and span compile nothing."""
-    from verify.solvers.taylor import driver
+    from taylor_verify.solvers.taylor import driver
 
     scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))
     moments = tensors.diagonal((Fraction(1), Fraction(2), Fraction(17, 5)))
@@ -364,7 +364,7 @@ def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
 
 def test_exact_numbers_are_made_when_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """A solve makes no rational of its samples or of their times; who looks gets all of them."""
-    from verify.solvers import trajectory
+    from taylor_verify.solvers import trajectory
 
     calls = []
     formed = trajectory.from_scaled
@@ -437,11 +437,11 @@ def test_an_interrupt_is_heard_within_a_second_of_a_long_run() -> None:
         "import sys\n"
         "from dataclasses import replace\n"
         "from fractions import Fraction\n"
-        "from verify.models.problem import pose\n"
-        "from verify.scenes.motion import Clock\n"
-        "from verify.scenes.precision import rung\n"
-        "from verify.scenes.reader import load\n"
-        "from verify.solvers.taylor.driver import Taylor\n"
+        "from taylor_verify.models.problem import pose\n"
+        "from taylor_verify.scenes.motion import Clock\n"
+        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.scenes.reader import load\n"
+        "from taylor_verify.solvers.taylor.driver import Taylor\n"
         "clock = Clock(Fraction(0), (Fraction(10**9),))\n"
         "problem = pose(replace(load('euler/generic'), clock=clock), rung('f64'))\n"
         "print('posed', flush=True)\n"

@@ -10,13 +10,13 @@ import pytest
 from mpmath import mp, mpf
 from samples import one_instant, vector
 
-from verify.exact.route import solution
-from verify.exact.taylor import TaylorSolution
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody, RigidBody
-from verify.scenes.motion import Impulse, Spin
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import ZERO_MATRIX, diagonal
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import ZERO_MATRIX, diagonal
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 # A disturbance of the spin about the middle axis grows by exp(0.577 t).

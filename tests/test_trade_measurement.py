@@ -13,20 +13,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import verify
-from verify.cli import main
-from verify.models.problem import Problem
-from verify.publish import report
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Solver
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.trajectory import Outcome, Trajectory
-from verify.trade import measurement, rounds
-from verify.trade.measurement import PROCESSES, SCENES, TIMES, published_settings
-from verify.trade.order_statistics import CONFIDENCE, coverage, estimate, place
-from verify.trade.rounds import YARDSTICK, clock_resolution, measured
-from verify.trade.setting import setting as real_setting
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.models.problem import Problem
+from taylor_verify.publish import report
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.trade import measurement, rounds
+from taylor_verify.trade.measurement import PROCESSES, SCENES, TIMES, published_settings
+from taylor_verify.trade.order_statistics import CONFIDENCE, coverage, estimate, place
+from taylor_verify.trade.rounds import YARDSTICK, clock_resolution, measured
+from taylor_verify.trade.setting import setting as real_setting
 
 # The median and its interval.
 
@@ -123,7 +123,7 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 
 
 def _taylor() -> tuple[str, object]:
-    from verify.scenes.precision import rung
+    from taylor_verify.scenes.precision import rung
 
     return "taylor", rung("f64")
 
@@ -287,7 +287,7 @@ def test_the_verb_writes_data_and_page(
     page = tmp_path / "tables" / "tradeoff.md"
     before = page.read_text(encoding="utf-8")
     page.unlink()
-    report.write(tmp_path, verify.run("euler/rest").verdicts, [])
+    report.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
     assert main(["publish", "--from", str(tmp_path)]) == 0
     assert page.read_text(encoding="utf-8") == before
     assert "tables/tradeoff.md" in (tmp_path / "README.md").read_text(encoding="utf-8")

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from verify.publish.cells import NOTHING
-from verify.publish.pictures.wording import floors_of
-from verify.publish.report import publish_tradeoff
-from verify.publish.tradeoff import front, page
-from verify.publish.trades import NUMBERS, TIMINGS, load, write
+from taylor_verify.publish.cells import NOTHING
+from taylor_verify.publish.pictures.wording import floors_of
+from taylor_verify.publish.report import publish_tradeoff
+from taylor_verify.publish.tradeoff import front, page
+from taylor_verify.publish.trades import NUMBERS, TIMINGS, load, write
 
 
 def point(solver: str, error: float | None, **changed: Any) -> dict[str, Any]:

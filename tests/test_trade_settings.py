@@ -10,22 +10,22 @@ from pathlib import Path
 
 import pytest
 
-import verify
-from verify.cli import main
-from verify.judge.verdict import Status
-from verify.models.problem import Problem, pose
-from verify.scenes.motion import Clock
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.registry import NAMES, check_name, solver_named
-from verify.solvers.solver import Callback, Solver
-from verify.solvers.taylor.driver import Taylor, at_tolerance
-from verify.solvers.trajectory import Trajectory
-from verify.trade.cold import cold
-from verify.trade.point import Standing
-from verify.trade.recommend import recommend
-from verify.trade.setting import (
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.verdict import Status
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import NAMES, check_name, solver_named
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.trajectory import Trajectory
+from taylor_verify.trade.cold import cold
+from taylor_verify.trade.point import Standing
+from taylor_verify.trade.recommend import recommend
+from taylor_verify.trade.setting import (
     NOTHING,
     STEP,
     TOLERANCE,
@@ -35,7 +35,7 @@ from verify.trade.setting import (
     setting,
     settings,
 )
-from verify.trade.trade_off import trade_off
+from taylor_verify.trade.trade_off import trade_off
 
 F64 = rung("f64")
 
@@ -80,7 +80,7 @@ def test_checking_a_tolerance_loads_no_heyoka() -> None:
     import subprocess
 
     program = (
-        "import sys; from verify.solvers.registry import check_name; "
+        "import sys; from taylor_verify.solvers.registry import check_name; "
         "check_name('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
@@ -88,7 +88,7 @@ def test_checking_a_tolerance_loads_no_heyoka() -> None:
 
 def test_a_tolerance_that_the_rung_cannot_hold_is_unavailable() -> None:
     """heyoka would read a zero as its default; it is never given one."""
-    (verdict,) = verify.run("euler/generic", "taylor?tol=1e-60", "f32").verdicts
+    (verdict,) = taylor_verify.run("euler/generic", "taylor?tol=1e-60", "f32").verdicts
     assert verdict.verdict is Status.UNAVAILABLE
     assert "f32 has no number" in verdict.because
 
@@ -187,7 +187,7 @@ def test_odefun_is_withheld_from_a_long_motion() -> None:
 )
 def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, reason: str) -> None:
     """Its verdict fails no gate, and its point in the trade is not run; both say why."""
-    (verdict,) = verify.run(short(scene), name).verdicts
+    (verdict,) = taylor_verify.run(short(scene), name).verdicts
     assert verdict.verdict is Status.UNAVAILABLE
     assert reason in verdict.because
     (p,) = trade_off(short(scene), [setting(name, F64)], repeats=1).points
@@ -211,7 +211,7 @@ def test_a_recommendation_can_be_typed() -> None:
     asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
     found = recommend(scene, 1e-5, asked)
     assert solver_named(found.solver.name) == found.solver
-    (_, omega, *_) = verify.run(scene, found.solver.name, found.rung).verdicts
+    (_, omega, *_) = taylor_verify.run(scene, found.solver.name, found.rung).verdicts
     assert omega.max <= 1e-5
     assert found.solver.name in found.document()["command"]
 

@@ -17,25 +17,25 @@ from hypothesis import strategies as st
 from mpmath import mp
 from samples import THREE_INSTANTS
 
-import verify
-from verify.cli import main
-from verify.cli.tradeoff_text import tradeoff_text
-from verify.models.problem import Problem, pose
-from verify.scenes.precision import Rung, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.solvers.solver import Solver
-from verify.solvers.taylor.driver import Taylor, at_tolerance
-from verify.solvers.trajectory import Outcome, Trajectory
-from verify.trade.accuracy import Accuracy, Truth
-from verify.trade.attainability import least_error
-from verify.trade.front import dominates, front, front_sentences, request_sentences
-from verify.trade.point import Point, Standing, point
-from verify.trade.recommend import MARGIN, OutOfReach, recommend, recommended
-from verify.trade.setting import Setting, settings
-from verify.trade.starts import STARTS, nearby
-from verify.trade.timing import Timed, cold_caches, timed
-from verify.trade.trade_off import trade_off
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.cli.tradeoff_text import tradeoff_text
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import Rung, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.trade.accuracy import Accuracy, Truth
+from taylor_verify.trade.attainability import least_error
+from taylor_verify.trade.front import dominates, front, front_sentences, request_sentences
+from taylor_verify.trade.point import Point, Standing, point
+from taylor_verify.trade.recommend import MARGIN, OutOfReach, recommend, recommended
+from taylor_verify.trade.setting import Setting, settings
+from taylor_verify.trade.starts import STARTS, nearby
+from taylor_verify.trade.timing import Timed, cold_caches, timed
+from taylor_verify.trade.trade_off import trade_off
 
 F64 = rung("f64")
 
@@ -255,7 +255,9 @@ def test_a_tolerance_is_positive(text: str) -> None:
 def test_errors_are_the_judges(scene: Scene) -> None:
     """The achieved error and drift of a point are those that the judge finds."""
     (p,) = trade_off(scene, [setting_of(at_tolerance("1e-6"))], repeats=1).points
-    verdicts = {v.quantity: v for v in verify.run(scene, at_tolerance("1e-6"), "f64").verdicts}
+    verdicts = {
+        v.quantity: v for v in taylor_verify.run(scene, at_tolerance("1e-6"), "f64").verdicts
+    }
     # The point adds the width of the truth: a thousandth of a unit of roundoff of 1e-6.
     assert p.error == pytest.approx(verdicts["omega"].max, rel=1e-9)
     assert p.accuracy.final["omega"] == pytest.approx(verdicts["omega"].final, rel=1e-9)
@@ -280,7 +282,7 @@ def test_the_recommended_setting_meets_the_target(scene: Scene, target: float) -
     for start in (scene, *nearby(scene, found.seed)):
         problem = pose(start, found.rung)
         assert MARGIN * Truth(problem).accuracy(found.solver.solve(problem)).worst <= target
-    (_, omega, *_) = verify.run(scene, found.solver, found.rung).verdicts
+    (_, omega, *_) = taylor_verify.run(scene, found.solver, found.rung).verdicts
     assert omega.max is not None
     assert omega.max <= target
 
@@ -372,7 +374,7 @@ def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:
 def test_a_target_is_a_positive_number(scene: Scene, error: float) -> None:
     """Anything else is refused before any work."""
     with pytest.raises(ValueError, match="positive error"):
-        verify.recommend(scene, error)
+        taylor_verify.recommend(scene, error)
 
 
 def test_starts_are_near_and_drawn_from_the_seed(scene: Scene) -> None:

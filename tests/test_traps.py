@@ -14,17 +14,17 @@ from pathlib import Path
 import heyoka as hy
 import pytest
 
-from verify.controls.traps.measured import GENERIC, free
-from verify.controls.traps.table import TRAPS, document
-from verify.controls.traps.trap import Case, Trap, shown
-from verify.models.problem import pose
-from verify.publish import traps as published
-from verify.scenes.precision import rung
-from verify.solvers.taylor.cache import heyoka_cache_off
-from verify.solvers.taylor.driver import Taylor
-from verify.solvers.taylor.plain import numbers, outcomes
-from verify.solvers.taylor.plain.body import Plain
-from verify.solvers.trajectory import Outcome
+from taylor_verify.controls.traps.measured import GENERIC, free
+from taylor_verify.controls.traps.table import TRAPS, document
+from taylor_verify.controls.traps.trap import Case, Trap, shown
+from taylor_verify.models.problem import pose
+from taylor_verify.publish import traps as published
+from taylor_verify.scenes.precision import rung
+from taylor_verify.solvers.taylor.cache import heyoka_cache_off
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.plain import numbers, outcomes
+from taylor_verify.solvers.taylor.plain.body import Plain
+from taylor_verify.solvers.trajectory import Outcome
 
 ROOT = Path(__file__).resolve().parents[1]
 NAMED = {trap.key: trap for trap in TRAPS}

@@ -11,15 +11,15 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.exact.solution import NoClosedForm, Unsettled
-from verify.scenes import tensors
-from verify.scenes.bodies import Clebsch, RigidBody
-from verify.scenes.library import names
-from verify.scenes.motion import Clock, Impulse, Spin
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
 
 Triple = tuple[Fraction, Fraction, Fraction]
 
@@ -171,7 +171,7 @@ def spins(draw: st.DrawFn) -> Scene:
 
 def rational_rotation(a: int, b: int) -> Matrix:
     """The rotation of the quaternion (a, b, 1, 2)."""
-    from verify.exact.rotation import rotation_matrix
+    from taylor_verify.exact.rotation import rotation_matrix
 
     return rotation_matrix((Fraction(a), Fraction(b), Fraction(1), Fraction(2)))
 

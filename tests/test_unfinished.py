@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from verify import standard
-from verify import unfinished as module
-from verify.job import Job, jobs
-from verify.run import run
-from verify.solvers.solver import Callback
-from verify.unfinished import unfinished
+from taylor_verify import standard
+from taylor_verify import unfinished as module
+from taylor_verify.job import Job, jobs
+from taylor_verify.run import run
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.unfinished import unfinished
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
 
@@ -221,7 +221,7 @@ def test_a_finished_run_leaves_nothing(cache: Path) -> None:
 _IN_THE_MIDDLE = """
 import sys, time
 from pathlib import Path
-from verify.parallel import on_all_cores
+from taylor_verify.parallel import on_all_cores
 
 MARK = Path(sys.argv[1])
 
@@ -261,7 +261,7 @@ def test_an_interrupt_within_a_result_is_no_deadlock(tmp_path: Path, later: str)
 def test_an_interrupted_run_goes_on_where_it_was(tmp_path: Path) -> None:
     """It says so and how; what follows has every verdict of a run that was not interrupted."""
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
-    command = [sys.executable, "-m", "verify", "run", *SCENES, "--rung", "f64", "--json"]
+    command = [sys.executable, "-m", "taylor_verify", "run", *SCENES, "--rung", "f64", "--json"]
     place = tmp_path / "taylor-verify" / "unfinished"
     with subprocess.Popen(
         command,

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from trajectories import QUATERNION, columns_at, exact_columns, write_csv
 
-import verify
-from verify.exact.route import solution
-from verify.judge.judgement import Judgement
-from verify.judge.unit_quaternion import UNIT_QUATERNION
-from verify.judge.verdict import Status, Verdict
-from verify.models.problem import Problem
-from verify.run import run
-from verify.scenes.motion import Spin
-from verify.scenes.reader import load
+import taylor_verify
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.models.problem import Problem
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reader import load
 
 SCENE = "euler/with-attitude"
 SOUND = exact_columns(SCENE)
@@ -38,7 +38,7 @@ def row(found: Judgement) -> Verdict | None:
 
 
 def checked(path: Path, columns: Mapping[str, Sequence[Any]], **options: Any) -> Judgement:
-    return verify.check(SCENE, write_csv(path / "mine.csv", columns), **options)
+    return taylor_verify.check(SCENE, write_csv(path / "mine.csv", columns), **options)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_an_answer_of_a_callable_is_asked_too() -> None:
         q = length * np.array([columns[name] for name in QUATERNION]).T
         return np.concatenate([motion["omega"].astype(float), q], axis=1)
 
-    failed = row(verify.check(SCENE, solve))
+    failed = row(taylor_verify.check(SCENE, solve))
     assert failed is not None
     assert failed.max == pytest.approx(15**0.5 - 1)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.controls.traps.table import TRAPS
+from taylor_verify.controls.traps.table import TRAPS
 
 FOLDER = Path(__file__).resolve().parents[1] / "reports" / "upstream"
 SCRIPTS = sorted(FOLDER.glob("*.py"))

@@ -1,6 +1,6 @@
 """A triaxial body under a constant moment, in closed form: against the Taylor route and the equations.
 
-Legend as in verify.exact.euler.moments.washboard.
+Legend as in taylor_verify.exact.euler.moments.washboard.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from verify.exact import condition
-from verify.exact.elements import elements
-from verify.exact.euler.moments import washboard_balls, washboard_chebyshev
-from verify.exact.euler.moments.turnings import regime, turnings
-from verify.exact.euler.moments.washboard import Washboard
-from verify.exact.euler.moments.washboard_balls import Turn
-from verify.exact.euler.moments.washboard_panels import Panels
-from verify.exact.euler.moments.washboard_speed import speed
-from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.models.problem import pose
-from verify.scenes import tensors
-from verify.scenes.bodies import RigidBody
-from verify.scenes.motion import Clock, Motion, Spin
-from verify.scenes.precision import LADDER, exact_value, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Matrix, Vector
+from taylor_verify.exact import condition
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.euler.moments import washboard_balls, washboard_chebyshev
+from taylor_verify.exact.euler.moments.turnings import regime, turnings
+from taylor_verify.exact.euler.moments.washboard import Washboard
+from taylor_verify.exact.euler.moments.washboard_balls import Turn
+from taylor_verify.exact.euler.moments.washboard_panels import Panels
+from taylor_verify.exact.euler.moments.washboard_speed import speed
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.precision import LADDER, exact_value, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 45
 ROUTES = ("arb", "mpmath")

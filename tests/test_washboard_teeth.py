@@ -1,6 +1,6 @@
 """Washboard orbits with many teeth between the start, the turning point and the time asked for.
 
-Legend as in verify.exact.euler.moments.washboard and washboard_teeth.
+Legend as in taylor_verify.exact.euler.moments.washboard and washboard_teeth.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from flint import arb, ctx, fmpq
 from mpmath import mpf
 from test_washboard import DIGITS, ROUTES, axial, board, gap, vector
 
-from verify.exact.euler.moments import washboard_teeth
-from verify.exact.euler.moments.turnings import MOST_TEETH, located
-from verify.exact.euler.moments.washboard_balls import Course, Turn
-from verify.exact.euler.moments.washboard_speed import speed
-from verify.exact.euler.moments.washboard_teeth import FarTeeth
-from verify.exact.route import solution
-from verify.exact.solution import NoClosedForm, Unsettled
-from verify.exact.taylor import TaylorSolution
-from verify.run import run
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.euler.moments import washboard_teeth
+from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, located
+from taylor_verify.exact.euler.moments.washboard_balls import Course, Turn
+from taylor_verify.exact.euler.moments.washboard_speed import speed
+from taylor_verify.exact.euler.moments.washboard_teeth import FarTeeth
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.run import run
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 # A spin against a moment that is too small to stop it before it has passed so many teeth. In the first two
 # the teeth are so deep that the body all but stops on each of the last.

@@ -15,23 +15,23 @@ from flint import ctx
 from mpmath import mp, mpf
 from webers import BODIES, STARTS, built, case, curve_of, exact
 
-from verify.exact.balls import max_or_nan, midpoint
-from verify.exact.elements import elements
-from verify.exact.kirchhoff.integrable import fourth_integral
-from verify.exact.kirchhoff.weber import enclosure
-from verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
-from verify.exact.kirchhoff.weber.curve import curve
-from verify.exact.kirchhoff.weber.sums import Sums
-from verify.exact.route import solution
-from verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from verify.exact.taylor import TaylorSolution
-from verify.models.problem import pose
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Impulse, Motion
-from verify.scenes.precision import LADDER, exact_value, rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.balls import max_or_nan, midpoint
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.weber import enclosure
+from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
+from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.weber.sums import Sums
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.precision import LADDER, exact_value, rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 DIGITS = 42
 TIMES = [Fraction(0), Fraction(1, 3), Fraction(-7, 2), Fraction(6)]

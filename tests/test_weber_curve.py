@@ -12,16 +12,21 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 from webers import BODIES, built, case, curve_of, second
 
-from verify.exact.balls import ball, midpoint
-from verify.exact.kirchhoff.weber import surd as surds
-from verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, is_odd, of_pair
-from verify.exact.kirchhoff.weber.curve import curve
-from verify.exact.kirchhoff.weber.integrals import branch_points, jacobian
-from verify.exact.kirchhoff.weber.quadrature import real_jacobian
-from verify.exact.kirchhoff.weber.riemann import Thetas
-from verify.exact.solution import NoClosedForm
-from verify.scenes import tensors
-from verify.scenes.tensors import Vector
+from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.kirchhoff.weber import surd as surds
+from taylor_verify.exact.kirchhoff.weber.characteristics import (
+    HALF_PERIODS,
+    at_branches,
+    is_odd,
+    of_pair,
+)
+from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.weber.integrals import branch_points, jacobian
+from taylor_verify.exact.kirchhoff.weber.quadrature import real_jacobian
+from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import Vector
 
 # The curve.
 

@@ -44,12 +44,13 @@ def shipped(folder: str) -> Iterator[Path]:
 
 
 def test_the_wheel_holds_every_file(wheel: Path) -> None:
-    """The wheel holds all of verify/, templates and data included, and all of cases/ inside it."""
-    expected = {path.as_posix() for path in shipped("verify")}
-    expected |= {f"verify/{path.as_posix()}" for path in shipped("cases")}
-    assert "verify/cli/__init__.py" in expected
+    """The wheel holds the whole package, templates and data included, and all of cases/ inside it."""
+    package = shipped("verify/taylor_verify")
+    expected = {path.relative_to("verify").as_posix() for path in package}
+    expected |= {f"taylor_verify/{path.as_posix()}" for path in shipped("cases")}
+    assert "taylor_verify/cli/__init__.py" in expected
     names = zipfile.ZipFile(wheel).namelist()
-    assert {name for name in names if name.startswith("verify/")} == expected
+    assert {name for name in names if ".dist-info/" not in name} == expected
 
 
 def test_the_installed_command_lists_the_shipped_scenes(installed: Path, tmp_path: Path) -> None:
@@ -66,18 +67,18 @@ def test_the_installed_command_lists_the_shipped_scenes(installed: Path, tmp_pat
 
 def test_the_installed_copy_is_the_one_that_runs(installed: Path, tmp_path: Path) -> None:
     """The installed package and its scenes are found inside the folder, not in the checkout."""
-    script = "from verify.scenes.library import cases_directory; print(cases_directory())"
+    script = "from taylor_verify.scenes.library import cases_directory; print(cases_directory())"
     answer = run(installed, tmp_path, sys.executable, "-c", script)
-    assert Path(answer.strip()) == installed.resolve() / "verify" / "cases"
+    assert Path(answer.strip()) == installed.resolve() / "taylor_verify" / "cases"
 
 
 # What another project writes to hold its simulator to the exact motion: two lines a test.
 ANOTHER_PROJECT = """
 import pathlib, shlex, sys
 import pytest
-import verify
+import taylor_verify
 
-OUTSIDE = pathlib.Path(verify.__file__).parent / "solvers" / "outside"
+OUTSIDE = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside"
 RK4 = "process:" + shlex.join([sys.executable, str(OUTSIDE / "rk4.py"), "0.05"])
 
 def still(problem):
@@ -127,7 +128,7 @@ def test_another_project_has_the_plugin_by_installing_the_wheel(
 def test_the_plugin_can_be_left_out(installed: Path, tmp_path: Path) -> None:
     """`-p no:taylor-verify` leaves a session without the plugin, by the name it is installed as."""
     (tmp_path / "test_alone.py").write_text(
-        "import sys\ndef test_it(): assert 'verify.pytest_plugin' not in sys.modules\n"
+        "import sys\ndef test_it(): assert 'taylor_verify.pytest_plugin' not in sys.modules\n"
         "def test_none(verify_solver): pass\n"
     )
     options = ("-p", "no:cacheprovider", "-p", "no:taylor-verify")

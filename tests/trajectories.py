@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from verify.exact.route import solution
-from verify.judge.inputs import angular_velocity
-from verify.models.problem import adopt
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.precision import rung
-from verify.scenes.reader import load
-from verify.scenes.scene import Scene
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.models.problem import adopt
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
 
 Columns = dict[str, list[float]]
 VECTORS = {

@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cache
 
-from verify.exact.kirchhoff.weber.curve import CYCLIC, Curve, curve
-from verify.scenes import tensors
-from verify.scenes.bodies import ImmersedBody
-from verify.scenes.motion import Clock, Impulse
-from verify.scenes.scene import Scene
-from verify.scenes.tensors import Vector
+from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, Curve, curve
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
 
 CLEBSCH = ("1", "3/2", "1/2")
 ALIKE = ("3/4", "3/4", "3/4")

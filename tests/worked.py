@@ -31,7 +31,7 @@ from typing import Any, Final
 
 import pytest
 
-from verify.cli import main
+from taylor_verify.cli import main
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 DOCS: Final = ROOT / "docs"
@@ -42,7 +42,7 @@ _NAMED: Final = re.compile(r"# ([\w./-]+\.(?:py|toml))\n")
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 _TOKEN: Final = re.compile(rf"\.\.\.|{_NUMBER.pattern}|[\w/]+|\S")
 _OWN_COMMAND: Final = re.compile(r"(taylor-verify|pytest) [^|&;<]*")
-# What a terminal shows and wipes away, and files do not: see verify.cli.progress.
+# What a terminal shows and wipes away, and files do not: see taylor_verify.cli.progress.
 _SIGN_OF_LIFE: Final = re.compile(r"taylor-verify: (?:.*: computing|\d+/\d+ .* on [\w ]+)$")
 
 

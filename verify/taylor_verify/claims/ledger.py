@@ -1,0 +1,79 @@
+"""The ledger: all claims in the order of the texts, found by their ids and examined one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
+from functools import cache
+from importlib import import_module
+from typing import Final
+
+from taylor_verify.claims.claim import Claim, Finding, examine
+from taylor_verify.claims.numbers import in_order
+
+_FAMILIES: Final = (
+    "taylor_verify.claims.heinbockel.equations",
+    "taylor_verify.claims.heinbockel.moments",
+    "taylor_verify.claims.hydromechanics.impulse",
+    "taylor_verify.claims.hydromechanics.integrals",
+    "taylor_verify.claims.hydromechanics.fourth",
+    "taylor_verify.claims.hydromechanics.clebsch",
+    "taylor_verify.claims.hydromechanics.phase",
+    "taylor_verify.claims.hydromechanics.elliptic",
+    "taylor_verify.claims.hydromechanics.angles",
+    "taylor_verify.claims.hydromechanics.centre",
+    "taylor_verify.claims.hydromechanics.axial",
+    "taylor_verify.claims.hydromechanics.separatrix",
+    "taylor_verify.claims.hydromechanics.algebraic",
+)
+
+
+class UnknownClaim(ValueError):
+    """An id that no entry has; the text says what may have been meant."""
+
+
+@cache
+def claims() -> tuple[Claim, ...]:
+    """Every entry, in the order of the texts; what the order does not know comes last."""
+    found = [claim for name in _FAMILIES for claim in import_module(name).CLAIMS]
+    places = {id: place for place, id in enumerate(in_order())}
+    return tuple(sorted(found, key=lambda claim: places.get(claim.id, len(places))))
+
+
+def find(ids: Iterable[str]) -> tuple[Claim, ...]:
+    """The entries of these ids, or all of them.
+
+    A part that ends or begins an id stands for all that it fits: ``(2.2.70)``, ``hydromechanics 49``.
+    Raises UnknownClaim, for all faults at once.
+    """
+    asked = [" ".join(id.split()).casefold() for id in ids]
+    if not asked:
+        return claims()
+    known = [claim.id for claim in claims()]
+    unknown = [id for id in asked if not any(_is_meant(id, name) for name in known)]
+    if unknown:
+        raise UnknownClaim("\n".join(_told(id, known) for id in unknown))
+    return tuple(claim for claim in claims() if any(_is_meant(id, claim.id) for id in asked))
+
+
+def _is_meant(asked: str, id: str) -> bool:
+    name = id.casefold()
+    return name == asked or name.startswith(f"{asked} ") or name.endswith(f" {asked}")
+
+
+def _told(asked: str, known: Sequence[str]) -> str:
+    near = get_close_matches(asked, known, n=1, cutoff=0.5)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    return f"expected the id of a claim, such as 'hydromechanics 49 (17)', got {asked!r}{hint}"
+
+
+def examined(
+    asked: Iterable[Claim], finished: Callable[[Finding], None] = lambda finding: None
+) -> list[Finding]:
+    """The findings in the order asked, each told to ``finished`` when it is there."""
+    found = []
+    for claim in asked:
+        finding = examine(claim)
+        finished(finding)
+        found.append(finding)
+    return found

@@ -1,0 +1,82 @@
+"""The command line: arguments and printing, nothing else.
+
+Exit status: 0 pass; 1 a gate failed; 2 no answer, because the input, the call or the machine was
+wrong; 3 undecided (nothing failed). Nothing heavy is imported before a verb needs it, so that
+`--help` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall
+from taylor_verify.cli.streams import have_streams, print_out, say, stdout_reserved
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one verb and return the exit status."""
+    try:
+        # Here already, so that an interrupt finds it as it finds the rest.
+        from taylor_verify.cli.arguments import parse
+
+        have_streams()
+        options = parse(sys.argv[1:] if arguments is None else arguments)
+        with stdout_reserved():
+            answer = options.act(options)
+        return _print(answer, options.json)
+    except KeyboardInterrupt as interrupt:
+        say(_told_of(interrupt))
+        return INTERRUPTED
+    except Exception as error:
+        if sys.flags.dev_mode:
+            raise
+        say(_told(error))
+        return WRONG_CALL
+    finally:
+        print_out()
+
+
+def _print(answer: Answer, as_json: bool) -> int:
+    if as_json:
+        import json
+
+        text = json.dumps(answer.document, indent=1, allow_nan=False)
+        # JSON escapes every other control character by itself.
+        print_out(text.replace("\x7f", "\\u007f"))
+    else:
+        print_out(answer.text())
+    for message in answer.messages:
+        say(message)
+    return answer.status
+
+
+def _told_of(interrupt: KeyboardInterrupt) -> str:
+    """One line: nothing was written, and how to go on if there is something to go on from."""
+    finished, jobs = getattr(interrupt, "finished", 0), getattr(interrupt, "jobs", 0)
+    if not finished:
+        return "interrupted"
+    return (
+        f"interrupted: {finished} of {jobs} scenes are finished and kept, nothing is written; the "
+        "same command with --resume goes on from there"
+    )
+
+
+def _told(error: Exception) -> str:
+    """A message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
+    from taylor_verify.scenes.faults import Refused
+
+    if isinstance(error, WrongCall | Refused):
+        return str(error)
+    if isinstance(error, OSError):
+        place = f" @ {error.filename}" if error.filename else ""
+        return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
+    if (
+        isinstance(error, ModuleNotFoundError)
+        and error.name
+        and error.name.partition(".")[0] != "taylor_verify"
+    ):
+        return f"expected the package {error.name} (`make verify` sets all up), got none"
+    from taylor_verify.parallel import Failed, fault
+
+    return str(error) if isinstance(error, Failed) else fault(error)

@@ -1,0 +1,373 @@
+"""The arguments of every verb."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NoReturn
+
+from taylor_verify.cli import ci, claims, publishing, question, tradeoff, verbs
+from taylor_verify.cli.answer import Answer
+from taylor_verify.cli.streams import escaped
+
+_DEFAULT_DIGITS = 30
+# What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
+_RUNG = re.compile(r"(f|mp)\d*", re.IGNORECASE)
+_NEGATIVE_TIME = re.compile(r"-[\d.]")
+
+
+def parse(arguments: Sequence[str]) -> argparse.Namespace:
+    """The options, ``act`` the function of the verb; SystemExit for --help and a wrong call."""
+    parser = _parser()
+    options, left = parser.parse_known_args(_with_times_attached(arguments))
+    scenes = getattr(options, "scenes", None)
+    if left and (scenes is None or any(word.startswith("-") for word in left)):
+        parser.error(f"unrecognized arguments: {' '.join(left)}")
+    if scenes is not None:
+        # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
+        options.rung, taken = _split(options.rung)
+        options.scenes = [*scenes, *taken, *left]
+    return options
+
+
+def _with_times_attached(arguments: Sequence[str]) -> list[str]:
+    """``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
+    attached: list[str] = []
+    for word in arguments:
+        if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
+            attached[-1] = f"--at={word}"
+        else:
+            attached.append(word)
+    return attached
+
+
+def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]]:
+    """The rungs and the scenes of all that stood behind ``--rung``, whose first word is a rung."""
+    rungs: list[str] = []
+    scenes: list[str] = []
+    for first, *others in groups or ():
+        rungs += first.split(",")
+        for word in others:
+            names = word.split(",")
+            if all(_RUNG.fullmatch(name) for name in names):
+                rungs += names
+            else:
+                scenes.append(word)
+    return rungs, scenes
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        super().exit(status, message and escaped(message))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="taylor-verify",
+        description="The reference that rigid-body and ideal-fluid simulations are measured "
+        "against.",
+        epilog="SCENE is a file or the name of a shipped scene, such as euler/generic. "
+        "Exit status: 0 pass, 1 a gate failed, 2 the input or the call was wrong, 3 undecided. "
+        "`taylor-verify VERB --help` has an example.",
+        allow_abbrev=False,
+    )
+    found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
+    _add_list(found)
+    _add_question(found)
+    _add_run(found)
+    _add_exact(found)
+    _add_check(found)
+    _add_explain(found)
+    _add_tradeoff(found)
+    _add_claims(found)
+    _add_publish(found)
+    return parser
+
+
+def _verb(
+    found: Any, name: str, what: str, example: str, act: Callable[[argparse.Namespace], Answer]
+) -> argparse.ArgumentParser:
+    verb: argparse.ArgumentParser = found.add_parser(
+        name,
+        help=what,
+        description=what[0].upper() + what[1:] + ".",
+        epilog=f"example: taylor-verify {example}",
+        allow_abbrev=False,
+    )
+    verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+    verb.set_defaults(act=act)
+    return verb
+
+
+def _add_list(found: Any) -> None:
+    _verb(
+        found, "list", "list the shipped scenes, solvers and rungs", "list --json", verbs.list_all
+    )
+
+
+def _add_question(found: Any) -> None:
+    what = "print a scene as any solver gets it, in exact text and hexadecimal floats"
+    example = "question euler/generic --csv"
+    verb = _verb(found, "question", what, example, question.question)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
+    verb.add_argument(
+        "--csv",
+        action="store_true",
+        help="print the header and the times of a trajectory file, for a program to fill in",
+    )
+
+
+def _add_run(found: Any) -> None:
+    what = "solve scenes, compare with the exact motion, judge"
+    verb = _verb(found, "run", what, "run euler/generic --rung f32 f64", verbs.run)
+    verb.add_argument(
+        "scenes",
+        nargs="*",
+        metavar="SCENE",
+        help="a folder of shipped scenes (extremes) is all of them; default: the standard set",
+    )
+    verb.add_argument("--solver", default="taylor", metavar="S", help="default: taylor")
+    verb.add_argument(
+        "--rung",
+        nargs="+",
+        action="append",
+        metavar="R",
+        help="f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set",
+    )
+    verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
+    verb.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where the last run of several scenes was interrupted",
+    )
+    verb.add_argument(
+        "--against",
+        metavar="DIR",
+        help="fail if a number has left the rounding class of the one published there",
+    )
+    ci.add_options(verb)
+
+
+def _add_exact(found: Any) -> None:
+    what = "print the exact motion of a scene at the times given"
+    verb = _verb(found, "exact", what, "exact euler/generic --at 0,10,1e9 --digits 40", verbs.exact)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--at", required=True, metavar="T,T,...", help="decimals or a/b, absolute")
+    verb.add_argument(
+        "--digits", type=int, default=_DEFAULT_DIGITS, metavar="N", help="default: 30"
+    )
+    verb.add_argument(
+        "--route",
+        choices=("arb", "mpmath", "taylor"),
+        help="arb, the closed form in balls (default where there is one); mpmath, the same by other "
+        "formulas; taylor, Taylor series in balls (default elsewhere)",
+    )
+
+
+def _add_check(found: Any) -> None:
+    what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON"
+    verb = _verb(
+        found, "check", what, "check mine.csv --scene euler/generic --rung f64", verbs.check
+    )
+    verb.add_argument(
+        "file",
+        metavar="FILE",
+        help="columns t and any of w1 w2 w3 (angular velocity, body axes); x1 x2 x3 y1 y2 y3 "
+        "(impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 "
+        "(centre, space axes)",
+    )
+    verb.add_argument(
+        "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
+    )
+    verb.add_argument(
+        "--rung",
+        default="f64",
+        metavar="R",
+        help="precision of the arithmetic that made the file; default: f64",
+    )
+    verb.add_argument(
+        "--accept-conventions",
+        action="store_true",
+        help="correct what was found out (order of the quaternion, axes, units, time, ...) and judge "
+        "the rest; without it the file is judged as it stands",
+    )
+    verb.add_argument(
+        "--partial",
+        action="store_true",
+        help="judge what the file has, without undecided for tracked columns or a part of the span that "
+        "it lacks",
+    )
+    ci.add_options(verb)
+
+
+def _add_explain(found: Any) -> None:
+    what = "show the equations as built, the regime of the orbit and the arithmetic of each gate"
+    verb = _verb(found, "explain", what, "explain kirchhoff/screw --rung f80", verbs.explain)
+    verb.add_argument("scene", metavar="SCENE")
+    verb.add_argument("--rung", default="f64", metavar="R", help="default: f64")
+
+
+def _add_tradeoff(found: Any) -> None:
+    what = "measure the time and the error of every setting of every solver"
+    example = "tradeoff euler/generic --rung f64 --target 1e-9"
+    verb = _verb(found, "tradeoff", what, example, tradeoff.tradeoff)
+    verb.add_argument("scenes", nargs="*", metavar="SCENE")
+    verb.add_argument(
+        "--target",
+        metavar="E",
+        help="also find the fastest setting whose error stays below E on the scene and on starts "
+        "nearby; exit status 3 where there is none",
+    )
+    verb.add_argument(
+        "--rung", nargs="+", action="append", metavar="R", help="default: f32 f64 f80 f128"
+    )
+    verb.add_argument(
+        "--solver",
+        action="append",
+        metavar="S",
+        help="measure this setting of a solver and no others but taylor's, which are the yardstick; "
+        'may be repeated: --solver "process:./mine" --solver "geometric:splitting?step=0.01"',
+    )
+    verb.add_argument(
+        "--outside",
+        action="store_true",
+        help="measure the integrators of other libraries too, each in an environment of its own, "
+        "which is made the first time (a download)",
+    )
+    verb.add_argument(
+        "--cold",
+        action="store_true",
+        help="also start each setting in a new process with nothing compiled, and tell importing, "
+        "compiling and solving apart",
+    )
+    verb.add_argument(
+        "--repeats", type=int, default=5, metavar="N", help="timed solves of a setting; default: 5"
+    )
+    verb.add_argument(
+        "--seed", type=int, default=1, metavar="N", help="of the order and the starts; default: 1"
+    )
+    verb.add_argument(
+        "--out", metavar="DIR", help="write the numbers and the work-precision pictures there"
+    )
+
+
+def _add_claims(found: Any) -> None:
+    what = "check every numbered equation and every claim of the two source texts"
+    example = 'claims "hydromechanics 49 (17)"'
+    verb = _verb(found, "claims", what, example, claims.claims)
+    verb.add_argument(
+        "ids",
+        nargs="*",
+        metavar="ID",
+        help='"heinbockel (2.2.70)", its number "(2.2.70)", or a whole text: "hydromechanics 48"; '
+        "default: all",
+    )
+
+
+def _add_publish(found: Any) -> None:
+    what = "rebuild the tables from verdicts and records"
+    verb = _verb(found, "publish", what, "publish --from reports/local", publishing.publish)
+    verb.add_argument(
+        "--from", dest="folder", metavar="DIR", help="default: reports of the checkout around"
+    )
+    made = verb.add_mutually_exclusive_group()
+    made.add_argument(
+        "--reference",
+        action="store_true",
+        help="instead compute the exact trajectory of every shipped scene, as CSV and JSON with "
+        "32 digits, into DIR/reference",
+    )
+    made.add_argument(
+        "--portraits",
+        action="store_true",
+        help="instead gather all that a page shows of each shipped scene (equations, exact motion, "
+        "numbers of the orbit) into DIR/data/portraits (a minute, all cores)",
+    )
+    made.add_argument(
+        "--gallery",
+        action="store_true",
+        help="instead draw some motions and their errors from what DIR holds (matplotlib), into "
+        "DIR/figures",
+    )
+    made.add_argument(
+        "--controls",
+        action="store_true",
+        help="instead run the solvers that are broken on purpose and the calls of heyoka that go "
+        "wrong, and write what each gate sees of them into DIR/data and DIR/tables",
+    )
+    made.add_argument(
+        "--claims",
+        action="store_true",
+        help="instead run the ledger of both source texts, and write DIR/claims.md, the errata in front",
+    )
+    made.add_argument(
+        "--prices",
+        action="store_true",
+        help="instead measure what each thing that a scene may ask for costs (minutes; a quiet "
+        "machine), and write DIR/data/prices.json and DIR/tables/prices.md",
+    )
+    made.add_argument(
+        "--tradeoff",
+        action="store_true",
+        help="instead measure speed against accuracy on four scenes, in fresh processes (minutes; a "
+        "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
+    )
+    made.add_argument(
+        "--extremes",
+        action="store_true",
+        help="instead run the extremes on f64 and write what becomes of each, beside what was expected, "
+        "into DIR/data/extremes.json and DIR/tables/extremes.md (minutes, all cores)",
+    )
+    made.add_argument(
+        "--paper",
+        action="store_true",
+        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables",
+    )
+    made.add_argument(
+        "--site",
+        metavar="SITE",
+        help="instead make static pages of what DIR holds, into the folder SITE (jinja2, "
+        "markdown-it-py, latex2mathml, plotly)",
+    )
+    made.add_argument(
+        "--worst",
+        action="store_true",
+        help="instead hunt for the largest error over attainable in families of extremes, and write "
+        "DIR/data/worst.json, DIR/tables/worst.md and the scenes of cases/extremes/worst",
+    )
+    made.add_argument(
+        "--reach",
+        action="store_true",
+        help="instead measure how many digits each precision leaves of families of extremes, over "
+        "their number and periods (minutes, all cores), and write DIR/data/reach.json, "
+        "DIR/tables/reach.md and its pictures",
+    )
+    made.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead follow ensembles of starts over decades of time (ten minutes, all cores), and "
+        "write how each error grows into DIR/data/growth.json and DIR/tables/growth.md; stopped, it "
+        "goes on from DIR/local/growth",
+    )
+    verb.add_argument(
+        "--seconds", type=float, default=600.0, metavar="S", help="of --worst; default: 600"
+    )
+    verb.add_argument("--seed", type=int, default=1, metavar="N", help="of --worst; default: 1")
+    verb.add_argument(
+        "--periods", metavar="N", help="with --growth: follow none for more than N periods"
+    )
+    verb.add_argument(
+        "--long",
+        action="store_true",
+        help="with --growth: the one ensemble of 100 million periods instead (an hour or more)",
+    )
+    verb.add_argument(
+        "--outside",
+        action="store_true",
+        help="with --tradeoff: compiled integrators of other libraries too, each solve a program of "
+        "its own that compiles first (a quarter of an hour more)",
+    )

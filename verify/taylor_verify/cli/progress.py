@@ -1,0 +1,117 @@
+"""A sign of life on stderr for whatever takes longer than a second."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from time import monotonic
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.cli.streams import say
+
+if TYPE_CHECKING:
+    from taylor_verify.job import Job
+
+# Nobody needs to be told that something takes less than this, in seconds.
+_PATIENCE = 1.0
+# To it every room says how far long work has come.
+PROGRESS: Final = logging.getLogger("taylor_verify.progress")
+
+
+@contextmanager
+def advancing(total: int) -> Iterator[Callable[[Job], None]]:
+    """A bar that advances as jobs end; a line for each where stderr is no terminal."""
+    if not sys.stderr.isatty():
+        yield _counting(total)
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeElapsedColumn as Elapsed
+
+    from taylor_verify.cli.console import EscapingConsole
+
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
+    console = EscapingConsole(stderr=True)
+    with Progress(*columns, Elapsed(), console=console, transient=True) as bar:
+        task = bar.add_task("compiling and solving", total=total)
+
+        def finished(job: Job) -> None:
+            bar.update(task, advance=1, description=job.scene)
+
+        yield finished
+
+
+def _counting(total: int) -> Callable[[Job], None]:
+    done = 0
+
+    def finished(job: Job) -> None:
+        nonlocal done
+        done += 1
+        say(f"{done}/{total} {job.scene} on {' '.join(job.rungs)}")
+
+    return finished
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """A spinner with the latest news while one long thing is computed.
+
+    Where stderr is no terminal, lines with the news, each after twice the time of the one before.
+    """
+    with _news() as latest:
+        if sys.stderr.isatty():
+            from rich.console import Console
+            from rich.text import Text
+
+            with (
+                Console(stderr=True).status(Text(what)) as spinner,
+                _repeated(lambda: _PATIENCE, lambda: spinner.update(Text(f"{what}: {latest()}"))),
+            ):
+                yield
+            return
+        began = monotonic()
+        with _repeated(
+            lambda: max(_PATIENCE, monotonic() - began), lambda: say(f"{what}: {latest()}")
+        ):
+            yield
+
+
+@contextmanager
+def _news() -> Iterator[Callable[[], str]]:
+    """The latest message of whatever room computes, or that something is computed."""
+    messages = deque(["computing"], maxlen=1)
+
+    class Latest(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            messages.append(record.getMessage())
+
+    handler = Latest(logging.INFO)
+    level = PROGRESS.level
+    PROGRESS.addHandler(handler)
+    PROGRESS.setLevel(logging.INFO)
+    try:
+        yield lambda: messages[-1]
+    finally:
+        PROGRESS.removeHandler(handler)
+        PROGRESS.setLevel(level)
+
+
+@contextmanager
+def _repeated(wait: Callable[[], float], tell: Callable[[], None]) -> Iterator[None]:
+    """Call ``tell`` again and again, after ``wait()`` seconds each time, until the block ends."""
+    ended = threading.Event()
+
+    def repeat() -> None:
+        while not ended.wait(wait()):
+            tell()
+
+    thread = threading.Thread(target=repeat, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()

@@ -1,0 +1,228 @@
+"""The verb `publish`: what it computes or measures anew, and the pages it makes."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from functools import partial
+from math import inf
+from pathlib import Path
+
+from taylor_verify.cli.answer import Answer, WrongCall, files_written
+from taylor_verify.cli.folders import alone_in, reports_folder, writable
+from taylor_verify.cli.streams import say
+
+# The rung on which the extremes are published, as `make verify` runs them.
+_ON = "f64"
+
+
+def publish(options: argparse.Namespace) -> Answer:
+    """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
+    from taylor_verify.cli.claims import publish_claims
+    from taylor_verify.cli.growth_publish import publish_growth
+    from taylor_verify.publish import report
+
+    anew: dict[str, Callable[[Path], Answer]] = {
+        "reference": references,
+        "portraits": portraits,
+        "gallery": gallery,
+        "controls": controls,
+        "claims": publish_claims,
+        "prices": prices,
+        "reach": reach,
+        "tradeoff": partial(tradeoff, outside=options.outside),
+        "extremes": extremes,
+        "paper": paper,
+        "worst": partial(worst, seconds=options.seconds, seed=options.seed),
+        "growth": partial(publish_growth, periods=options.periods, long=options.long),
+    }
+    # These make their pages from what the folder holds; all others put something into it.
+    measured = anew.keys() - {"gallery", "paper"}
+    folder = reports_folder(
+        options.folder, measures=any(getattr(options, option) for option in measured)
+    )
+    for option, write in anew.items():
+        if getattr(options, option):
+            place = writable(folder, "--from")
+            with alone_in(place, "--from"):
+                return write(place)
+    if options.periods is not None or options.long:
+        raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
+    if options.site is not None:
+        return site(folder, str(writable(options.site, "--site")))
+    if options.outside:
+        raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
+    try:
+        with alone_in(Path(folder) if Path(folder).is_dir() else None, "--from"):
+            return files_written(report.publish(folder))
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected what `run --out {folder}` writes, got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(str(error)) from error
+
+
+def references(folder: Path) -> Answer:
+    """The exact trajectory of every shipped scene."""
+    from taylor_verify.publish import reference_files
+    from taylor_verify.reference import references
+    from taylor_verify.scenes.library import names
+
+    scenes = names()
+    documents = references(scenes, _counting(len(scenes)))
+    return files_written(reference_files.write(folder, documents))
+
+
+def portraits(folder: Path) -> Answer:
+    """What each shipped scene is and how it moves, for pages and pictures."""
+    from taylor_verify.portrait import portraits
+    from taylor_verify.publish import portraits as files
+    from taylor_verify.scenes.library import names
+
+    scenes = names()
+    return files_written(files.write(folder, portraits(scenes, _counting(len(scenes)))))
+
+
+def gallery(folder: Path) -> Answer:
+    """Pictures of some motions and of their errors, from what the folder holds already."""
+    from taylor_verify.publish import gallery as pictures
+
+    try:
+        return files_written(pictures.write(folder))
+    except FileNotFoundError as error:
+        raise WrongCall(
+            "expected what `run --out`, `publish --reference`, `--controls` and `--portraits` write, "
+            f"got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(str(error)) from error
+
+
+def controls(folder: Path) -> Answer:
+    """What each gate sees of broken solvers, and what heyoka does where nobody takes care."""
+    from taylor_verify.controls import sight
+    from taylor_verify.controls.defects import DEFECTS
+    from taylor_verify.controls.traps import table
+    from taylor_verify.publish import report, traps
+
+    finished = _counting(len(DEFECTS) + len(table.TRAPS))
+    seen = sight.document(sight.sights(DEFECTS, finished))
+    trapped = table.document(table.TRAPS, finished)
+    return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
+
+
+def prices(folder: Path) -> Answer:
+    """What each thing that a scene may ask for costs, measured."""
+    from taylor_verify.publish import prices as pages
+    from taylor_verify.trade.prices import RUNGS, document
+
+    return files_written(pages.write(folder, document(_counting(len(RUNGS)))))
+
+
+def tradeoff(folder: Path, outside: bool) -> Answer:
+    """Speed against accuracy on the published scenes, measured in fresh processes."""
+    from taylor_verify.publish import report
+    from taylor_verify.trade.measurement import measurement
+
+    found = measurement(with_outside=outside, finished=say)
+    return files_written(report.publish_tradeoff(folder, found.numbers(), found.times()))
+
+
+def reach(folder: Path) -> Answer:
+    """How far each precision carries in every family of extremes."""
+    from taylor_verify.publish import reach as pages
+    from taylor_verify.trade.reach import document, members
+
+    return files_written(pages.write(folder, document(_counting(members()))))
+
+
+def extremes(folder: Path) -> Answer:
+    """What becomes of the extremes on float64; fails where an answer is not the one foreseen."""
+    from taylor_verify.cli.progress import advancing
+    from taylor_verify.expected import hold
+    from taylor_verify.job import jobs
+    from taylor_verify.publish import extremes as pages
+    from taylor_verify.scenes import library
+    from taylor_verify.scenes.expected import left_out
+    from taylor_verify.scenes.reader import load
+    from taylor_verify.solvers.registry import TAYLOR
+    from taylor_verify.standard import run_all
+
+    without = left_out([library.EXTREMES], [_ON])
+    scenes = [one for one in library.named(library.EXTREMES) if (one, _ON) not in without]
+    with advancing(len(scenes)) as finished:
+        results = run_all(jobs(scenes, TAYLOR, [_ON]), finished)
+    verdicts = [verdict for result in results for verdict in result.verdicts]
+    held = hold(verdicts)
+    document = pages.document(
+        verdicts,
+        expected={row: pages.Expected(e.verdict, e.why) for row, e in held.expected.items()},
+        mismatches=[str(mismatch) for mismatch in held.mismatches],
+        titles={scene: load(scene).title for scene in scenes},
+        left_out=[{"scene": s, "rung": r, "why": why} for (s, r), why in without.items()],
+    )
+    answer = files_written(pages.write(folder, document))
+    # What was not foreseen is published too, where it stands out.
+    status = held.exit_status(verdicts)
+    return answer._replace(status=status, messages=document["mismatches"])
+
+
+def paper(folder: Path) -> Answer:
+    """The pages that are there, as LaTeX and HTML."""
+    from taylor_verify.publish.paper import files
+
+    try:
+        return files_written(files.write(folder))
+    except ImportError as error:
+        raise WrongCall(
+            f"expected markdown-it-py and latex2mathml, got {error} (pip install them) @ --paper"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(f"{error} (--paper)") from error
+
+
+def worst(folder: Path, seconds: float, seed: int) -> Answer:
+    """The worst error over attainable in each family; its scenes take the place of those kept."""
+    from taylor_verify.hunt import FAMILIES, document, hunt
+    from taylor_verify.publish import worst as pages
+    from taylor_verify.scenes.library import WORST, cases_directory
+
+    if not 0 < seconds < inf:
+        raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
+    found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
+    scenes = {one.family.name: one.scene_text for one in found}
+    kept = pages.keep(cases_directory() / WORST, scenes)
+    return files_written([*pages.write(folder, document(found, seconds, seed)), *kept])
+
+
+def site(folder: str, target: str) -> Answer:
+    """The pages that a browser shows, from what the folder holds already."""
+    from taylor_verify.publish import data
+
+    try:
+        from taylor_verify.publish.site.builder import build
+
+        return files_written(build(folder, target))
+    except ImportError as error:
+        raise WrongCall(
+            f"expected {error.name} (pip install it), got no such package @ --site"
+        ) from error
+    except FileNotFoundError as error:
+        raise WrongCall(
+            f"expected what `run --out {folder}` writes ({data.FOLDER}/{data.VERDICTS} first of all), "
+            f"got no such file @ {error.filename}"
+        ) from error
+    except ValueError as error:
+        raise WrongCall(f"{error} @ --site") from error
+
+
+def _counting(total: int) -> Callable[[str], None]:
+    """Tells each name as it ends, with its place among all."""
+    ended: list[str] = []
+
+    def finished(name: str) -> None:
+        ended.append(name)
+        say(f"{len(ended)}/{total} {name}")
+
+    return finished

@@ -1,0 +1,48 @@
+"""The verb `question`: a scene as any solver gets it, or the empty trajectory file that answers it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.cli.answer import PASS, Answer, WrongCall
+from taylor_verify.cli.verbs import known_rungs, read_scenes
+
+if TYPE_CHECKING:
+    from taylor_verify.models.problem import Problem
+
+
+def question(options: argparse.Namespace) -> Answer:
+    """The question as JSON, or the header and the times of a trajectory file as CSV."""
+    from taylor_verify.models.problem import NotRepresentable, pose
+    from taylor_verify.scenes.precision import rung
+    from taylor_verify.solvers import protocol
+
+    if options.csv and options.json:
+        raise WrongCall("expected one of --csv and --json, got both @ question")
+    (name,) = known_rungs([options.rung])
+    (scene,) = read_scenes([options.scene])
+    try:
+        problem = pose(scene, rung(name))
+    except NotRepresentable as reason:
+        raise WrongCall(f"expected a scene that {name} can hold, got {reason} @ --rung") from reason
+    document = protocol.question(problem)
+    text = partial(_csv, problem) if options.csv else partial(_json, document)
+    return Answer(PASS, document, text)
+
+
+def _json(document: dict[str, Any]) -> str:
+    return json.dumps(document, indent=1)
+
+
+def _csv(problem: Problem) -> str:
+    """A header, and for each sample its time and a cell for every other column."""
+    from taylor_verify.scenes.precision import shortest_decimal
+    from taylor_verify.solvers.protocol import column_names
+
+    names, bits = column_names(problem), problem.rung.bits
+    cells = "," * (len(names) - 1)
+    times = [shortest_decimal(time, bits) for time in problem.given.clock.instants]
+    return "\n".join([",".join(names), *(f"{time}{cells}" for time in times)])

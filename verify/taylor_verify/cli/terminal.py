@@ -1,0 +1,379 @@
+"""The texts that a person reads: names, verdicts, the exact motion, an explanation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from taylor_verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
+from taylor_verify.judge.verdict import STATES
+
+if TYPE_CHECKING:
+    from taylor_verify.expected import Held
+    from taylor_verify.judge.answer import FileJudgement
+    from taylor_verify.judge.verdict import Verdict
+
+_ROOMY = 120
+# What a reason is made of.
+_RULE = "10 x attainable"
+_AS_A_SHIFT = "; as a shift of time: "
+_COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
+# The worst first: what a line that stands for several verdicts is called.
+_GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
+
+# The unit of time is the scene's, whatever that is.
+_UNITS = {
+    "time": "time units",
+    "1/time": "per time unit",
+    "radians/time": "radians per time unit",
+}
+
+
+def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> str:
+    console = new_console()
+    width = max(map(len, titles), default=0)
+    for heading, entries in found.items():
+        print_line(console, Text(heading, "bold"))
+        for entry in entries:
+            title = titles.get(entry, "")
+            print_line(console, f"  {entry:{width}}  {title}".rstrip())
+    return text_of(console)
+
+
+# run
+
+
+def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
+    """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
+    from taylor_verify.judge.verdict import summary
+
+    # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
+    console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
+    console.print(_table(verdicts, gap=2 if console.width >= _ROOMY else 1))
+    print_line(console)
+    print_line(
+        console,
+        "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits;",
+    )
+    print_line(
+        console, "/floor is the largest error over what perfect rounding would leave, of all gates."
+    )
+    others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
+    if others:
+        print_line(console)
+    for verdict in others:
+        place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
+        expected = held.met(verdict)
+        told = _told(verdict) if expected is None else f"as expected: {expected.why}"
+        print_line(console, _status(verdict.verdict.value), f"  {place}: {told}")
+    for mismatch in held.mismatches:
+        print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
+    counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
+    print_line(console, f"\n{counts}{_as_expected(verdicts, held)}")
+    if why := held.unjudged(verdicts):
+        print_line(console, f"nothing was judged: {why}")
+    return text_of(console)
+
+
+def _as_expected(verdicts: Sequence[Verdict], held: Held) -> str:
+    """How many of the rows that are no pass are what the extremes are expected to answer."""
+    met = sum(held.met(verdict) is not None for verdict in verdicts)
+    wrong = len(held.mismatches)
+    return (f"; {met} of them as expected" if met else "") + (
+        f"; {wrong} not as expected" if wrong else ""
+    )
+
+
+def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
+    table = Table(box=None, padding=(0, gap, 0, 0), pad_edge=False)
+    for heading in ("scene", "rung", "verdict", "state", "error/u", "at t", "drift", "error/u"):
+        table.add_column(heading, justify="right" if heading in ("error/u", "at t") else "left")
+    for heading in ("/floor", "steps", "seconds"):
+        table.add_column(heading, justify="right")
+    # A long path is folded; a name is not, nor is a number.
+    for column in table.columns[1:]:
+        column.no_wrap = True
+    table.columns[0].overflow = "fold"
+    for (scene, rung), group in groupby(verdicts, key=lambda v: (v.scene, v.rung)):
+        table.add_row(Text(scene), rung, *_run_cells(list(group)))
+    return table
+
+
+def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
+    status = _status(min((v.verdict.value for v in group), key=_GRAVITY.index))
+    compared = [v for v in group if v.at is not None]
+    if not compared:
+        return (status, *[""] * 8)
+    state = max((v for v in compared if v.quantity in STATES), key=_ratio)
+    drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
+    return (
+        status,
+        state.quantity,
+        f"{_units(state):.3g}",
+        f"{state.at:.6g}",
+        drift.quantity if drift else "",
+        f"{_units(drift):.3g}" if drift else "",
+        f"{max(map(_ratio, compared)):.2g}",
+        str(state.steps or ""),
+        f"{state.seconds:.3f}" if state.seconds is not None else "",
+    )
+
+
+def _units(verdict: Verdict) -> float:
+    """The largest error in units of roundoff; one that is no number counts as larger than any."""
+    if verdict.max is None or not verdict.roundoff or verdict.max != verdict.max:
+        return float("inf")
+    return verdict.max / verdict.roundoff
+
+
+def _ratio(verdict: Verdict) -> float:
+    """The largest error over attainable; one that is no number counts as larger than any."""
+    ratio = verdict.ratio
+    return ratio if ratio is not None and ratio == ratio else float("inf")
+
+
+def _told(verdict: Verdict) -> str:
+    if verdict.at is None:
+        return verdict.because
+    return f"{_error(verdict.row())}; bound = {verdict.because}"
+
+
+def _error(gate: Mapping[str, Any]) -> str:
+    """One gate's numbers, from a row or an explanation: null is an error that is not finite."""
+    size, bound = _figure(gate["max"]), _figure(gate["bound"])
+    ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
+    return (
+        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} "
+        f"is allowed; largest error/attainable {ratio} at t = {gate['ratio_at']:g}"
+    )
+
+
+def _status(status: str) -> Text:
+    return Text(status, _COLOURS.get(status, "magenta"))
+
+
+# check
+
+
+def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
+    """What the file is, what its conventions are, a line for each quantity, and every reason."""
+    from taylor_verify.judge.verdict import summary
+
+    console = new_console()
+    print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
+    print_line(console, f"judged as an answer to {scene} in {rung} arithmetic")
+    _print_conventions(console, judged)
+    print_line(console)
+    if any(verdict.at is not None for verdict in judged.verdicts):
+        console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
+        print_line(console)
+        print_line(
+            console, "allowed: ten times what rounding the input and every step would leave;"
+        )
+        print_line(console, "/floor: the largest error over what it would leave, of all rows.")
+    for note in judged.notes:
+        print_line(console, Text("note", "yellow"), f"  {note}")
+    others = [verdict for verdict in judged.verdicts if verdict.verdict.value != "pass"]
+    if others:
+        print_line(console)
+    for verdict in others:
+        print_line(console, _status(verdict.verdict.value), f"  {verdict.quantity}")
+        _print_reason(console, verdict)
+    counts = ", ".join(f"{n} {status}" for status, n in summary(judged.verdicts).items() if n)
+    print_line(console, f"\n{counts}")
+    return text_of(console)
+
+
+def _extent(judged: FileJudgement) -> str:
+    times = judged.file.times
+    rows = f"{len(times)} row{'s' if len(times) > 1 else ''}"
+    return f"{rows} from t = {float(times[0]):g} to t = {float(times[-1]):g}"
+
+
+def _print_conventions(console: Console, judged: FileJudgement) -> None:
+    found = judged.conventions
+    if not found:
+        return
+    print_line(console)
+    certain = any(finding.is_certain for finding in found)
+    if not certain:
+        heading = (
+            "the file departs from the scene's conventions in a way that this motion cannot tell"
+        )
+    elif judged.accepted:
+        heading = "the file departs from the scene's conventions, and was corrected"
+    else:
+        heading = "the file departs from the scene's conventions, and was judged as it stands"
+    print_line(console, Text(heading, "bold yellow"))
+    for finding in found:
+        print_indented(console, "  ", finding.sentence)
+    if certain and not judged.accepted:
+        print_line(console, "  (--accept-conventions corrects this and judges the rest)")
+
+
+def _print_reason(console: Console, verdict: Verdict) -> None:
+    """What is wrong, where, what a shift of time makes of it, and why so much is allowed."""
+    if verdict.at is None:
+        print_indented(console, "    ", verdict.because)
+        return
+    said, rule, why = verdict.because.rpartition(_RULE)
+    bound, meaning, shift = (rule + why).partition(_AS_A_SHIFT)
+    if said:
+        print_indented(console, "    ", said.removesuffix("; "))
+    print_indented(console, "    ", _error(verdict.row()))
+    if meaning:
+        print_indented(console, "    ", f"{meaning.removeprefix('; ')}{shift}")
+    print_indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {bound}")
+
+
+def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
+    numbers = ("largest error", "at t", "allowed", "/floor", "late by", "error left")
+    for heading in ("quantity", "verdict", *numbers, "unit"):
+        table.add_column(heading, justify="right" if heading in numbers else "left", no_wrap=True)
+    for v in verdicts:
+        figures = (v.max, v.at, v.bound, v.ratio)
+        cells = [*(_figure(f) for f in figures), *_shift_cells(v)]
+        table.add_row(v.quantity, _status(v.verdict.value), *cells, v.unit)
+    return table
+
+
+def _shift_cells(verdict: Verdict) -> tuple[str, str]:
+    """The shift of time that explains the error, and what it leaves: the fit of the reason."""
+    if verdict.remains is None:
+        return "", ""
+    left = _figure(verdict.remains)
+    if verdict.trend is not None:
+        return f"{_figure(verdict.trend)} t, {verdict.shift}", left
+    if verdict.shift == "constant":
+        return f"{_figure(verdict.time_shift)}, constant", left
+    return str(verdict.shift), left
+
+
+def _figure(value: float | None) -> str:
+    return "not finite" if value is None or value != value else f"{value:.3g}"
+
+
+# exact
+
+
+def exact_text(found: Mapping[str, Any]) -> str:
+    console = new_console()
+    print_line(
+        console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})"
+    )
+    for row in found["rows"]:
+        print_line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")
+        for name, value in row.items():
+            if name not in ("t", "radius"):
+                _print_quantity(console, name, value)
+    return text_of(console)
+
+
+def _print_quantity(console: Console, name: str, value: Sequence[Any]) -> None:
+    rows = [row if isinstance(row, list) else [row] for row in value]
+    # A column for the sign, so that digits stand below digits.
+    signed = [[text if text.startswith("-") else f" {text}" for text in row] for row in rows]
+    width = max(len(text) for row in signed for text in row)
+    for i, row in enumerate(signed):
+        entries = " ".join(text.ljust(width) for text in row).rstrip()
+        print_line(console, f"  {name if i == 0 else '':15} {entries}")
+
+
+# explain
+
+
+def explanation_text(found: Mapping[str, Any]) -> str:
+    console = new_console()
+    print_line(console, Text(found["scene"], "bold"), f": {found['title']}")
+    if found["source"]:
+        print_line(console, f"source: {found['source']}")
+    for warning in found["warnings"]:
+        print_line(console, Text("warning", "yellow"), f": {warning}")
+    for sentence in found["body"]:
+        print_indented(console, "body: ", sentence)
+    print_line(console, f"tracked: {', '.join(found['track'])}")
+    if found["equations"] is not None:
+        _print_problem(console, found)
+    print_line(console)
+    print_line(console, Text(f"gates on {found['rung']}", "bold"), f", u = 2^-{found['bits']}")
+    for gate in found["gates"]:
+        _print_gate(console, gate)
+    return text_of(console)
+
+
+def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
+    cost, units = found["cost"], found["units"]
+    print_line(console)
+    print_line(console, Text("equations as built", "bold"))
+    for line in found["equations"]:
+        print_line(console, f"  {line}")
+    if found["parameters"]:
+        print_line(console, "with, shown as doubles,")
+        for name, value in found["parameters"].items():
+            print_line(console, f"  {name:4} {float.fromhex(value)!r}")
+    print_line(console, "in units (exact powers of two)")
+    print_line(console, "  " + ", ".join(f"{name} {value}" for name, value in units.items()))
+    print_line(console)
+    _print_orbit(console, found)
+    truth = f"  route {found['route']}, {found['truth_digits']} digits"
+    print_line(console, Text("truth", "bold"), truth)
+    order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
+    for i, sentence in enumerate(cost["because"]):
+        print_indented(console, "chosen   " if i == 0 else "         ", sentence)
+    print_line(
+        console,
+        Text("cost", "bold"),
+        f"   {_counted(cost)}\n"
+        f"       general equations of this body: {_counted(cost['same'])}\n"
+        f"       with all that the model has: {_counted(cost['general'])}\n"
+        f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
+        f"{cost['seconds']:.3g} s",
+    )
+
+
+def _counted(cost: Mapping[str, Any]) -> str:
+    """What one evaluation of the equations takes."""
+    return (
+        f"{cost['states']} states; an evaluation takes {cost['products']} products, "
+        f"{cost['sums']} sums and {cost['quotients']} quotients"
+    )
+
+
+def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
+    """What the orbit is in words, its numbers, and how it carries an error on."""
+    print_line(console, Text("orbit", "bold"), f"  {found['regime']}")
+    for sentence in found["sentences"]:
+        print_indented(console, "  ", sentence)
+    numbers = found["elements"]
+    if numbers:
+        print_line(console, "numbers in the scene's own units")
+    values = [
+        f"{number['value']} {_UNITS.get(number['unit'], number['unit'])}".rstrip()
+        for number in numbers
+    ]
+    name_width = max((len(number["name"]) for number in numbers), default=0)
+    value_width = max(map(len, values), default=0)
+    for number, value in zip(numbers, values, strict=True):
+        label = f"  {number['name']:{name_width}}  {value:{value_width}}  "
+        print_indented(console, label, number["meaning"])
+    if found["condition"] is not None:
+        print_line(console, Text("conditioning", "bold"))
+        for sentence in found["condition"]["sentence"].split(". "):
+            print_indented(console, "  ", sentence.removesuffix(".") + ".")
+
+
+def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
+    print_line(console)
+    print_line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
+    if gate["at"] is not None:
+        for part in _error(gate).split("; "):
+            print_indented(console, "    ", part)
+    because = [part.strip() for part in gate["because"].split(";")]
+    for i, part in enumerate(because):
+        print_indented(console, "    because " if i == 0 else "            ", part)

@@ -1,0 +1,214 @@
+"""Defects of the answer: a sound trajectory that is stamped, stored or reported wrongly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.limit import JustWithin, just_over
+from taylor_verify.models.problem import Problem
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+_BRICK: Final = "euler/nesc-brick"
+_SCREW: Final = "kirchhoff/whole-motion"
+_CONSERVED: Final = frozenset({"T", "H2", "H_space"})
+
+# Half a millisecond is what separates one simulation of NASA's check case of this brick from others.
+_EARLY: Final = Fraction(1, 2000)
+# The step between whose ends the last point is interpolated, in units of time.
+_STEP: Final = Fraction(1, 1000)
+
+Rows = Any
+
+
+def _early(problem: Problem) -> Problem:
+    """Every state is that of half a millisecond later."""
+    ahead = _EARLY / problem.units.time
+    times = tuple(problem.rung.round(t + ahead) for t in problem.times)
+    return replace(problem, times=times)
+
+
+def _one_sample_late(problem: Problem, sound: Trajectory) -> Trajectory:
+    """Row k holds the state of row k - 1."""
+    del problem
+    return _mapped(sound, lambda rows: np.concatenate([rows[:1], rows[:-1]]))
+
+
+def _last_interpolated(problem: Problem, sound: Trajectory) -> Trajectory:
+    """The last row is the mean of the states half a step before and half a step after it."""
+    half = _STEP / problem.units.time / 2
+    end, rounded = problem.times[-1], problem.rung.round
+    around = replace(problem, times=(rounded(end - half), rounded(end + half)))
+    ends = Taylor().solve(around).quantities
+    with mp.workprec(problem.rung.bits):
+        means = {name: (rows[0] + rows[1]) / 2 for name, rows in ends.items()}
+    return _with(
+        sound,
+        {name: np.concatenate([rows[:-1], [means[name]]]) for name, rows in _of(sound).items()},
+    )
+
+
+def _padded(problem: Problem, sound: Trajectory) -> Trajectory:
+    """From half the time on, the state that was reached then."""
+    half = len(problem.times) // 2
+    return _mapped(
+        sound, lambda rows: np.concatenate([rows[:half], *[rows[half : half + 1]] * (half + 1)])
+    )
+
+
+def _stopped(problem: Problem, sound: Trajectory) -> Trajectory:
+    """The same end, told."""
+    del problem
+    return replace(sound, outcome=Outcome.INTERRUPTED, quantities={})
+
+
+def _one_nan(problem: Problem, sound: Trajectory) -> Trajectory:
+    """One number of one sample is not a number, in every quantity."""
+    del problem
+
+    def spoil(rows: Rows) -> Rows:
+        spoiled = rows.copy()
+        spoiled[len(rows) // 2, 0] = mp.nan
+        return spoiled
+
+    return _mapped(sound, spoil)
+
+
+def _conjugated(problem: Problem, sound: Trajectory) -> Trajectory:
+    """q0, -q1, -q2, -q3: the rotation from space to body."""
+    del problem
+    signs = np.array([1, -1, -1, -1], dtype=object)
+    return _with(sound, {**_of(sound), "quaternion": _of(sound)["quaternion"] * signs})
+
+
+def _scalar_rebuilt(problem: Problem, sound: Trajectory) -> Trajectory:
+    """q0 = +sqrt(1 - q1^2 - q2^2 - q3^2)."""
+
+    def rebuilt(row: Rows) -> Rows:
+        square = 1 - sum(component * component for component in row[1:])
+        return [mp.sqrt(max(square, mp.zero)), *row[1:]]
+
+    with mp.workprec(problem.rung.bits):
+        rows = np.array([rebuilt(row) for row in _of(sound)["quaternion"]], dtype=object)
+    return _with(sound, {**_of(sound), "quaternion": rows})
+
+
+def _of(sound: Trajectory) -> Mapping[str, Rows]:
+    return sound.quantities
+
+
+def _with(sound: Trajectory, quantities: Mapping[str, Rows]) -> Trajectory:
+    return replace(sound, quantities=quantities)
+
+
+def _mapped(sound: Trajectory, change: Callable[[Rows], Rows]) -> Trajectory:
+    return _with(sound, {name: change(rows) for name, rows in _of(sound).items()})
+
+
+ANSWERS: Final = (
+    Defect(
+        "half-a-millisecond-early",
+        _BRICK,
+        "omega",
+        passes=_CONSERVED,
+        what="every sample stamped 0.5 ms early",
+        why="a true state of the same motion at another time: it has every conserved quantity to "
+        "the last digit, and all of its error is a shift of time",
+        recast=_early,
+        wrong_start=True,
+        told=True,
+    ),
+    Defect(
+        "one-sample-late",
+        _BRICK,
+        "omega",
+        passes=_CONSERVED,
+        what="the output written one sample late",
+        why="true states all of them, each under the next one's time",
+        spoil=_one_sample_late,
+    ),
+    Defect(
+        "one-sample-late-impulse",
+        _SCREW,
+        "impulse",
+        passes=frozenset({"T", "F2", "FG", "y3", "x_space", "y_space"}),
+        what="the same late output, for a solid in a fluid",
+        why="six conserved quantities instead of three, and none of them has a clock",
+        spoil=_one_sample_late,
+    ),
+    Defect(
+        "success-after-failure",
+        _BRICK,
+        "attitude",
+        passes=_CONSERVED,
+        what="stopped half way, padded with the last state, success reported",
+        why="a body that is frozen loses nothing",
+        spoil=_padded,
+        told=True,
+    ),
+    Defect(
+        "stopped-and-said-so",
+        _BRICK,
+        "omega",
+        what="stopped half way, and reported as stopped",
+        why="what did not finish is not scored: it has the outcome for its error",
+        spoil=_stopped,
+        honest=True,
+    ),
+    Defect(
+        "last-point-interpolated",
+        _BRICK,
+        "omega",
+        what="the last point interpolated between two steps of 1 ms",
+        why="a chord runs inside the arc by h^2/8 of its curvature: one sample in a hundred is "
+        "wrong, in everything",
+        spoil=_last_interpolated,
+        told=True,
+    ),
+    Defect(
+        "conjugate-quaternion",
+        _BRICK,
+        "attitude",
+        passes=frozenset({"omega", "T", "H2"}),
+        what="the quaternion from space to body in place of body to space",
+        why="no quantity in body axes knows the attitude; in space the momentum wanders",
+        spoil=_conjugated,
+    ),
+    Defect(
+        "scalar-part-rebuilt",
+        _BRICK,
+        "H_space",
+        passes=frozenset({"omega", "T", "H2"}),
+        what="q0 rebuilt as the positive root after each renormalisation",
+        why="q and -q are one rotation, but the sign of q0 alone is not free: right until the body "
+        "has turned by half a turn, then not",
+        spoil=_scalar_rebuilt,
+    ),
+    Defect(
+        "one-nan",
+        _BRICK,
+        "omega",
+        what="one number that is not a number",
+        why="NaN is neither smaller nor larger than anything: a gate that asks whether error > bound "
+        "passes it, one that asks whether error <= bound does not",
+        spoil=_one_nan,
+    ),
+    Defect(
+        "one-ulp-over",
+        "euler/generic",
+        "omega",
+        passes=frozenset({"T", "H2"}),
+        what="one sample off by the bound and one ulp of it",
+        why="the least error that must fail; its twin, an ulp within, must pass. It leads along the "
+        "orbit, where nothing conserved changes",
+        spoil=just_over,
+        twin=JustWithin(),
+    ),
+)

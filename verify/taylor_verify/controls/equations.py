@@ -1,0 +1,265 @@
+"""Defects of the equations: a wrong right-hand side, soundly integrated.
+
+H, K    angular momentum (body axes), inverse tensor         x, y      impulses, body axes
+A, B, C energy T = x.A x/2 + x.B y + y.C y/2                 U, Omega  velocities dT/dx and dT/dy
+J       (x, y) = J (U, Omega), the inverse of [[A, B], [B^T, C]]
+
+Whatever Omega and U are put into x' = x x Omega, y' = y x Omega + x x U, and into the motion of the
+frame, |x|^2, x.y and the impulses in space stay what they are: a body of other coefficients conserves
+its own energy and nobody's but its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, Final
+
+from taylor_verify.controls.defect import Defect
+from taylor_verify.models.algebra import add, apply, cross, minus
+from taylor_verify.models.euler import angular_velocity
+from taylor_verify.models.form import (
+    Form,
+    Named,
+    euler_equations,
+    kirchhoff_equations,
+)
+from taylor_verify.models.kirchhoff import impulse_rates, velocities
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
+
+_BRICK: Final = "euler/nesc-brick"
+_SCREW: Final = "kirchhoff/whole-motion"
+
+# Per unit of time: a thousandth of the damping that game engines give a body by default.
+_DAMPING: Final = Fraction(1, 10**6)
+# Relative: what a coefficient read from a drawing, or stored in single precision, may be off by.
+_UNEVENNESS: Final = 1e-6
+
+# The body of _SCREW alone may have any mass and moments that leave the fluid a positive energy: all
+# less than the least eigenvalue of J, which is 0.593.
+_MASS_ALONE: Final = Fraction(1, 2)
+
+
+# Euler.
+
+
+def _gyroscopic_sign(n: Named) -> Mapping[str, Any]:
+    """H' = K H x H + M."""
+    H = n.vector("H")
+    rate = add(cross(angular_velocity(H, n.symmetric("K")), H), n.vector("M"))
+    return euler_equations(n) | _rates("H", rate)
+
+
+def _no_gyroscopic_term(n: Named) -> Mapping[str, Any]:
+    """H' = M."""
+    return euler_equations(n) | _rates("H", n.vector("M"))
+
+
+def _diagonal_tensor(n: Named) -> Mapping[str, Any]:
+    """Euler's equations of K without its products of inertia."""
+    absent = {f"K{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3) if i != j}
+    return euler_equations(Named({k: v for k, v in n.items() if k not in absent}))
+
+
+def _damped(problem: Problem) -> Problem:
+    """H' = H x K H + M - c H."""
+    damping = float(_DAMPING * problem.units.time)
+
+    def equations(n: Named) -> Mapping[str, Any]:
+        rates = euler_equations(n)
+        return rates | {k: minus(rates[k], damping * n[k]) for k in ("H1", "H2", "H3")}
+
+    return problem.with_equations(equations)
+
+
+# Kirchhoff.
+
+
+def in_21_coefficients(problem: Problem) -> Problem:
+    """The same body by the general equations, with all of y: Clebsch's have one of it for a constant."""
+    if problem.form.equations is kirchhoff_equations:
+        return problem
+    six = problem.given.body
+    units = problem.units
+    assert isinstance(six, ImmersedBody)
+    matrices = {
+        "A": (six.linear, units.inverse_mass),
+        "B": (six.coupling, units.coupling),
+        "C": (six.angular, units.inverse_inertia),
+    }
+    known = {**problem.parameter, **problem.state}
+    known |= {name: known.get(name, Fraction(0)) for name in ("y1", "y2", "y3")}
+    for letter, (matrix, unit) in matrices.items():
+        known |= {f"{letter}{i + 1}{i + 1}": matrix[i][i] / unit for i in range(3)}
+    frame = tuple(name for name in problem.form.states if name[0] in "ec")
+    states = ("x1", "x2", "x3", "y1", "y2", "y3", *frame)
+    present = tuple(k for k, v in known.items() if k not in states and v)
+    form = Form(kirchhoff_equations, states, present)
+    form = replace(form, parameters=form.entering())
+    return replace(
+        problem,
+        form=form,
+        parameters=tuple(known[name] for name in form.parameters),
+        initial_momenta=tuple(known[name] for name in states),
+    )
+
+
+class InGeneralForm(Solver):
+    """The sound twin: heyoka on all 21 coefficients."""
+
+    name = "taylor"
+    setting = "21 coefficients"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        return Taylor().solve(in_21_coefficients(problem))
+
+
+def _velocities(n: Named) -> tuple[list[Any], list[Any]]:
+    return velocities(
+        n.vector("x"), n.vector("y"), n.symmetric("A"), n.matrix("B"), n.symmetric("C")
+    )
+
+
+def _munk_moment_sign(n: Named) -> Mapping[str, Any]:
+    """y' = y x Omega - x x U + L."""
+    U, Omega = _velocities(n)
+    turned, couple = cross(n.vector("y"), Omega), cross(n.vector("x"), U)
+    rate = add([minus(a, b) for a, b in zip(turned, couple, strict=True)], n.vector("L"))
+    return kirchhoff_equations(n) | _rates("y", rate)
+
+
+def _uneven(n: Named) -> Mapping[str, Any]:
+    """Kirchhoff's equations with C22 larger than C11 by a millionth."""
+    return kirchhoff_equations(Named(n | {"C22": n["C22"] * (1 + _UNEVENNESS)}))
+
+
+def _unturned_path(n: Named) -> Mapping[str, Any]:
+    """c' = U in place of R U."""
+    U, _ = _velocities(n)
+    return kirchhoff_equations(n) | _rates("c", U)
+
+
+def _without_added_acceleration(problem: Problem) -> Problem:
+    """m d(U, Omega)/dt = the right sides of 48 (3), (4), m the body alone: (x, y)' = J/m (those)."""
+    problem = in_21_coefficients(problem)
+    body, units = problem.given.body, problem.units
+    assert isinstance(body, ImmersedBody)
+    J = tensors.inverse(body.energy_matrix)
+    unit = (units.impulse,) * 3 + (units.momentum,) * 3
+    ratio = [[J[i][k] / _MASS_ALONE * unit[k] / unit[i] for k in range(6)] for i in range(6)]
+    # The int 0 is a term that is not there.
+    weights = [[float(entry) if entry else 0 for entry in row] for row in ratio]
+
+    def equations(n: Named) -> Mapping[str, Any]:
+        x, y = n.vector("x"), n.vector("y")
+        U, Omega = _velocities(n)
+        x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
+        rates = apply(weights, [*x_rate, *y_rate])
+        return kirchhoff_equations(n) | _rates("x", rates[:3]) | _rates("y", rates[3:])
+
+    return problem.with_equations(equations)
+
+
+def _rates(letter: str, vector: list[Any]) -> dict[str, Any]:
+    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+
+
+EQUATIONS: Final = (
+    Defect(
+        "gyroscopic-sign",
+        _BRICK,
+        "omega",
+        passes=frozenset({"T", "H2"}),
+        what="the gyroscopic term with its sign turned",
+        why="H x omega is perpendicular to H and to omega, whatever its sign: |H| and T stay, while "
+        "the body runs backwards on its own polhode",
+        equations=_gyroscopic_sign,
+        told=True,
+    ),
+    Defect(
+        "no-gyroscopic-term",
+        _BRICK,
+        "H_space",
+        passes=frozenset({"T", "H2"}),
+        what="no gyroscopic term: omega stays as it began",
+        why="nothing changes in body axes, so that nothing can drift there; in space the momentum "
+        "turns with the body",
+        equations=_no_gyroscopic_term,
+        told=True,
+    ),
+    Defect(
+        "diagonal-tensor",
+        "euler/oblique-symmetry",
+        "T",
+        passes=frozenset({"H2", "H_space"}),
+        what="the inertia tensor cut to its diagonal",
+        why="the motion of another body: it keeps its momentum, and its own energy instead of this "
+        "one's",
+        equations=_diagonal_tensor,
+        told=True,
+    ),
+    Defect(
+        "angular-damping",
+        _BRICK,
+        "H2",
+        what="angular damping of 1e-6 per second",
+        why="H shrinks by exp(-1e-6 t), and everything made of it shrinks likewise",
+        recast=_damped,
+        told=True,
+    ),
+    Defect(
+        "munk-moment-sign",
+        _SCREW,
+        "y_space",
+        passes=frozenset({"F2", "FG", "x_space"}),
+        what="the added-mass couple x x U with its sign turned",
+        why="x x U is perpendicular to x: it enters neither |x|^2 nor x.y, and the motion of x does "
+        "not know it; energy and moment do",
+        recast=in_21_coefficients,
+        equations=_munk_moment_sign,
+        twin=InGeneralForm(),
+        told=True,
+    ),
+    Defect(
+        "no-added-mass-acceleration",
+        _SCREW,
+        "FG",
+        what="added mass in the couples, none in the acceleration",
+        why="(U, Omega) answers to the mass of the body alone and conserves an energy made with "
+        "that; the impulse, which has the fluid in it, is no longer a momentum",
+        recast=_without_added_acceleration,
+        twin=InGeneralForm(),
+        told=True,
+    ),
+    Defect(
+        "uneven-coefficient",
+        _SCREW,
+        "y3",
+        passes=frozenset({"F2", "FG", "x_space", "y_space"}),
+        what="one of two equal coefficients larger by 1e-6",
+        why="the motion of another body again: it keeps the impulses, has an energy of its own, and "
+        "being no body of revolution it has no y3",
+        recast=in_21_coefficients,
+        equations=_uneven,
+        twin=InGeneralForm(),
+    ),
+    Defect(
+        "unturned-path",
+        _SCREW,
+        "centre",
+        passes=frozenset({"impulse", "attitude", "T", "F2", "FG", "y3", "x_space"}),
+        what="the path of the centre summed from velocities in body axes",
+        why="the centre enters no equation but its own, and of the conserved quantities only the "
+        "moment about a point of space",
+        recast=in_21_coefficients,
+        equations=_unturned_path,
+        twin=InGeneralForm(),
+        told=True,
+    ),
+)

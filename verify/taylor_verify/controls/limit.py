@@ -1,0 +1,72 @@
+"""An answer exactly on the edge of a gate: an error of the bound, more or less one ulp of it.
+
+The error is put along the orbit, omega' = K (H x omega), so that no conserved quantity changes to
+first order: the gate of the state alone is on its edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil, inf, log10, nextafter
+from typing import final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.errors import state_errors
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Trajectory
+
+# What the judge works with (see judge.judgement): the truth must be the same number there as here.
+_MORE_DIGITS = 3
+_SPARE_BITS = 96
+# An error of this size makes its sample the worst, so that the verdict tells the bound there.
+_CONSPICUOUS = 1e-6
+
+
+def just_over(problem: Problem, sound: Trajectory) -> Trajectory:
+    """One sample in the middle with an omega that is wrong by one ulp more than the bound."""
+    return _moved(problem, sound, nextafter(_bound(problem, sound), inf))
+
+
+@final
+class JustWithin(Solver):
+    """The sound twin: wrong by one ulp less than the bound."""
+
+    name = "taylor"
+    setting = "an ulp within"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        sound = Taylor().solve(problem)
+        return _moved(problem, sound, nextafter(_bound(problem, sound), 0.0))
+
+
+def _bound(problem: Problem, sound: Trajectory) -> float:
+    """The bound at the middle sample, from the verdict on an answer that is conspicuously off there."""
+    (omega, *_) = judgement(problem, Taylor(), _moved(problem, sound, _CONSPICUOUS)).verdicts
+    assert omega.bound is not None
+    return omega.bound
+
+
+def _moved(problem: Problem, sound: Trajectory, error: float) -> Trajectory:
+    """The middle sample's omega put at the truth plus this much, relative to max |omega|."""
+    given, bits = problem.given, problem.rung.bits
+    middle = len(problem.times) // 2
+    truth = solution(given).motion(given.clock.elapsed, ceil(bits * log10(2)) + _MORE_DIGITS)
+    assert isinstance(given.body, RigidBody)
+    with mp.workprec(bits + _SPARE_BITS):
+        (compared, *_) = state_errors(given, truth, sound.motion(bits + _SPARE_BITS))
+        omega = truth["omega"][middle]
+        I, K = (
+            np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
+            for matrix in (given.body.inertia, given.body.inverse_inertia)
+        )
+        along = K @ np.cross(I @ omega, omega)
+        rows = sound.quantities["omega"].copy()
+        rows[middle] = omega + along * (error * compared.parts["omega"] / mp.norm(list(along)))
+    return replace(sound, quantities={**sound.quantities, "omega": rows})

@@ -1,0 +1,37 @@
+"""All traps in the order in which they are told, and the rows that the published table is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+from taylor_verify.controls.traps.bodies import BODIES
+from taylor_verify.controls.traps.clock import CLOCK
+from taylor_verify.controls.traps.numbers import NUMBERS
+from taylor_verify.controls.traps.outcomes import OUTCOMES
+from taylor_verify.controls.traps.trap import Trap
+from taylor_verify.judge.gates import FACTOR
+from taylor_verify.judge.provenance import command, processor, versions
+
+
+def _place(trap: Trap) -> tuple[str, int, str]:
+    """T before S, then by number, then by letter."""
+    number = trap.key[1:].rstrip("abc")
+    return {"T": "0", "S": "1"}[trap.key[0]], int(number), trap.key
+
+
+TRAPS: Final = tuple(sorted((*BODIES, *NUMBERS, *CLOCK, *OUTCOMES), key=_place))
+
+
+def document(
+    traps: Iterable[Trap] = TRAPS, finished: Callable[[str], None] | None = None
+) -> dict[str, Any]:
+    """Measure every trap; ``finished`` is told the title of each as it ends."""
+    rows = []
+    for trap in traps:
+        rows.append(trap.row())
+        if finished is not None:
+            finished(trap.title)
+    known = {package: found for package, found in versions().items() if package != "python"}
+    machine = {"processor": processor(), "command": command()}
+    return {"versions": known, "machine": machine, "factor": FACTOR, "traps": rows}

@@ -1,0 +1,52 @@
+"""The truth: exact motions, conserved quantities and the condition of an orbit.
+
+The room is callable: `taylor_verify.exact(scene, times, digits)`. How a motion changes with its start and its
+body: `taylor_verify.exact.sensitivity.sensitivity(scene, times_elapsed, digits)`. The room imports nothing of
+models, solvers or judge, because what it is compared with must not be part of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.callable_module import make_callable
+
+if TYPE_CHECKING:
+    import os
+
+    from taylor_verify.scenes.motion import Motion
+    from taylor_verify.scenes.scene import Scene
+
+
+def exact(
+    scene: Scene | str | os.PathLike[str],
+    times: Iterable[Any],
+    digits: int = 30,
+    route: str | None = None,
+) -> Motion:
+    """The exact motion at absolute times, to ``digits`` significant digits of every vector.
+
+    Times are numbers in the scene's unit: Fractions, integers, decimal text, or binary numbers, NumPy's
+    among them, which are taken exactly. The initial state is at the scene's start.
+    The Motion has a row for each time, in body axes but for ``centre``, and a ``radius``: proven, or for
+    ``mpmath`` that to which two precisions agree. ``route`` is ``arb`` (closed form in balls), ``mpmath``
+    (closed form by other formulas) or ``taylor`` (Taylor series in balls); by default ``arb`` where there
+    is a closed form, else ``taylor``. The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica,
+    hydromechanics 48 (3), (4); the formulas of a closed form are named in exact.euler and exact.kirchhoff.
+
+    Raises scenes.faults.Refused for a scene that cannot be read, exact.solution.NoClosedForm where the
+    route asks for a closed form that is missing, exact.solution.Unsettled where the digits cannot be
+    had, and ValueError for what is no finite time, no number of digits up to ten thousand, no route.
+    """
+    from taylor_verify.exact.ellipsoid import formed_to
+    from taylor_verify.exact.request import check_digits, exact_times
+    from taylor_verify.exact.route import solution
+    from taylor_verify.scenes.reader import as_scene
+
+    scene, digits = as_scene(scene), check_digits(digits)
+    elapsed = [time - scene.clock.start for time in exact_times(times)]
+    return solution(formed_to(scene, digits), route).motion(elapsed, digits)
+
+
+make_callable(__name__, exact)

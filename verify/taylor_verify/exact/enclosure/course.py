@@ -1,0 +1,322 @@
+"""Steps from a start to the times asked for, and when a precision is given up."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import MAX_EMAX, MIN_EMIN, Decimal, localcontext
+from fractions import Fraction
+from math import ceil, log2
+from statistics import median
+from typing import Final
+
+from flint import arb, ctx
+
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.enclosure.box import Box, Flow, carried, exponent, flow, within
+from taylor_verify.exact.enclosure.placing import Leg, Place, leg
+from taylor_verify.exact.enclosure.series import Series, scaled, state_series
+from taylor_verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes
+from taylor_verify.exact.enclosure.tube import (
+    BOUND_BITS,
+    StepTooLong,
+    Tube,
+    rates_of_change,
+    tube,
+)
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+
+# The cheapest step is the radius of convergence over e^2: bits ln 2/2 orders. The linear part of the
+# cost asks for a few more.
+_ORDERS_PER_BIT: Final = 0.36
+_STEP_BITS: Final = 8
+# Beside a steady motion the series converges for ever, and the bounds do not close.
+_MOST_GROWTH: Final = 5.0
+_HALVINGS: Final = 30
+# A turn by this share of the order has its last term below the last bit.
+_TURN_PER_ORDER: Final = 1 / 20
+_MOST_STEPS: Final = 1_000_000
+# A box so large, as a power of two of its vector, is lost: steps shrink with it for ever.
+_LOST: Final = -10
+_SHRUNK: Final = -20
+_SEVERAL: Final = 16
+# Whoever waits for the answer may listen.
+_progress: Final = logging.getLogger("taylor_verify.progress")
+_DIGITS_PER_BIT: Final = Fraction(301, 1000)
+
+
+class Coarse(ArithmeticError):
+    """At this precision the motion cannot be followed to its end; ``bits`` may suffice."""
+
+    def __init__(self, bits: int) -> None:
+        super().__init__()
+        self.bits = bits
+
+
+@dataclass(frozen=True)
+class Row:
+    """The state at one time in balls. ``turn`` is R, nine entries row by row, and may be empty.
+
+    ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre. A
+    block is as large as the terms of its rate make it in a step, though they may cancel.
+    """
+
+    state: list[arb]
+    turn: list[arb]
+    centre: list[arb] | None
+    largest: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class _Step:
+    """One step of length h from a box, and everything that is known about the motion within it."""
+
+    length: Fraction
+    state: Series
+    tube: Tube
+    flow: Flow | None
+    leg: Leg | None
+
+
+@dataclass(frozen=True)
+class Course:
+    """Steps from a start, away from it, at one precision; to be used at that precision.
+
+    ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
+    More than ``most_bits`` bits are never asked for.
+    """
+
+    system: System
+    balls: Balls
+    bounds: Bounds
+    start: Sequence[arb]
+    place: Place | None
+    bits: int
+    most_bits: int
+
+    @classmethod
+    def of(
+        cls, system: System, start: Sequence[arb], place: Place | None, bits: int, most_bits: int
+    ) -> Course:
+        """The course of a system, at the ambient precision of ``bits`` bits."""
+        held = Balls.of(system)
+        with ctx.workprec(BOUND_BITS):
+            bounds = Bounds.of(held)
+        return cls(system, held, bounds, start, place, bits, most_bits)
+
+    @property
+    def order(self) -> int:
+        return ceil(_ORDERS_PER_BIT * self.bits) + 2
+
+    def first_row(self) -> Row:
+        """The start itself."""
+        turn, centre = ([], None) if self.place is None else self.place.balls()
+        return Row(list(self.start), turn, centre, self._largest(Box.about(self.start), self.place))
+
+    def _largest(self, box: Box, place: Place | None) -> tuple[float, ...]:
+        """log2 of the size of each block, and of the centre."""
+        centre = [] if place is None or place.centre is None else place.centre
+        sizes = [_size(box.point, span) for span in self.system.spans]
+        return (*sizes, _size(centre, range(len(centre))))
+
+    def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
+        """The state at these times, which go away from zero on one side.
+
+        Raises Coarse where more bits are needed, and Unsettled where more than a million steps, or
+        more than ``most_bits`` bits, would be.
+        """
+        box, place = Box.about(self.start), self.place
+        now, last = Fraction(0), times[-1]
+        pending, lengths, length = list(times[::-1]), [], last
+        largest = self._largest(box, place)
+        while pending:
+            step = self._step(box, length, last - now)
+            largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
+            while pending and abs(pending[-1] - now) <= abs(step.length):
+                time = pending.pop()
+                share = ball((time - now) / step.length)
+                yield time, self._row(box, place, step, share, largest)
+            box = carried(box, step.state, step.tube, step.flow, self.system.spans)
+            place = None if place is None or step.leg is None else step.leg.carried(place)
+            largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
+            now, length = now + step.length, 2 * step.length
+            if _progress.isEnabledFor(logging.INFO):
+                done = float(100 * now / last)
+                _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
+            lengths.append(abs(step.length))
+            if pending:
+                self._watch(box, largest, lengths, now, last)
+
+    def _terms(self, step: _Step) -> tuple[float, ...]:
+        """log2 of what the terms of the rates make of each block in a step, none cancelled."""
+        with ctx.workprec(BOUND_BITS):
+            point = magnitudes(column(step.state[0]))
+            terms = self.bounds.hessian * column((point * point.transpose()).entries())
+            added = (terms * ball(step.length)).entries()
+        return (*(_size(added, span) for span in self.system.spans), float("-inf"))
+
+    def _row(
+        self, box: Box, place: Place | None, step: _Step, s: arb, largest: tuple[float, ...]
+    ) -> Row:
+        state = within(box, step.state, step.tube, step.flow, s)
+        if place is None or step.leg is None:
+            return Row(state, [], None, largest)
+        turn, centre = step.leg.within(place, s)
+        return Row(state, turn, centre, largest)
+
+    # One step.
+
+    def _step(self, box: Box, guess: Fraction, left: Fraction) -> _Step:
+        system, bounds = self.balls, self.bounds
+        length = self._first(box, guess, left)
+        state = state_series(system, box.point, ball(length), self.order)
+        length, state = self._fitted(state, length, left)
+        for _ in range(_HALVINGS):
+            h = ball(length)
+            with ctx.workprec(BOUND_BITS):
+                sizes = [[z.abs_upper() for z in row] for row in state]
+                try:
+                    found = tube(bounds, sizes, h.abs_upper(), box.apart())
+                    moving = None
+                    if not box.is_point:
+                        moving = flow(system, bounds, state, sizes, h, found)
+                except StepTooLong:
+                    found = None
+            if found is not None:
+                there = None
+                if self.place is not None:
+                    has_centre = self.place.centre is not None
+                    there = leg(system, bounds, state, h, found, moving, box, has_centre)
+                return _Step(length, state, found, moving, there)
+            state, length = scaled(state, arb(1) / 2), length / 2
+        raise Coarse(2 * self.bits)
+
+    def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
+        """A length at which the coefficients are no giants: no guess can make a result wrong."""
+        with ctx.workprec(BOUND_BITS):
+            growth = self._growth(box.point)
+        length = guess if abs(guess) < abs(left) else left
+        if growth == float("-inf"):
+            return length
+        limit = power_of_two(ceil(-growth))
+        return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
+
+    def _growth(self, point: Sequence[arb]) -> float:
+        """log2 of the spectral radius of |dF/dz| there, within a factor of n^(1/8); -inf of none.
+
+        The trace of an eighth power does not depend on the units of the components.
+        """
+        power = rates_of_change(self.bounds, magnitudes(column(point)))
+        for _ in range(3):
+            power = power * power
+        trace = power.trace()
+        return float("-inf") if trace.is_zero() else exponent(trace) / 8
+
+    def _fitted(self, state: Series, length: Fraction, left: Fraction) -> tuple[Fraction, Series]:
+        """The length at which the last coefficients fall below the last bit, and the series there."""
+        factor = self._root_test(state)
+        with ctx.workprec(BOUND_BITS):
+            growth = self._growth(state[0]) + _log2(length)
+            factor = min(factor, log2(_MOST_GROWTH) - growth)
+            if self.place is not None:
+                factor = min(factor, self._turning(state, length))
+        fitted = left if factor > 1e9 else _cut(length, factor)
+        if abs(fitted) >= abs(left):
+            fitted = left
+        return fitted, scaled(state, ball(fitted / length))
+
+    def _root_test(self, state: Series) -> float:
+        """log2 of the factor by which the length may grow; infinite where the series has ended."""
+        factor = float("inf")
+        for span in self.system.spans:
+            size = _first_size(state, span)
+            for k in range(max(1, self.order - 2), self.order + 1):
+                last = _size(state[k], span)
+                if last > float("-inf"):
+                    factor = min(factor, (size - self.bits - last) / k)
+        return factor
+
+    def _turning(self, state: Series, length: Fraction) -> float:
+        """log2 of the factor at which the frame turns by no more than its series can follow."""
+        most = log2(max(1.0, self.order * _TURN_PER_ORDER))
+        spins = [
+            _size((self.balls.spin * column(z)).entries(), range(3)) + _log2(length) for z in state
+        ]
+        return min((most - spin) / (k + 1) for k, spin in enumerate(spins))
+
+    # When to stop.
+
+    def _watch(
+        self,
+        box: Box,
+        largest: Sequence[float],
+        lengths: list[Fraction],
+        now: Fraction,
+        last: Fraction,
+    ) -> None:
+        """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere.
+
+        Raises Unsettled where there would be too many steps.
+        """
+        apart = box.apart().entries()
+        for k, span in enumerate(self.system.spans):
+            if _size(apart, span) > largest[k] + _LOST:
+                raise Coarse(self._needed(now, last))
+        if len(lengths) % _SEVERAL == 0:
+            usual = median(lengths[-8 * _SEVERAL :])
+            if lengths[-1] < usual * power_of_two(_SHRUNK):
+                raise Coarse(self._needed(now, last))
+            steps = len(lengths) + abs(last - now) / usual
+            if steps > _MOST_STEPS:
+                raise Unsettled(
+                    f"the Taylor series would take about {_brief(steps)} steps to reach a time of "
+                    f"{_brief(last)} from the start; expected at most {_MOST_STEPS}: ask for a shorter "
+                    "time"
+                )
+
+    def _needed(self, lost: Fraction, last: Fraction) -> int:
+        """The bits with which the box would reach the end, if it grows as it did so far."""
+        rate = self.bits / abs(lost)
+        needed = ceil(rate * abs(last))
+        if needed > self.most_bits:
+            raise Unsettled(
+                f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; a "
+                f"time of {_brief(last)} from the start needs more than {self.most_bits} bits"
+            )
+        return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
+
+
+def _log2(length: Fraction) -> float:
+    """log2 of a magnitude that no float needs to hold."""
+    return log2(abs(length.numerator)) - log2(length.denominator)
+
+
+def _brief(value: Fraction) -> str:
+    """Two digits of a number of any size."""
+    with localcontext(Emax=MAX_EMAX, Emin=MIN_EMIN):
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):.2g}"
+
+
+def _cut(length: Fraction, log2_factor: float) -> Fraction:
+    """The length times 2^log2_factor, cut to so few bits that sums of lengths stay short."""
+    whole = int(log2_factor // 1)
+    wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
+    unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
+    return int(wide / unit) * unit
+
+
+def _first_size(state: Series, span: range) -> float:
+    """log2 of a block, or of what it first becomes; -inf where it stays zero."""
+    for row in state[:3]:
+        size = _size(row, span)
+        if size > float("-inf"):
+            return size
+    return float("-inf")
+
+
+def _size(entries: Sequence[arb], span: range) -> float:
+    """log2 of the largest entry, rounded upwards; -inf of zeros."""
+    sizes = [exponent(entries[i]) for i in span if not entries[i].abs_upper().is_zero()]
+    return float(max(sizes, default=float("-inf")))

@@ -1,0 +1,219 @@
+"""A rigid body under a constant moment in body axes: which of its motions have a closed form.
+
+Legend: I inertia tensor, M the moment, w omega, w0 at the start; J the moment of a body with three
+equal ones; J_s, J_d the simple and the double moment of an axisymmetric body, e its axis (a unit
+vector), sg = (J_s - J_d)/J_d, u = e.w. With phi = sg (u0 t + (e.M) t^2/2J_s), I w' = I w x w + M has
+the solution
+
+    three equal ones    w = w0 + (M/J) t
+    axisymmetric        u = u0 + (e.M/J_s) t,
+                        w_perp = Rot(e, phi) [w_perp0 + (1/J_d) int_0^t Rot(e, -phi) M_perp dt]
+
+so phi' = sg u is the rate at which the transverse part turns. The attitude is closed where, seen from
+a frame that turns with phi, omega is a straight line a + b t: for equal moments, and for a moment
+along the axis, where
+
+    R = R0 A(t) Rot(e, -phi),    A' = A [a + b t]x,    a = w_perp0 + (J_s/J_d) u0 e,    b = (e.M/J_d) e.
+
+The double moment is rational, and so is a vector n along the axis: only its length is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from functools import cached_property
+from typing import Final
+
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.scenes import motion, tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+# Kummer's series cancels about as many digits as this, and has a few times as many terms. Beyond it
+# the moment is so weak that the body turns many times before the direction of omega has changed.
+_MOST_TURNS: Final = 256
+# Angles since the instant at which the spin, or omega, would be least: each of their digits is lost.
+_LARGEST_ANGLE: Final = 10**600
+
+
+class MomentRegime(StrEnum):
+    """The loaded motions with a closed form; each value is the word printed as ``regime``."""
+
+    SPHERICAL = "spherical-moment"  # three equal moments of inertia, any moment
+    AXIAL = "axial-moment"  # two equal moments of inertia, M along the axis: a chirp
+    TRANSVERSE = "transverse-moment"  # the same body, M across the axis: sines and cosines
+    OBLIQUE = "oblique-moment"  # the same body, any other M: Fresnel's integrals
+
+
+WITH_ATTITUDE: Final = (MomentRegime.SPHERICAL, MomentRegime.AXIAL)
+
+
+@dataclass(frozen=True)
+class Line:
+    """An angular velocity a + b t in a frame of its own, b not zero: rational vectors.
+
+    ``across`` is the part of a normal to b, ``lead`` the time by which the nearest approach to zero
+    is past at t = 0: a = across + lead b.
+    """
+
+    a: Vector
+    b: Vector
+
+    @cached_property
+    def lead(self) -> Fraction:
+        return tensors.dot(self.a, self.b) / tensors.dot(self.b, self.b)
+
+    @cached_property
+    def across(self) -> Vector:
+        return tensors.plus(self.a, tensors.scaled(-self.lead, self.b))
+
+    @property
+    def turns_squared(self) -> Fraction:
+        """The square of |across|^2/8|b|, the size of Kummer's parameter."""
+        return tensors.dot(self.across, self.across) ** 2 / (64 * tensors.dot(self.b, self.b))
+
+    @property
+    def angle_squared(self) -> Fraction:
+        """The square of |b| lead^2/2, the size of Kummer's argument at t = 0."""
+        return tensors.dot(self.b, self.b) * self.lead**4 / 4
+
+
+@dataclass(frozen=True)
+class LoadedSpin:
+    """Inertia tensor, moment (not zero) and omega at the start, all in body axes.
+
+    Raises NoClosedForm, when made, where omega has none.
+    """
+
+    inertia: Matrix
+    moment: Vector
+    omega: Vector
+
+    def __post_init__(self) -> None:
+        if not any(self.moment):
+            raise ValueError("expected a moment that is not zero, got 0 0 0 @ body.moment")
+        if self._free.discriminant != 0:
+            raise NoClosedForm("a moment acts on a body with three different moments of inertia")
+        if not self.angle_squared <= _LARGEST_ANGLE**2:
+            raise NoClosedForm("the part of the moment along the axis is too weak beside the spin")
+
+    @cached_property
+    def _free(self) -> FreeSpin:
+        return FreeSpin(self.inertia, self.omega)
+
+    @cached_property
+    def regime(self) -> MomentRegime:
+        """The kind of motion, decided in rationals."""
+        if self._free.spread == 0:
+            return MomentRegime.SPHERICAL
+        if not any(tensors.cross(self.axis, self.moment)):
+            return MomentRegime.AXIAL
+        if tensors.dot(self.axis, self.moment) == 0:
+            return MomentRegime.TRANSVERSE
+        return MomentRegime.OBLIQUE
+
+    # Three equal moments: every axis is one of symmetry, and phi is 0 about any of them.
+
+    @cached_property
+    def double_moment(self) -> Fraction:
+        """J_d, or J."""
+        is_spherical = self._free.spread == 0
+        return self._free.trace / 3 if is_spherical else self._free.double_moment
+
+    @cached_property
+    def simple_moment(self) -> Fraction:
+        """J_s, or J."""
+        return self._free.trace - 2 * self.double_moment
+
+    @cached_property
+    def ratio(self) -> Fraction:
+        """sg = (J_s - J_d)/J_d; 0 for three equal moments."""
+        return (self.simple_moment - self.double_moment) / self.double_moment
+
+    @cached_property
+    def axis(self) -> Vector:
+        """n, a rational vector along the axis e: the longest column of (I - J_d)/(J_s - J_d) = e e^T.
+
+        For three equal moments, that of M, which no formula uses for more than its direction.
+        """
+        if self._free.spread == 0:
+            return self.moment
+        columns = [
+            tuple(
+                (self.inertia[i][j] - (self.double_moment if i == j else 0))
+                / (self.simple_moment - self.double_moment)
+                for i in range(3)
+            )
+            for j in range(3)
+        ]
+        return max(columns, key=lambda column: tensors.dot(column, column))
+
+    @cached_property
+    def axis_squared(self) -> Fraction:
+        """|n|^2."""
+        return tensors.dot(self.axis, self.axis)
+
+    def along(self, vector: Vector) -> Vector:
+        """(e.v) e, rational."""
+        return tensors.scaled(tensors.dot(self.axis, vector) / self.axis_squared, self.axis)
+
+    def across(self, vector: Vector) -> Vector:
+        """v - (e.v) e, rational."""
+        return tensors.plus(vector, tensors.scaled(Fraction(-1), self.along(vector)))
+
+    @property
+    def turning(self) -> Fraction:
+        """|n| sg u0, the linear coefficient of |n| phi."""
+        return self.ratio * tensors.dot(self.axis, self.omega)
+
+    @property
+    def bending(self) -> Fraction:
+        """|n| sg (e.M)/2J_s, the quadratic coefficient of |n| phi."""
+        return self.ratio * tensors.dot(self.axis, self.moment) / (2 * self.simple_moment)
+
+    @property
+    def angle_squared(self) -> Fraction:
+        """The square of phi between t = 0 and the instant without spin; 0 where that never comes."""
+        if not self.bending or self.regime is not MomentRegime.OBLIQUE:
+            return Fraction(0)
+        return self.turning**4 / (16 * self.bending**2 * self.axis_squared)
+
+    @cached_property
+    def line(self) -> Line:
+        """The straight line a + b t that omega is for the frame A.
+
+        Raises NoClosedForm where there is none, or where its closed form is out of reach.
+        """
+        if self.regime not in WITH_ATTITUDE:
+            raise NoClosedForm(
+                "the attitude of an axisymmetric body under a moment that is not along its axis"
+            )
+        stretch = self.simple_moment / self.double_moment
+        a = tensors.plus(self.across(self.omega), tensors.scaled(stretch, self.along(self.omega)))
+        found = Line(a, tensors.scaled(1 / self.double_moment, self.moment))
+        if not found.turns_squared <= _MOST_TURNS**2:
+            raise NoClosedForm(
+                f"Kummer's parameter of the attitude exceeds {_MOST_TURNS}: the moment is too weak"
+            )
+        if not found.angle_squared <= _LARGEST_ANGLE**2:
+            raise NoClosedForm("the attitude under a moment that is too weak beside omega")
+        return found
+
+
+def loaded(scene: Scene) -> tuple[LoadedSpin, motion.Quaternion | None]:
+    """The exact data of a loaded scene, and the attitude at the start where it is tracked.
+
+    Raises NoClosedForm where anything that is tracked has none.
+    """
+    if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
+        raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
+    spin = LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega)
+    if "attitude" not in scene.track:
+        return spin, None
+    _ = spin.line  # decided here, and not when the first sample is asked for
+    return spin, scene.initial.attitude

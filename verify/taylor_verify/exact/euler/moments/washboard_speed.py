@@ -1,0 +1,186 @@
+"""The squared speed F of the bead on the washboard, and the v that it carries along, in balls.
+
+Legend as in washboard, x = 2 Omega sigma. Where kappa < 0 (v swings),
+
+    F = nu0^2 + slope sigma - P (cos x - 1) - Q sin x/(2 Omega),
+    (F(e + z) - F(e))/z = slope + s ((F'(e) - slope) cos(Omega z) + F''(e) z s/2),
+                                                             s = sin(Omega z)/(Omega z),
+
+and where kappa > 0 (v grows), with p, q = (P +- Q/(2 Omega))/2,
+
+    F = nu0^2 + slope sigma + P - p e^x - q e^-x,
+    (F(e + z) - F(e))/z = slope - 2 Omega s (p e^(x + Omega z) - q e^-(x + Omega z)),
+                                                             s = sinh(Omega z)/(Omega z), x at e.
+
+The quotients come from the differences of sines and of exponentials: nothing cancels in them as z -> 0.
+Where the growing part of v is zero, p is exactly 0: v and F stay accurate however small the rest becomes.
+On a wide ball away from the end, F(e + z)/z comes from Taylor's formula about the middle: on a crest that
+is all but a double root, F is small by its second order, and that must be seen.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Final, TypeVar, final
+
+from flint import acb, arb, ctx
+
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.euler.moments.washboard import Washboard
+
+Quotient = Callable[[acb], acb]
+Number = TypeVar("Number", arb, acb)
+
+# Taylor's formula is used so far from the end, in units of 1/Omega, on what is no node of a quadrature:
+# those are wide by a few last bits.
+_AWAY: Final = 0.25
+_NODE_BITS: Final = 24
+
+
+class Speed(ABC):
+    """F with the numbers of one precision of flint, good only there."""
+
+    def __init__(self, board: Washboard) -> None:
+        self.board = board
+        self.slope, self.even, self.odd = (ball(e) for e in (board.slope, board.even, board.odd))
+        self.rate = ball(abs(board.kappa)).sqrt()
+        self._start = ball(board.nu**2)
+        self._across = balls(board.across)
+        self._ahead = [entry / self.rate for entry in balls(board.ahead)]
+
+    @abstractmethod
+    def squared(self, sigma: Number) -> Number:
+        """F."""
+
+    @abstractmethod
+    def derivative(self, sigma: Number) -> Number:
+        """F'."""
+
+    @abstractmethod
+    def bend(self, sigma: acb) -> acb:
+        """F''."""
+
+    @final
+    def quotient(self, end: arb) -> Quotient:
+        """F(end + z)/z as a function of a complex z, entire, where F(end) = 0."""
+        difference, away = self._quotient(end), _AWAY / self.rate
+
+        def of(z: acb) -> acb:
+            if not (z.abs_lower() > away and self.is_wide(z)):
+                return difference(z)
+            middle = z.mid()
+            return self.spread(end + middle, z - middle) / z
+
+        return of
+
+    @final
+    def is_wide(self, z: acb) -> bool:
+        """Whether a ball of sigma is wider than a node of a quadrature."""
+        return bool(z.rad() > arb(2) ** (_NODE_BITS - ctx.prec) / self.rate)
+
+    @final
+    def spread(self, middle: acb, d: acb) -> acb:
+        """F(middle + d) for a wide d, by Taylor's formula: what is small by its second order stays so."""
+        found = self.squared(middle) + self.derivative(middle) * d
+        return found + self.bend(middle + d) * d * d / 2
+
+    @abstractmethod
+    def _quotient(self, end: arb) -> Quotient:
+        """(F(end + z) - F(end))/z from the differences of the functions in F."""
+
+    @abstractmethod
+    def across(self, sigma: arb) -> list[arb]:
+        """v in body axes."""
+
+
+def speed(board: Washboard) -> Speed:
+    """At the ambient precision of flint."""
+    return Swinging(board) if board.kappa < 0 else Growing(board)
+
+
+@final
+class Swinging(Speed):
+    """kappa < 0: the moment is along the axis of greatest or least inertia."""
+
+    def squared(self, sigma: Number) -> Number:
+        sin, cos = (2 * self.rate * sigma).sin_cos()
+        swing = self.even * (cos - 1) + self.odd * sin / (2 * self.rate)
+        return self._start + self.slope * sigma - swing
+
+    def derivative(self, sigma: Number) -> Number:
+        sin, cos = (2 * self.rate * sigma).sin_cos()
+        return self.slope + 2 * self.rate * self.even * sin - self.odd * cos
+
+    def bend(self, sigma: acb) -> acb:
+        sin, cos = (2 * self.rate * sigma).sin_cos()
+        return 2 * self.rate * (2 * self.rate * self.even * cos + self.odd * sin)
+
+    def _quotient(self, end: arb) -> Quotient:
+        rate, slope = self.rate, self.slope
+        sin, cos = (2 * rate * end).sin_cos()
+        first = 2 * rate * self.even * sin - self.odd * cos
+        second = rate * (2 * rate * self.even * cos + self.odd * sin)
+
+        def of(z: acb) -> acb:
+            x = rate * z
+            s = x.sinc()
+            return slope + s * (first * x.cos() + second * z * s)
+
+        return of
+
+    def across(self, sigma: arb) -> list[arb]:
+        sin, cos = (self.rate * sigma).sin_cos()
+        parts = zip(self._across, self._ahead, strict=True)
+        return [cos * v + sin * u for v, u in parts]
+
+
+@final
+class Growing(Speed):
+    """kappa > 0: the moment is along the middle axis."""
+
+    def __init__(self, board: Washboard) -> None:
+        super().__init__(board)
+        half = self.odd / (4 * self.rate)
+        self.growing = arb(0) if board.never_climbs else self.even / 2 + half
+        self.falling = self.even / 2 - half
+
+    def squared(self, sigma: Number) -> Number:
+        up, down = self._powers(2 * sigma)
+        kept = self._start + self.slope * sigma + self.even
+        return kept - self.growing * up - self.falling * down
+
+    def derivative(self, sigma: Number) -> Number:
+        up, down = self._powers(2 * sigma)
+        return self.slope - 2 * self.rate * (self.growing * up - self.falling * down)
+
+    def bend(self, sigma: acb) -> acb:
+        up, down = self._powers(2 * sigma)
+        return -4 * self.rate * self.rate * (self.growing * up + self.falling * down)
+
+    def _quotient(self, end: arb) -> Quotient:
+        rate, slope = self.rate, self.slope
+        up, down = self._powers(2 * end)
+        p, q = 2 * rate * self.growing * up, 2 * rate * self.falling * down
+
+        def of(z: acb) -> acb:
+            x = rate * z
+            # Of an imaginary argument, the circular function is the hyperbolic one.
+            s = (acb(0, 1) * x).sinc()
+            return slope - s * (p * x.exp() - q * (-x).exp())
+
+        return of
+
+    def across(self, sigma: arb) -> list[arb]:
+        up, down = self._powers(sigma)
+        found = [(v - u) / 2 * down for v, u in zip(self._across, self._ahead, strict=True)]
+        if self.board.never_climbs:
+            return found
+        grown = [(v + u) / 2 * up for v, u in zip(self._across, self._ahead, strict=True)]
+        return [g + f for g, f in zip(grown, found, strict=True)]
+
+    def _powers(self, sigma: Number) -> tuple[Number, Number]:
+        """e^(Omega sigma) and its inverse."""
+        x = self.rate * sigma
+        # Of a wide ball, the exponential may contain 0.
+        return x.exp(), (-x).exp()

@@ -1,0 +1,215 @@
+"""What a free orbit is made of as functions of time, in balls: sn, cn, dn and the phase psi.
+
+Legend as in moduli; K and K' the quarter periods, tau = iK'/K, q = e^{i pi tau}, and theta_i(v) are
+Jacobi's functions of v = u/2K, theta_1(v) = 2 q^(1/4) (sin pi v - q^2 sin 3 pi v + ...). The angle
+psi of the body about H, seen from axis c, obeys
+    psi' = |H| (J_a w_a^2 + J_b w_b^2)/(J_a^2 w_a^2 + J_b^2 w_b^2),  psi(0) = 0,
+and is linear in t but for the argument of a theta quotient (Jacobi, Sur la rotation d'un corps).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+from flint import acb, arb
+
+from taylor_verify.exact.balls import Undecidable, sign
+from taylor_verify.exact.euler.moduli import Moduli, Triple
+
+
+class Turning(Protocol):
+    """The functions of time that an orbit is made of."""
+
+    def functions(self, t: arb) -> Triple:
+        """(dn, sn, cn) of lam t + u_0."""
+        ...
+
+    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """(cos psi, sin psi), where psi(0) = 0."""
+        ...
+
+    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """(cos psi/2, sin psi/2), where psi runs on without a jump."""
+        ...
+
+
+class Periodic:
+    """Orbits about an axis: elliptic functions from theta functions, the start by addition."""
+
+    def __init__(self, moduli: Moduli) -> None:
+        self._moduli = moduli
+        k, k_prime = moduli.m.sqrt(), moduli.m_prime.sqrt()
+        mean, mean_prime = arb(1).agm(k_prime), arb(1).agm(k)
+        self._K = arb.pi() / (2 * mean)
+        self._tau = acb(0, mean / mean_prime)
+        self._speed = moduli.rate / (2 * self._K)
+        # sn, cn, dn are these multiples of theta_1, theta_2, theta_3 over theta_4.
+        scales = (1 / k.sqrt(), (k_prime / k).sqrt(), k_prime.sqrt())
+        self._addition = _Addition.of(moduli, scales)
+
+    def functions(self, t: arb) -> Triple:
+        return self._addition.functions(*self._thetas(acb(self._turns(t))))
+
+    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """e^{i psi} = e^{i Om t} theta_1(z)/theta_1(z_0) over its modulus, conjugate for sig < 0."""
+        quotient = self._thetas(self._drift.start + self._turns(t))[0] * self._drift.unwound
+        return _on_circle(quotient, self._moduli.sense, self._drift.rate * t)
+
+    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """The argument of theta_1(z) is pi/2 - pi Re z, plus less than a right angle either way.
+
+        For its slope, a fraction linear in sn^2, is negative at sn^2 = 0 and 1 (|theta_1| and
+        |theta_2| grow along the imaginary axis), so it falls without a stop, and it is a multiple
+        of pi/2 wherever Re z is one of 1/2. So -i e^{i pi Re z} theta_1(z) has a positive real part.
+        """
+        half = _half_argument(self._bounded(t)) * self._half_unwound
+        return _on_circle(half, self._moduli.sense, self._drift.mean_rate * t / 2)
+
+    def _bounded(self, t: arb) -> acb:
+        z = self._drift.start + self._turns(t)
+        return self._thetas(z)[0] * acb(z.real - arb(0.5)).exp_pi_i()
+
+    @cached_property
+    def _half_unwound(self) -> acb:
+        return _half_argument(self._bounded(arb(0))).conjugate()
+
+    def _turns(self, t: arb) -> arb:
+        """lam t/2K less an even whole number, so about -1..1; whichever number, it is a period."""
+        v = self._speed * t
+        return v - 2 * (v.mid() / 2).floor()
+
+    def _thetas(self, z: acb) -> tuple[acb, acb, acb, acb]:
+        return acb.modular_theta(z, self._tau)
+
+    @cached_property
+    def _drift(self) -> _Drift:
+        """Om and z_0 = (u_0 + i beta)/2K with sc(beta | m') = nu^(-1/2)."""
+        moduli, nu = self._moduli, self._moduli.nu
+        beta = _carlson(nu, nu + moduli.m, nu + 1)
+        y = acb(0, beta / (2 * self._K))
+        slope = acb.modular_theta(y, self._tau, 1)[0] / self._thetas(y)[0]
+        bend = (acb(0, 1) * slope).real * self._speed * moduli.sense
+        rate = moduli.momentum / moduli.moments[0] + bend
+        start = acb(self._start() / (2 * self._K)) + y
+        return _Drift(
+            rate=rate,
+            mean_rate=rate - moduli.sense * arb.pi() * self._speed,
+            start=start,
+            unwound=1 / self._thetas(start)[0],
+        )
+
+    def _start(self) -> arb:
+        """u_0 up to whole periods 4K, by the inverse of sn, or of sn at half the argument."""
+        dn, sn, cn = self._moduli.functions
+        if cn > 0:
+            return sn * _carlson(cn * cn, dn * dn, arb(1))
+        if cn < 0:
+            return 2 * self._K - sn * _carlson(cn * cn, dn * dn, arb(1))
+        # Near a quarter period; here |u_0| < 2K and sn is near +1 or -1.
+        sine = ((1 - cn) / (1 + dn)).sqrt() * sign(sn)
+        both = cn + dn
+        return 2 * sine * _carlson(both / (1 + dn), both / (1 + cn), arb(1))
+
+
+@dataclass(frozen=True)
+class _Drift:
+    """The linear part of psi: Om, the mean rate of psi, and z_0 with 1/theta_1(z_0)."""
+
+    rate: arb
+    mean_rate: arb
+    start: acb
+    unwound: acb
+
+
+@dataclass(frozen=True)
+class _Addition:
+    """The addition theorem with one argument fixed, on theta functions without a quotient.
+
+    sn(u + v) (cn^2 u + sn^2 u dn^2 v) = sn u cn v dn v + sn v cn u dn u and so on (DLMF 22.8), times
+    theta_4(v)^2; the denominator is a sum of squares.
+    """
+
+    cn2: arb  # of theta_4^2
+    sn2: arb  # of theta_3^2
+    sn: tuple[arb, arb]  # of theta_2 theta_3 and theta_1 theta_4
+    cn: tuple[arb, arb]  # of theta_2 theta_4 and theta_1 theta_3
+    dn: tuple[arb, arb]  # of theta_3 theta_4 and theta_1 theta_2
+
+    @classmethod
+    def of(cls, moduli: Moduli, scales: Triple) -> _Addition:
+        dn, sn, cn = moduli.functions
+        S, C, N = scales
+        return cls(
+            cn2=cn * cn,
+            sn2=(sn * N) * (sn * N),
+            sn=(sn * C * N, S * cn * dn),
+            cn=(cn * C, -sn * dn * S * N),
+            dn=(dn * N, -moduli.m * sn * cn * S * C),
+        )
+
+    def functions(self, first: acb, second: acb, third: acb, fourth: acb) -> Triple:
+        """(dn, sn, cn) of the sum, from the theta functions of a real argument."""
+        p, q, r, s = first.real, second.real, third.real, fourth.real
+        whole = 1 / (self.cn2 * (s * s) + self.sn2 * (r * r))
+        return (
+            (self.dn[0] * (r * s) + self.dn[1] * (p * q)) * whole,
+            (self.sn[0] * (q * r) + self.sn[1] * (p * s)) * whole,
+            (self.cn[0] * (q * s) + self.cn[1] * (p * r)) * whole,
+        )
+
+
+class Separatrix:
+    """The orbits between: m = 1, hyperbolic functions, and a phase that is algebraic in sn."""
+
+    def __init__(self, moduli: Moduli) -> None:
+        self._moduli = moduli
+        self._root = moduli.nu.sqrt()
+        # psi' tends to the rate about axis b, for there 2T J_b = H^2.
+        self._rate = moduli.momentum / moduli.moments[1]
+        start = self._bounded(moduli.functions)
+        self._unwound = start.conjugate()
+        self._half_unwound = _half_argument(start).conjugate()
+
+    def functions(self, t: arb) -> Triple:
+        _, sn, cn = self._moduli.functions
+        u = self._moduli.rate * t
+        S, C = u.tanh(), u.sech()
+        C2, cn2 = C * C, cn * cn
+        whole = 1 / (cn2 + sn * sn * C2)
+        falling = cn * C * (1 - sn * S) * whole
+        return falling, (sn * C2 + S * cn2) * whole, falling
+
+    def phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """psi = |H| t/J_b - sig [atan(nu^(1/2) sn)], the bracket taken from the start to t."""
+        factor = self._bounded(functions) * self._unwound
+        return _on_circle(factor, self._moduli.sense, self._rate * t)
+
+    def half_phase(self, t: arb, functions: Triple) -> tuple[arb, arb]:
+        """Each arctangent is less than a right angle."""
+        half = _half_argument(self._bounded(functions)) * self._half_unwound
+        return _on_circle(half, self._moduli.sense, self._rate * t / 2)
+
+    def _bounded(self, functions: Triple) -> acb:
+        return acb(1, -self._root * functions[1])
+
+
+def _on_circle(factor: acb, sense: int, angle: arb) -> tuple[arb, arb]:
+    """Cosine and sine of ``angle`` plus ``sense`` times the argument of ``factor``."""
+    x, y = factor.real, factor.imag * sense
+    size = (x * x + y * y).rsqrt()
+    sin, cos = angle.sin_cos()
+    return (cos * x - sin * y) * size, (sin * x + cos * y) * size
+
+
+def _half_argument(z: acb) -> acb:
+    """A number with half the argument of z, which lies in the right half plane (proven)."""
+    if not z.real > 0:
+        raise Undecidable("the ball of a bounded phase leaves the right half plane")
+    return z.sqrt()
+
+
+def _carlson(x: arb, y: arb, z: arb) -> arb:
+    """Carlson's R_F of positive numbers."""
+    return acb.elliptic_rf(acb(x), acb(y), acb(z)).real

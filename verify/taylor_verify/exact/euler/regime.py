@@ -1,0 +1,116 @@
+"""A rigid body turning freely: its exact invariants, and the kind of orbit they decide.
+
+Legend: I inertia tensor, w = omega at the start, H = I w, 2T = w.I w; J1 >= J2 >= J3 the principal
+moments, the roots of p(x) = det(x - I) = x^3 - (tr I) x^2 + (minors) x - det I; r = H^2/2T, which
+lies between J3 and J1. Everything is rational, so every decision is final.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from functools import cached_property
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+
+class Regime(StrEnum):
+    """The kinds of torque-free motion; each value is the word printed as ``regime``."""
+
+    REST = "rest"  # w = 0
+    SPHERICAL = "spherical"  # J1 = J2 = J3: w is constant
+    STEADY = "steady"  # a permanent rotation about any principal axis, stable or not
+    AXISYMMETRIC = "axisymmetric"  # two equal moments: w precesses uniformly about the third axis
+    SEPARATRIX = "separatrix"  # H^2 = 2T J2: hyperbolic functions
+    MAX_AXIS = "max-axis"  # H^2 > 2T J2: the orbit encircles the axis of J1
+    MIN_AXIS = "min-axis"  # H^2 < 2T J2: the orbit encircles the axis of J3
+
+
+@dataclass(frozen=True)
+class FreeSpin:
+    """The inertia tensor and the angular velocity at the start, both in body axes."""
+
+    inertia: Matrix
+    omega: Vector
+
+    @cached_property
+    def trace(self) -> Fraction:
+        return sum((self.inertia[i][i] for i in range(3)), Fraction(0))
+
+    @cached_property
+    def minors(self) -> Fraction:
+        """J1 J2 + J2 J3 + J3 J1, the sum of the principal minors."""
+        i = self.inertia
+        pairs = ((0, 1), (1, 2), (2, 0))
+        return sum((i[j][j] * i[k][k] - i[j][k] ** 2 for j, k in pairs), Fraction(0))
+
+    @cached_property
+    def determinant(self) -> Fraction:
+        a, b, c = self.inertia
+        return tensors.dot(a, tensors.cross(b, c))
+
+    @cached_property
+    def momentum(self) -> Vector:
+        """H = I w at the start, in body axes."""
+        return tensors.apply(self.inertia, self.omega)
+
+    @cached_property
+    def momentum_squared(self) -> Fraction:
+        return tensors.dot(self.momentum, self.momentum)
+
+    @cached_property
+    def twice_energy(self) -> Fraction:
+        return tensors.dot(self.omega, self.momentum)
+
+    @cached_property
+    def torque(self) -> Vector:
+        """I w' = H x w at the start: zero exactly in a permanent rotation."""
+        return tensors.cross(self.momentum, self.omega)
+
+    @cached_property
+    def spread(self) -> Fraction:
+        """(tr I)^2 - 3 minors, half the sum of the squared differences of the moments."""
+        return self.trace**2 - 3 * self.minors
+
+    @cached_property
+    def skewness(self) -> Fraction:
+        """27 (J1 - t)(J2 - t)(J3 - t), where t = tr I/3 is the mean moment."""
+        return 2 * self.trace**3 - 9 * self.trace * self.minors + 27 * self.determinant
+
+    @cached_property
+    def discriminant(self) -> Fraction:
+        """((J1 - J2)(J2 - J3)(J3 - J1))^2."""
+        return (4 * self.spread**3 - self.skewness**2) / 27
+
+    @cached_property
+    def separation(self) -> Fraction:
+        """(2T)^3 p(H^2/2T) = (H^2 - 2T J1)(H^2 - 2T J2)(H^2 - 2T J3), without a division."""
+        h, t = self.momentum_squared, self.twice_energy
+        return h**3 - self.trace * h**2 * t + self.minors * h * t**2 - self.determinant * t**3
+
+    @cached_property
+    def double_moment(self) -> Fraction:
+        """The repeated principal moment of an axisymmetric body, which is always rational."""
+        return (9 * self.determinant - self.trace * self.minors) / (-2 * self.spread)
+
+    @property
+    def simple_moment(self) -> Fraction:
+        """The moment about the axis of an axisymmetric body."""
+        return self.trace - 2 * self.double_moment
+
+    @cached_property
+    def regime(self) -> Regime:
+        """The kind of orbit. The order matters: each question assumes the earlier ones denied."""
+        if not any(self.omega):
+            return Regime.REST
+        if self.spread == 0:
+            return Regime.SPHERICAL
+        if not any(self.torque):
+            return Regime.STEADY
+        if self.discriminant == 0:
+            return Regime.AXISYMMETRIC
+        if self.separation == 0:
+            return Regime.SEPARATRIX
+        return Regime.MAX_AXIS if self.separation < 0 else Regime.MIN_AXIS

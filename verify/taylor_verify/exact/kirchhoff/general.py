@@ -1,0 +1,199 @@
+"""What is told of the orbit of a free solid without an axis of symmetry.
+
+Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; a
+period where the motion stays in a plane of the body, two rates in Weber's case; and of the steady
+screws beside it, which of them are stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from mpmath import mp, mpf
+
+from taylor_verify.exact.element import Element, Elements, settled
+from taylor_verify.exact.kirchhoff.conserved import conserved
+from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.pendulum import Pendulum
+from taylor_verify.exact.kirchhoff.plane import Plane, plane, regime
+from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
+from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import float_text
+from taylor_verify.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from taylor_verify.exact.kirchhoff.screws import Screw
+
+_PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
+_CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
+_THREE: Final = (
+    "Conserved: the kinetic energy T, F^2 = x.x and FG = x.y; in space axes the linear impulse and "
+    "the moment of the impulses."
+)
+_FAMILIES: Final[Mapping[str, str]] = {
+    "clebsch2": "Clebsch's second case",
+    "neumann": "the family r_1 = r_2 = r_3 with b_1 = b_2 = b_3 (Neumann's, where FG = 0)",
+    "steklov": "Steklov's family",
+    "lyapunov": "Lyapunov's family",
+    "chaplygin": "Chaplygin's family, where FG = 0",
+    "sokolov": "Sokolov's family",
+}
+_NOT_THREE: Final = (
+    "Of the steady screws that turn as the start does two have the same mu: every axis of a plane "
+    "is one."
+)
+_STORY: Final[Mapping[str, str]] = {
+    "planar-steady": "x and y are constant: the body moves straight on, or not at all.",
+    "planar-uniform": "The body turns in a plane at a constant rate.",
+    "planar-swing": "The body swings in a plane about the position broadside on, as a pendulum.",
+    "planar-turn": "The body turns over and over in a plane, as a pendulum with enough speed.",
+    "planar-front": (
+        "The body turns over once in a plane, from end on to end on (heteroclinic); there is no "
+        "period."
+    ),
+    WEBER: (
+        "x and y are functions of two angles that grow evenly, by theta functions of two variables "
+        "(Weber's case): there is no period."
+    ),
+}
+
+
+def elements_of(scene: Scene, digits: int) -> Elements:
+    """The elements of a free body without an axis of symmetry."""
+    body, start = scene.body, scene.initial
+    assert isinstance(body, ImmersedBody)
+    assert isinstance(start, Impulse)
+    found = plane(scene)
+    alone = replace(scene, track=frozenset())
+    kind, weber = NO_CLOSED_FORM if found is None else regime(found), _of_genus_two(alone)
+    if weber is not None and not scene.track:
+        kind = WEBER
+    numbers = settled(
+        lambda working: [
+            *_of_plane(found, alone, working),
+            *_of_curve(weber, working),
+            *conserved(body, start),
+        ],
+        digits,
+    )
+    fourth = fourth_integral(scene)
+    if kind in _STORY:
+        story = _STORY[kind]
+    elif fourth is not None:
+        story = "The energy is not of Clebsch's form about a body axis: no closed form is built."
+    else:
+        story = (
+            "The energy is not of Clebsch's form about a body axis: no closed form is built, and "
+            "for a body with three invariants alone none is known."
+        )
+    told = [story, _THREE]
+    if fourth is not None:
+        told.append(
+            f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
+        )
+    return Elements(kind, numbers, (*told, *_told_of_screws(body, start)))
+
+
+def _of_plane(found: Plane | None, alone: Scene, working: int) -> list[Element]:
+    """Period, rate and parameters of the pendulum, as far as it has them."""
+    if found is None:
+        return []
+    known = Pendulum(regime(found), found, alone).elements(working)
+    words = {
+        "period": ("time", "x and y recur in body axes"),
+        "rate": ("radians/time", "of the elliptic argument"),
+        "m": ("", "parameter k^2; 0 for sines, 1 on the separatrix"),
+        "k": ("", "modulus of the elliptic functions"),
+        "m_prime": ("", "1 - m, one measure of the separatrix's distance"),
+    }
+    values: dict[str, mpf] = dict(known)
+    if "m" in known:
+        values["k"] = mp.sqrt(known["m"])
+    return [
+        Element(name, values[name], unit, meaning, _PENDULUM)
+        for name, (unit, meaning) in words.items()
+        if name in values
+    ]
+
+
+def _of_genus_two(alone: Scene) -> Curve | None:
+    """Weber's curve of the motion of x and y, where it has one that is not degenerate."""
+    try:
+        return curve(alone)
+    except NoClosedForm:
+        return None
+
+
+def _of_curve(found: Curve | None, working: int) -> list[Element]:
+    """The rates of the two angles."""
+    if found is None:
+        return []
+    from taylor_verify.exact.kirchhoff.weber.enclosure import rates
+
+    meaning = "of the {} of two angles of which x and y are functions, of period 2 pi in each"
+    words = ("first_rate", "second_rate"), ("first", "second")
+    return [
+        Element(name, rate, "radians/time", meaning.format(which), _CURVE)
+        for name, which, rate in zip(*words, rates(found, working), strict=True)
+    ]
+
+
+# The steady screws beside the motion.
+
+
+def screws_beside(scene: Scene) -> tuple[Screw, ...]:
+    """The steady screws with the F of the scene that turn about it as fast as its start does.
+
+    None for a body of revolution, under loads, without linear impulse, and where they are not
+    three.
+    """
+    from taylor_verify.exact.kirchhoff.screws import screws, turn_of
+
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        return ()
+    if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
+        return ()
+    return screws(body, tensors.dot(start.linear, start.linear), turn_of(body, start))
+
+
+def _told_of_screws(body: ImmersedBody, start: Impulse) -> list[str]:
+    """Which of the three are stable, and whether the start is one of them."""
+    from taylor_verify.exact.kirchhoff.screws import is_steady, screws, turn_of
+
+    if not any(start.linear):
+        return []
+    turn = turn_of(body, start)
+    found = screws(body, tensors.dot(start.linear, start.linear), turn)
+    told = ["The start is itself a steady screw."] if is_steady(body, start) else []
+    if not found:
+        return [*told, _NOT_THREE]
+    told.append(
+        "Steady screws with this F that turn about it as the start does, lambda = Omega.x/F^2 = "
+        f"{float_text(turn)}: three, by rising mu."
+    )
+    for number, screw in enumerate(found, 1):
+        axis = ", ".join(f"{float(entry.mid()):.3g}" for entry in screw.axis())
+        told.append(
+            f"Screw {number}, along ({axis}), advancing at {float(screw.speed.mid()):.3g}, is "
+            f"{screw.stability.value}{_pace(screw)}."
+        )
+    return told
+
+
+def _pace(screw: Screw) -> str:
+    """The rates that go with the statement."""
+    from taylor_verify.exact.kirchhoff.screws import Stability
+
+    if screw.stability is Stability.UNDECIDED:
+        return ""
+    if screw.stability is Stability.UNSTABLE:
+        return f", by e in {1 / float(screw.growth().mid()):.3g} units of time"
+    slow, fast = (float(rate.mid()) for rate in screw.swings())
+    return f" (swings at {slow:.3g} and {fast:.3g} radians per unit of time)"

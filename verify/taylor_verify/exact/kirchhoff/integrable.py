@@ -1,0 +1,341 @@
+"""The fourth integrals of bodies beyond Clebsch's body of revolution: who has one, and which.
+
+Legend: x, y the impulses in body axes, F^2 = x.x, FG = x.y; for a diagonal energy
+
+    T = sum over i of (p_i x_i^2 + 2 b_i x_i y_i + r_i y_i^2)/2,
+
+and (i, j, k) runs through the cyclic orders. Multiples of F^2 and FG may be added to T: they turn the
+space frame and leave x and y alone. So only differences of the p_i and of the b_i count.
+
+A body is recognised by its coefficients alone, in rationals: an integral that holds nearly is none.
+Each integral is written in + - * of whatever x, y and the coefficients are, so that the same formula
+gives its terms here and is put into the equations of motion, symbols and all, where it is tested.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.mpfr import real, sqrt
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
+
+Array = np.ndarray[Any, Any]
+# Coefficients of monomials, by the exponents of x1 x2 x3 y1 y2 y3.
+Terms = Mapping[tuple[int, ...], Fraction]
+# A formula of x and y, in whatever numbers these are.
+Formula = Callable[[Sequence[Any], Sequence[Any]], Any]
+
+_NAMES: Final = ("x1", "x2", "x3", "y1", "y2", "y3")
+_CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+
+
+# The integrals.
+
+
+def clebsch2(r: Sequence[Any], theta: Any) -> Formula:
+    """Clebsch's second case, p_i = p0 + theta r_j r_k, with b_1 = b_2 = b_3."""
+    return lambda x, y: sum(y[i] * y[i] - theta * r[i] * x[i] * x[i] for i in range(3))
+
+
+def neumann(r: Any, p: Sequence[Any]) -> Formula:
+    """r_1 = r_2 = r_3 with any p and b_1 = b_2 = b_3; where FG = 0, Neumann's point on a sphere."""
+    return lambda x, y: sum(
+        r * p[i] * y[i] * y[i] - p[j] * p[k] * x[i] * x[i] for i, j, k in _CYCLIC
+    )
+
+
+def steklov(r: Sequence[Any], mu: Any) -> Formula:
+    """Steklov's body, b_i = mu r_j r_k + b0 and p_i = mu^2 r_i (r_j - r_k)^2 + p0."""
+
+    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
+        return sum(
+            y[i] * y[i]
+            - 2 * mu * r[i] * x[i] * y[i]
+            + mu * mu * (r[j] - r[k]) * (r[j] - r[k]) * x[i] * x[i]
+            for i, j, k in _CYCLIC
+        )
+
+    return formula
+
+
+def lyapunov(r: Any, b: Sequence[Any]) -> Formula:
+    """Lyapunov's body (Kolosov's), r_1 = r_2 = r_3 = r, any b and r p_i = (b_j - b_k)^2 + p0."""
+
+    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
+        return sum(
+            r * r * b[i] * y[i] * y[i]
+            - 2 * r * b[j] * b[k] * x[i] * y[i]
+            + b[i] * (b[j] - b[k]) * (b[j] - b[k]) * x[i] * x[i]
+            for i, j, k in _CYCLIC
+        )
+
+    return formula
+
+
+def chaplygin(a: Any, c: Any, d: Any) -> Formula:
+    """Chaplygin's body, where FG = 0 alone.
+
+    T = a (y1^2 + y2^2 + 2 y3^2)/2 + c (x1^2 - x2^2)/2 + d x1 x2.
+    """
+
+    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
+        even = a * (y[0] * y[0] - y[1] * y[1]) + c * x[2] * x[2]
+        odd = 2 * a * y[0] * y[1] + d * x[2] * x[2]
+        return even * even + odd * odd
+
+    return formula
+
+
+def chaplygin_leak(a: Any, c: Any, d: Any) -> Formula:
+    """What FG does to Chaplygin's integral K where it is not zero: K' = leak FG."""
+
+    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
+        across = 2 * c * y[0] * y[1] - d * (y[0] * y[0] - y[1] * y[1])
+        return 4 * a * a * x[2] * across
+
+    return formula
+
+
+def sokolov(a: Any, c: Any, d: Any) -> Formula:
+    """Sokolov's body, T = a (y1^2 + y2^2 + 2 y3^2)/2 + (c x1 + d x2) y3 - (c^2 + d^2) x3^2/(2 a)."""
+
+    def formula(x: Sequence[Any], y: Sequence[Any]) -> Any:
+        along_x, along_y = c * x[0] + d * x[1], c * y[0] + d * y[1]
+        level = x[0] * y[0] + x[1] * y[1]
+        size = c * c + d * d
+        squares = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+        once = along_y * level + along_x * y[2] * y[2]
+        twice = (along_x * along_x - size * x[2] * x[2]) * y[2] - 2 * size * x[2] * level
+        return y[2] * (a * a * y[2] * squares + 2 * a * once + twice)
+
+    return formula
+
+
+# Who has one.
+
+
+@dataclass(frozen=True)
+class Fourth:
+    """A polynomial integral, by its terms.
+
+    ``name`` is the family's word. ``leak`` holds the terms of g in I' = g FG, for an integral of the
+    motions with FG = 0 alone, and ``span`` the time for which a motion that has left FG = 0 by
+    rounding is followed.
+    """
+
+    name: str
+    terms: Terms
+    leak: Terms
+    span: Fraction
+
+    def value(self, motion: Motion) -> Array:
+        """I at every row."""
+        return _evaluated(self.terms, _columns(motion))
+
+    def scale(self, motion: Motion) -> Any:
+        """sum |c| X^m Y^n over the terms c of degrees m in x and n in y, with X = max |x|, Y = max |y|.
+
+        At least |I|; where it is zero, I is zero whatever the direction of x and y, and 1 stands
+        for it.
+        """
+        x, y = motion["linear_impulse"], motion["angular_impulse"]
+        X, Y = max(_norms(x)), max(_norms(y))
+        sizes = real([abs(c) for c in self.terms.values()], x)
+        degrees = [(sum(powers[:3]), sum(powers[3:])) for powers in self.terms]
+        total = sum(c * X**m * Y**n for c, (m, n) in zip(sizes, degrees, strict=True))
+        return total if total != 0 else total + 1
+
+    def sensitivity(self, motion: Motion) -> Mapping[str, Array]:
+        """|dI/dx| and |dI/dy| at every row.
+
+        With a leak, a disturbance also moves FG, and I by the leak's mean size times the span as
+        long as that lasts: at most what stands here.
+        """
+        columns = _columns(motion)
+        gradient = [_evaluated(_derivative(self.terms, n), columns) for n in range(6)]
+        by_x, by_y = _norms(np.stack(gradient[:3], axis=1)), _norms(np.stack(gradient[3:], axis=1))
+        if self.leak:
+            sizes = abs(_evaluated(self.leak, columns))
+            lost = sum(sizes) / len(sizes) * real([abs(self.span)], by_x)[0]
+            by_x = by_x + lost * _norms(motion["angular_impulse"])
+            by_y = by_y + lost * _norms(motion["linear_impulse"])
+        return {"linear_impulse": by_x, "angular_impulse": by_y}
+
+
+def fourth_integral(scene: Scene) -> Fourth | None:
+    """The fourth integral of a free body that is no body of revolution about a body axis, or None.
+
+    Decided in the scene's own rationals, so that of a scene rounded to a rung what is left of a
+    relation between its coefficients decides.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        return None
+    if not body.is_free or body.axis_of_symmetry is not None:
+        return None
+    found = _of_diagonal(body) or _of_kovalevskaya(body, start)
+    if found is None:
+        return None
+    name, formula, leak = found
+    elapsed = scene.clock.elapsed
+    return Fourth(name, terms(formula), terms(leak), elapsed[-1] if elapsed else Fraction(0))
+
+
+_Found = tuple[str, Formula, Formula]
+
+
+def _nothing(x: Sequence[Any], y: Sequence[Any]) -> Any:
+    return 0 * x[0]
+
+
+def _of_diagonal(body: ImmersedBody) -> _Found | None:
+    """Clebsch's second case, r_i = r, Steklov's and Lyapunov's."""
+    if not all(tensors.is_diagonal(m) for m in (body.linear, body.coupling, body.angular)):
+        return None
+    p, b, r = (_entries(matrix) for matrix in (body.linear, body.coupling, body.angular))
+    if _equal(r):
+        if _equal(b):
+            return "neumann", neumann(r[0], _centred(p)), _nothing
+        rest = [r[0] * p[i] - (b[j] - b[k]) ** 2 for i, j, k in _CYCLIC]
+        return ("lyapunov", lyapunov(r[0], _centred(b)), _nothing) if _equal(rest) else None
+    if _equal(b):
+        theta = _slope(p, r)
+        fits = _equal([p[i] - theta * r[j] * r[k] for i, j, k in _CYCLIC])
+        return ("clebsch2", clebsch2(r, theta), _nothing) if fits else None
+    mu = _slope(b, r)
+    of_b = [b[i] - mu * r[j] * r[k] for i, j, k in _CYCLIC]
+    of_p = [p[i] - mu**2 * r[i] * (r[j] - r[k]) ** 2 for i, j, k in _CYCLIC]
+    return ("steklov", steklov(r, mu), _nothing) if _equal(of_b) and _equal(of_p) else None
+
+
+def _of_kovalevskaya(body: ImmersedBody, start: Impulse) -> _Found | None:
+    """Chaplygin's and Sokolov's: r_1 = r_2 = r_3/2, as in Kovalevskaya's top."""
+    A, B, C = body.linear, body.coupling, body.angular
+    a = C[0][0]
+    if tensors.diagonal((a, a, 2 * a)) != C:
+        return None
+    shared = B[0][0]
+    c, d = B[0][2], B[1][2]
+    if (c or d) and _with((shared,) * 3, {(0, 2): c, (1, 2): d}) == B:
+        p0 = A[0][0]
+        of_sokolov = A == tensors.diagonal((p0, p0, p0 - (c**2 + d**2) / a))
+        return ("sokolov", sokolov(a, c, d), _nothing) if of_sokolov else None
+    c, d, p0 = (A[0][0] - A[1][1]) / 2, A[0][1], A[2][2]
+    is_orthogonal = tensors.dot(start.linear, start.angular) == 0
+    of_chaplygin = _with((p0 + c, p0 - c, p0), {(0, 1): d, (1, 0): d}) == A
+    if is_orthogonal and of_chaplygin and tensors.diagonal((shared,) * 3) == B:
+        return "chaplygin", chaplygin(a, c, d), chaplygin_leak(a, c, d)
+    return None
+
+
+def _entries(matrix: Matrix) -> list[Fraction]:
+    return [matrix[i][i] for i in range(3)]
+
+
+def _with(diagonal: tuple[Fraction, ...], beside: Mapping[tuple[int, int], Fraction]) -> Matrix:
+    """A matrix with this diagonal and these entries beside it."""
+    rows = tensors.diagonal(diagonal)
+    return tuple(
+        tuple(beside.get((i, j), entry) for j, entry in enumerate(row))
+        for i, row in enumerate(rows)
+    )
+
+
+def _equal(values: Sequence[Fraction]) -> bool:
+    return all(value == values[0] for value in values)
+
+
+def _centred(values: Sequence[Fraction]) -> list[Fraction]:
+    """Less their mean, which adds only F^2, FG and T to an integral."""
+    mean = sum(values, Fraction(0)) / 3
+    return [value - mean for value in values]
+
+
+def _slope(values: Sequence[Fraction], r: Sequence[Fraction]) -> Fraction:
+    """s from two of v_i = v0 + s r_j r_k, for r that are not all equal."""
+    i, j, k = next(order for order in _CYCLIC if r[order[0]] != r[order[1]])
+    return (values[i] - values[j]) / (r[k] * (r[j] - r[i]))
+
+
+# Polynomials.
+
+
+def terms(formula: Formula) -> Terms:
+    """The formula multiplied out, its coefficients being rational."""
+    from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
+
+    context = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
+    state = [_Exact(generator) for generator in context.gens()]
+    found = formula(state[:3], state[3:]).polynomial
+    assert isinstance(found, fmpq_mpoly)
+    return {
+        tuple(int(power) for power in powers): Fraction(int(c.p), int(c.q))
+        for powers, c in found.to_dict().items()
+    }
+
+
+class _Exact:
+    """A polynomial that takes Fractions for its coefficients."""
+
+    def __init__(self, polynomial: Any) -> None:
+        self.polynomial = polynomial
+
+    def __add__(self, other: Any) -> _Exact:
+        return _Exact(self.polynomial + _plain(other))
+
+    def __sub__(self, other: Any) -> _Exact:
+        return _Exact(self.polynomial - _plain(other))
+
+    def __mul__(self, other: Any) -> _Exact:
+        return _Exact(self.polynomial * _plain(other))
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
+def _plain(number: Any) -> Any:
+    """What flint multiplies a polynomial by."""
+    from flint import fmpq
+
+    if isinstance(number, _Exact):
+        return number.polynomial
+    number = Fraction(number)
+    return fmpq(number.numerator, number.denominator)
+
+
+def _derivative(polynomial: Terms, place: int) -> Terms:
+    """By the variable at this place."""
+    return {
+        (*powers[:place], powers[place] - 1, *powers[place + 1 :]): powers[place] * c
+        for powers, c in polynomial.items()
+        if powers[place]
+    }
+
+
+def _columns(motion: Motion) -> list[Array]:
+    both = np.concatenate([motion["linear_impulse"], motion["angular_impulse"]], axis=1)
+    return [both[:, n] for n in range(6)]
+
+
+def _evaluated(polynomial: Terms, columns: Sequence[Array]) -> Array:
+    """The polynomial at every row, at the ambient precision."""
+    total: Array = 0 * columns[0]
+    for powers, c in zip(polynomial, real(list(polynomial.values()), columns[0]), strict=True):
+        term = c
+        for column, power in zip(columns, powers, strict=True):
+            for _ in range(power):
+                term = term * column
+        total = total + term
+    return total
+
+
+def _norms(rows: Array) -> Array:
+    return sqrt(np.sum(rows * rows, axis=1))

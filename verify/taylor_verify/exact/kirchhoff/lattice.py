@@ -1,0 +1,312 @@
+"""Weierstrass's function of one cubic, Y^2 = 4 X^3 - g2 X - g3, in balls, degenerate cubics included.
+
+Legend: (X, Y) = (p(u), p'(u)) is Weierstrass's p; e_i are the roots of the cubic and Delta = g2^3 -
+27 g3^2 its discriminant; L is the real period, L tau the other one. s(u) is an odd function with a
+simple zero at every period: theta_1(u/L), sin(kappa u), sinh(kappa u) or u itself. A quotient of
+products of s is one of sigma functions up to the exponential of a linear function of u, and the rate
+of that one is found by whoever makes the quotient anyway.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, Final, final
+
+from flint import acb, arb, ctx, fmpq, fmpq_poly
+
+from taylor_verify.exact.balls import Undecidable, ball, sign
+
+_I: Final = acb(0, 1)
+# An argument is told from its neighbours, 2 pi away, by a sum that is known to about this much.
+_ROUGH_BITS: Final = 64
+_ROUGH_TAIL: Final = 0.25
+
+
+class Lattice(ABC):
+    """The periods of p, with numbers of one precision, and to be used at that precision."""
+
+    @abstractmethod
+    def jet(self, u: acb, order: int) -> list[acb]:
+        """s(u), s'(u), ... up to that order, which is 0, 1 or 2."""
+
+    @abstractmethod
+    def p(self, u: acb) -> tuple[acb, acb]:
+        """(p(u), p'(u)); not finite at a period."""
+
+    @abstractmethod
+    def argument(self, X: acb, Y: acb) -> acb:
+        """A u with p(u) = X and p'(u) = Y, for a point of the curve that is no double point."""
+
+    @abstractmethod
+    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
+        """The argument of the quotient s(u - w)/s(-w), continuous in the real u; w is not real."""
+
+    @property
+    @abstractmethod
+    def period(self) -> arb | None:
+        """The real period of p; None where it has none."""
+
+
+def lattice(g2: Fraction, g3: Fraction) -> Lattice:
+    """The lattice with these invariants; its kind is decided in rationals."""
+    discriminant = g2**3 - 27 * g3**2
+    if discriminant > 0:
+        return _rectangular(g2, g3, discriminant)
+    if discriminant < 0:
+        return _rhombic(g2, g3, discriminant)
+    double_root = -3 * g3 / (2 * g2) if g2 != 0 else Fraction(0)
+    if double_root == 0:
+        return Rational()
+    return Circular(double_root) if double_root < 0 else Hyperbolic(double_root)
+
+
+def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
+    """Three real roots e1 > e2 > e3. The closer two have their distance from the discriminant."""
+    e3, e2, e1 = (root.real for root in _roots(g2, g3))
+    upper, lower, whole = e1 - e2, e2 - e3, e1 - e3
+    quarter = ball(discriminant).sqrt() / 4
+    if upper.mid() < lower.mid():
+        upper = quarter / (lower * whole)
+    else:
+        lower = quarter / (upper * whole)
+    across, along = whole.sqrt().agm(upper.sqrt()), whole.sqrt().agm(lower.sqrt())
+    return Periods([acb(e) for e in (e1, e2, e3)], arb.pi() / across, acb(0, across / along))
+
+
+def _rhombic(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
+    """One real root e, and a pair. With H^2 = 3 e^2 - g2/4 the parameters are 1/2 -+ 3e/4H.
+
+    Their product is -Delta/(256 H^6), from which the smaller one comes without cancellation.
+    """
+    roots = _roots(g2, g3)
+    e = next(root.real for root in roots if root.imag.is_zero())
+    pair = [acb(root) for root in roots if not root.imag.is_zero()]
+    H = (3 * e * e - ball(g2 / 4)).sqrt()
+    larger = arb(1) / 2 + abs(3 * e / (4 * H))
+    smaller = ball(-discriminant) / (256 * H**6 * larger)
+    m, m_prime = (smaller, larger) if g3 >= 0 else (larger, smaller)  # e has the sign of g3
+    real, imaginary = arb(1).agm(m_prime.sqrt()), arb(1).agm(m.sqrt())
+    return Periods([acb(e), *pair], arb.pi() / (real * H.sqrt()), acb(0.5, real / imaginary / 2))
+
+
+def _roots(g2: Fraction, g3: Fraction) -> list[acb]:
+    """The roots of 4 X^3 - g2 X - g3, isolated; the real ones first, in ascending order."""
+    rational = [fmpq(c.numerator, c.denominator) for c in (-g3, -g2, Fraction(0), Fraction(4))]
+    isolated: Any = fmpq_poly(rational).numer().complex_roots()
+    return [acb(root) for root, _ in isolated]
+
+
+@final
+class Periods(Lattice):
+    """Two periods, L > 0 and L tau: s(u) = theta_1(u/L). The first of the roots is p(L/2)."""
+
+    def __init__(self, roots: Sequence[acb], length: arb, tau: acb) -> None:
+        self._roots, self._length, self._tau = roots, length, tau
+        _, th2, th3, th4 = acb.modular_theta(acb(0), tau)
+        scale = arb.pi() / length
+        # p - e_1 = (pi/L)^2 (th3 th4 theta_2/theta_1)^2, DLMF 23.6.5
+        self._from_root = (scale * th3 * th4) ** 2
+        self._slope = -2 * scale**3 * (th2 * th3 * th4) ** 2
+
+    def jet(self, u: acb, order: int) -> list[acb]:
+        v = u / self._length
+        return [acb.modular_theta(v, self._tau, k)[0] / self._length**k for k in range(order + 1)]
+
+    def p(self, u: acb) -> tuple[acb, acb]:
+        one, two, three, four = acb.modular_theta(u / self._length, self._tau)
+        p = self._roots[0] + self._from_root * (two / one) ** 2
+        return p, self._slope * two * three * four / one**3
+
+    def argument(self, X: acb, Y: acb) -> acb:
+        """Carlson's R_F, which is right up to its sign and periods, whatever square roots it takes."""
+        if Y.is_zero():
+            return self._half_period(X)
+        u = self._reduced(_integral_to_infinity([X - root for root in self._roots]))
+        _, slope = self.p(u)
+        right, wrong = slope.overlaps(Y), slope.overlaps(-Y)
+        if right != wrong:
+            return u if right else -u
+        # Beside a half period, where u and -u are all but one point of the torus: both are covered.
+        return u.union(2 * u - self._reduced(2 * u) - u)
+
+    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
+        there, start = (u - w) / self._length, -w / self._length
+        return nearest_turn(quotient, self._rough_turn(there) - self._rough_turn(start))
+
+    @property
+    def period(self) -> arb:
+        return self._length
+
+    def _half_period(self, X: acb) -> acb:
+        """The half period whose root X is, the other two being excluded."""
+        one, tau = acb(1), self._tau
+        # Which of the pair belongs to tau/2 and which to (1 + tau)/2 is asked of p itself.
+        halves = [h for h in (one, tau, one + tau) if self.p(h * self._length / 2)[0].overlaps(X)]
+        if len(halves) != 1:
+            raise Undecidable
+        return self._reduced(halves[0] * self._length / 2)
+
+    def _reduced(self, u: acb) -> acb:
+        """u less a period, chosen so that |Im u| is at most about half of L Im tau."""
+        v = u / self._length
+        rows = _nearest(v.imag / self._tau.imag)
+        v = v - rows * self._tau
+        return self._length * (v - _nearest(v.real))
+
+    def _rough_turn(self, v: acb) -> arb:
+        """arg theta_1(v), continuous in Re v, up to a constant, while 0 < |Im v| < Im tau.
+
+        For Im v > 0, theta_1(v) is a constant times e^{-i pi v} (1 - x) times the product of
+        (1 - q^2n x)(1 - q^2n/x), with x = e^{2 pi i v} and q = e^{i pi tau}; no factor leaves the
+        unit circle about 1. Below the real line it is the conjugate, up to a constant sign.
+        """
+        whole = abs(v.real).upper().floor().unique_fmpz()
+        if whole is None:
+            raise Undecidable
+        with ctx.workprec(_ROUGH_BITS + int(whole).bit_length()):
+            side = sign(v.imag)
+            v = v if side > 0 else v.conjugate()
+            x, q2 = (2 * v).exp_pi_i(), (2 * self._tau).exp_pi_i()
+            total = (1 - x).arg() - arb.pi() * v.real
+            power, ratio = q2, float(abs(q2).upper())
+            while True:
+                up, down = power * x, power / x
+                size = float(abs(up).upper()) + float(abs(down).upper())
+                if not float(abs(down).upper()) < 1:
+                    raise Undecidable
+                total += (1 - up).arg() + (1 - down).arg()
+                power = power * q2
+                # |arg(1 - z)| <= (pi/2)|z|, and the sizes fall in the ratio |q|^2.
+                tail = 1.6 * size * ratio / (1 - ratio)
+                if tail < _ROUGH_TAIL:
+                    return side * (total + arb(0, _ROUGH_TAIL))
+
+
+@final
+class Circular(Lattice):
+    """A double root e < 0: p = e + kappa^2/sin^2(kappa u) with kappa^2 = -3 e, s(u) = sin(kappa u)."""
+
+    def __init__(self, double_root: Fraction) -> None:
+        self._e = ball(double_root)
+        self._kappa = ball(-3 * double_root).sqrt()
+
+    def jet(self, u: acb, order: int) -> list[acb]:
+        kappa = self._kappa
+        sin, cos = (kappa * u).sin_cos()
+        return [sin, kappa * cos, -(kappa**2) * sin][: order + 1]
+
+    def p(self, u: acb) -> tuple[acb, acb]:
+        sin, cos = (self._kappa * u).sin_cos()
+        rise = (self._kappa / sin) ** 2
+        return self._e + rise, -2 * self._kappa * rise * cos / sin
+
+    def argument(self, X: acb, Y: acb) -> acb:
+        """From e^{2 i kappa u} = (cot + i)/(cot - i), with p'/(p - e) = -2 kappa cot."""
+        slant = 2 * _I * self._kappa * (X - self._e)
+        return _logarithm((Y - slant) / (Y + slant)) / (2 * _I * self._kappa)
+
+    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
+        """sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate."""
+        side = sign((-w).imag)
+        there, start = (
+            v if side > 0 else v.conjugate() for v in (self._kappa * (u - w), self._kappa * -w)
+        )
+        bend = (1 - (2 * _I * there).exp()).arg() - (1 - (2 * _I * start).exp()).arg()
+        return side * (bend - self._kappa * u)
+
+    @property
+    def period(self) -> arb:
+        return arb.pi() / self._kappa
+
+
+@final
+class Hyperbolic(Lattice):
+    """A double root e > 0: p = e + kappa^2/sinh^2(kappa u), kappa^2 = 3 e, s(u) = sinh(kappa u)."""
+
+    def __init__(self, double_root: Fraction) -> None:
+        self._e = ball(double_root)
+        self._kappa = ball(3 * double_root).sqrt()
+
+    def jet(self, u: acb, order: int) -> list[acb]:
+        kappa = self._kappa
+        sinh, cosh = (kappa * u).sinh_cosh()
+        return [sinh, kappa * cosh, kappa**2 * sinh][: order + 1]
+
+    def p(self, u: acb) -> tuple[acb, acb]:
+        sinh, cosh = (self._kappa * u).sinh_cosh()
+        rise = (self._kappa / sinh) ** 2
+        return self._e + rise, -2 * self._kappa * rise * cosh / sinh
+
+    def argument(self, X: acb, Y: acb) -> acb:
+        """From e^{2 kappa u} = (coth + 1)/(coth - 1), with p'/(p - e) = -2 kappa coth."""
+        slant = 2 * self._kappa * (X - self._e)
+        return _logarithm((Y - slant) / (Y + slant)) / (2 * self._kappa)
+
+    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
+        """Im sinh(a + i b) = cosh a sin b has one sign along the line."""
+        start = (self._kappa * -w).sinh()
+        across = -sign(start.imag) * _I * start
+        return (across * quotient).arg() - across.arg()
+
+    @property
+    def period(self) -> None:
+        return None
+
+
+@final
+class Rational(Lattice):
+    """A triple root, which is zero: p = 1/u^2 and s(u) = u."""
+
+    def jet(self, u: acb, order: int) -> list[acb]:
+        return [u, acb(1), acb(0)][: order + 1]
+
+    def p(self, u: acb) -> tuple[acb, acb]:
+        return 1 / u**2, -2 / u**3
+
+    def argument(self, X: acb, Y: acb) -> acb:
+        return -2 * X / Y
+
+    def turn(self, u: arb, w: acb, quotient: acb) -> arb:
+        """u - w stays on one side of the real line."""
+        across = sign(w.imag) * _I * -w
+        return (across * quotient).arg() - across.arg()
+
+    @property
+    def period(self) -> None:
+        return None
+
+
+def nearest_turn(quotient: acb, rough: arb) -> arb:
+    """arg quotient, on the branch that agrees with the rough value."""
+    is_left = quotient.real.mid() < 0  # the cut of arg is kept away from
+    principal = (-quotient).arg() + arb.pi() if is_left else quotient.arg()
+    turns = ((rough - principal) / (2 * arb.pi()) + arb(1) / 2).floor().unique_fmpz()
+    if turns is None:
+        raise Undecidable
+    return principal + 2 * arb.pi() * turns
+
+
+def _integral_to_infinity(from_roots: Sequence[acb]) -> acb:
+    """R_F of three numbers, turned in the plane where one of them lies across Carlson's cut."""
+    for factor in (acb(1), _I, acb(-1)):
+        found = factor.sqrt() * acb.elliptic_rf(*(factor * z for z in from_roots))
+        if found.is_finite():
+            return found
+    raise Undecidable
+
+
+def _logarithm(z: acb) -> acb:
+    """A logarithm of z, away from the cut."""
+    if z.real.mid() < 0:
+        return (-z).log() + _I * arb.pi()
+    return z.log()
+
+
+def _nearest(value: arb) -> int:
+    """An integer near the middle of the ball: any will do, the nearest is best."""
+    found = (value.mid() + arb(1) / 2).floor().unique_fmpz()
+    if found is None:
+        raise Undecidable
+    return int(found)

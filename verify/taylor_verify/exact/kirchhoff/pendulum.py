@@ -1,0 +1,233 @@
+"""Motion in a plane of the body by the pendulum's formulas, in mpmath.
+
+Legend: that of plane.py. With m the parameter of the elliptic functions and u = u0 + rate t,
+
+    swing  h < omega0^2:  m = h/omega0^2,  rate = omega0:     sin alpha = k sn u,  cos alpha = +-dn u;
+    turn   h > omega0^2:  m = omega0^2/h,  rate = +-sqrt(h):  sin alpha = sn u,    cos alpha = cn u;
+    front  h = omega0^2:                   rate = +-omega0:   sin alpha = tanh u,  cos alpha = +-sech u.
+
+The body turns about k by side (alpha - alpha0). Its centre goes along F at F (p_a + (p_b - p_a)
+sin^2 alpha), and across F, in the plane, by (y_k - y_k0)/F (Hydromechanics 49 (18), (19)).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final, final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elliptic import Landen
+from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.zeta import SquaredSine
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.scene import Scene
+
+_GUARD_DIGITS: Final = 12
+
+
+@dataclass(frozen=True)
+class Swept:
+    """The pendulum at one instant: cos alpha, sin alpha, alpha', and int sin^2 alpha dt."""
+
+    cosine: mpf
+    sine: mpf
+    rate: mpf
+    squares: mpf
+
+
+@final
+class Pendulum(Settled):
+    """A motion in a plane by the pendulum's formulas."""
+
+    route = "mpmath"
+
+    def __init__(self, kind: str, found: Plane, scene: Scene) -> None:
+        assert isinstance(scene.initial, Impulse)
+        self.regime = kind
+        self._plane, self._start, self._track = found, scene.initial, scene.track
+
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+        fastest = max(self._plane.omega0_squared, self._plane.h)
+        swept = math.isqrt(math.ceil(fastest * longest**2))
+        with mp.workdps(digits + _GUARD_DIGITS + len(str(swept))):
+            course = _course(self.regime, self._plane)
+            rows = [course.at(t) for t in elapsed]
+            return self._quantities(rows, elapsed)
+
+    def elements(self, digits: int) -> dict[str, mpf]:
+        """The period after which x and y recur, where they do, and the rate and parameters."""
+        with mp.workdps(digits + _GUARD_DIGITS):
+            return _course(self.regime, self._plane).elements()
+
+    def _quantities(self, rows: Sequence[Swept], elapsed: Sequence[Fraction]) -> Quantities:
+        place = self._plane
+        F, r = mp.sqrt(mp.convert(place.F2)), mp.convert(place.r)
+        x, y = _rows(len(rows)), _rows(len(rows))
+        for n, row in enumerate(rows):
+            x[n, place.a], x[n, place.b] = F * row.cosine, -F * row.sine
+            y[n, place.k] = place.side * row.rate / r
+        found = {"linear_impulse": x, "angular_impulse": y}
+        if self._track:
+            frames = [self._frame(row) for row in rows]
+            first = np.array(
+                [[mp.convert(c) for c in row] for row in rotation_matrix(self._start.attitude)]
+            )
+            found["attitude"] = np.array([first @ frame for frame in frames]).reshape(-1, 3, 3)
+            if "centre" in self._track:
+                moved = [self._moved(row, t) for row, t in zip(rows, elapsed, strict=True)]
+                centre = np.array([mp.convert(c) for c in self._start.centre])
+                found["centre"] = np.array([centre + first @ way for way in moved]).reshape(-1, 3)
+        return found
+
+    def _frame(self, row: Swept) -> Any:
+        """The rotation from the body's axes to those of the start, in the components of the body."""
+        place = self._plane
+        cosine, sine = self._at_start()
+        i, j = (place.k + 1) % 3, (place.k + 2) % 3
+        cos = row.cosine * cosine + row.sine * sine
+        sin = place.side * (row.sine * cosine - row.cosine * sine)
+        frame = np.full((3, 3), mpf(0), dtype=object)
+        frame[i, i], frame[j, j], frame[k := place.k, k] = cos, cos, mpf(1)
+        frame[j, i], frame[i, j] = sin, -sin
+        return frame
+
+    def _at_start(self) -> tuple[mpf, mpf]:
+        """cos alpha and sin alpha at the start; where F = 0 the angle is counted from there."""
+        x_a, x_b = (mp.convert(c) for c in self._plane.x)
+        F = mp.sqrt(mp.convert(self._plane.F2))
+        return (x_a / F, -x_b / F) if F else (mpf(1), mpf(0))
+
+    def _moved(self, row: Swept, t: Fraction) -> Any:
+        """The way of the centre since the start, in the body's axes of the start."""
+        place = self._plane
+        F = mp.sqrt(mp.convert(place.F2))
+        way = np.full(3, mpf(0), dtype=object)
+        if not F:
+            return way
+        p_a, spread = mp.convert(place.p[0]), mp.convert(place.p[1] - place.p[0])
+        along = F * (p_a * mp.convert(t) + spread * row.squares)
+        across = (row.rate - mp.convert(place.rate)) / (mp.convert(place.r) * F)
+        cosine, sine = self._at_start()
+        # (a, b, side k) is a right-handed frame: k x F stands at side times (-b, a).
+        way[place.a] = along * cosine + across * sine
+        way[place.b] = -along * sine + across * cosine
+        return way
+
+
+def _rows(count: int) -> Any:
+    return np.full((count, 3), mpf(0), dtype=object)
+
+
+# The pendulum's angle.
+
+
+@dataclass(frozen=True)
+class Even:
+    """alpha grows evenly, or not at all."""
+
+    cosine: mpf
+    sine: mpf
+    speed: mpf
+
+    def at(self, t: Fraction) -> Swept:
+        time = mp.convert(t)
+        cos, sin = mp.cos_sin(self.speed * time)
+        cosine = self.cosine * cos - self.sine * sin
+        sine = self.sine * cos + self.cosine * sin
+        # Used where p_a = p_b, or where alpha is constant.
+        return Swept(cosine, sine, self.speed, self.sine**2 * time)
+
+    def elements(self) -> dict[str, mpf]:
+        return {"period": 2 * mp.pi / abs(self.speed)} if self.speed else {}
+
+
+class Front:
+    """The pendulum's separatrix."""
+
+    def __init__(self, place: Plane) -> None:
+        x_a, x_b = (mp.convert(c) for c in place.x)
+        self._sign = mpf(1 if place.x[0] > 0 else -1)
+        self._u0 = mp.asinh(-x_b / abs(x_a))
+        self._speed = (1 if place.rate * place.x[0] > 0 else -1) * mp.sqrt(
+            mp.convert(place.omega0_squared)
+        )
+
+    def at(self, t: Fraction) -> Swept:
+        u = self._u0 + self._speed * mp.convert(t)
+        tanh, sech = mp.tanh(u), mp.sech(u)
+        squares = mp.convert(t) - (tanh - mp.tanh(self._u0)) / self._speed
+        return Swept(self._sign * sech, tanh, self._sign * self._speed * sech, squares)
+
+    def elements(self) -> dict[str, mpf]:
+        return {}
+
+
+class Elliptic:
+    """Swing and turn; to be used at one precision."""
+
+    def __init__(self, place: Plane) -> None:
+        omega2, h = place.omega0_squared, place.h
+        self._swings = place.lack > 0
+        ratios = (
+            (h / omega2, place.lack / omega2) if self._swings else (omega2 / h, -place.lack / h)
+        )
+        self._m, self._m_prime = (mp.convert(ratio) for ratio in ratios)
+        self._landen = Landen(self._m, self._m_prime)
+        self._sine = SquaredSine(self._m, self._m_prime)
+        # Squares of sn, cn and dn at the start, rational; alpha' says which way.
+        sine2, cosine2, rate2 = place.x[1] ** 2, place.x[0] ** 2, place.rate**2
+        if self._swings:
+            self._sign = mpf(1 if place.x[0] > 0 else -1)
+            self._speed = mp.sqrt(mp.convert(omega2))
+            sn2, cn2, dn2 = place.spread * sine2 / h, rate2 / h, cosine2 / place.F2
+            onward = place.rate * place.x[0] >= 0
+        else:
+            self._sign = mpf(1 if place.rate > 0 else -1)
+            self._speed = self._sign * mp.sqrt(mp.convert(h))
+            sn2, cn2, dn2 = sine2 / place.F2, cosine2 / place.F2, rate2 / h
+            onward = place.x[0] >= 0
+        sn = mp.sqrt(mp.convert(sn2)) * (1 if place.x[1] <= 0 else -1)
+        u0 = sn * mp.elliprf(mp.convert(cn2), mp.convert(dn2), 1)
+        K = self._landen.quarter_period
+        self._u0 = u0 if onward else 2 * K - u0
+        self._first = self._squares(self._u0)
+
+    def at(self, t: Fraction) -> Swept:
+        u = self._u0 + self._speed * mp.convert(t)
+        sn, cn, dn = self._landen.jacobi(u)
+        squares = (self._squares(u) - self._first) / self._speed
+        if self._swings:
+            k = mp.sqrt(self._m)
+            rate = self._sign * k * self._speed * cn
+            return Swept(self._sign * dn, k * sn, rate, squares)
+        return Swept(cn, sn, self._speed * dn, squares / self._m)
+
+    def elements(self) -> dict[str, mpf]:
+        """A turn takes 4 K of its argument to bring x back, as a swing does."""
+        rate = abs(self._speed)
+        period = 4 * self._landen.quarter_period / rate
+        return {"period": period, "rate": rate, "m": self._m, "m_prime": self._m_prime}
+
+    def _squares(self, u: mpf) -> mpf:
+        """m int_0^u sn^2 du."""
+        K = self._landen.quarter_period
+        return self._sine.at(u, u - 2 * mp.nint(u / (2 * K)) * K)
+
+
+def _course(kind: str, place: Plane) -> Even | Front | Elliptic:
+    if kind == "planar-front":
+        return Front(place)
+    if kind in ("planar-swing", "planar-turn"):
+        return Elliptic(place)
+    F = mp.sqrt(mp.convert(place.F2))
+    x_a, x_b = (mp.convert(c) for c in place.x)
+    cosine, sine = (x_a / F, -x_b / F) if F else (mpf(1), mpf(0))
+    return Even(cosine, sine, mp.convert(place.rate))

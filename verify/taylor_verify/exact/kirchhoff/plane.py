@@ -1,0 +1,122 @@
+"""Which motions stay in a plane of the body, and of what kind they are, decided in rationals.
+
+Legend: body axes i, j, k in cyclic order, k across the plane; T holds p_i x_i^2 + p_j x_j^2 + r y_k^2
+of the plane (halved) and nothing that leads out of it. Of the two axes, a is the one with the smaller
+p, b the other, and side = 1 if a is i, -1 if it is j. F = |x|, omega0^2 = r (p_b - p_a) F^2, and with
+
+    x_a = F cos alpha,  x_b = -F sin alpha,  alpha' = side r y_k,
+    (2 alpha)'' = -omega0^2 sin 2 alpha,     h = alpha'^2 + omega0^2 sin^2 alpha constant,
+
+the angle 2 alpha is a pendulum's, broadside on (x along a) its lower and end on its upper rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.scene import Scene
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A motion in a plane: the axes a, b and k counted from 0, and the numbers of the legend.
+
+    ``p`` are p_a and p_b, ``x`` are x_a and x_b and ``y`` is y_k at the start.
+    """
+
+    a: int
+    b: int
+    k: int
+    side: int
+    p: tuple[Fraction, Fraction]
+    r: Fraction
+    x: tuple[Fraction, Fraction]
+    y: Fraction
+
+    @property
+    def F2(self) -> Fraction:
+        return self.x[0] ** 2 + self.x[1] ** 2
+
+    @property
+    def spread(self) -> Fraction:
+        """omega0^2/F^2."""
+        return self.r * (self.p[1] - self.p[0])
+
+    @property
+    def omega0_squared(self) -> Fraction:
+        return self.spread * self.F2
+
+    @property
+    def rate(self) -> Fraction:
+        """alpha' at the start."""
+        return self.side * self.r * self.y
+
+    @property
+    def h(self) -> Fraction:
+        return self.rate**2 + self.spread * self.x[1] ** 2
+
+    @property
+    def lack(self) -> Fraction:
+        """omega0^2 - h, formed without it: zero on the border of swing and turn."""
+        return self.spread * self.x[0] ** 2 - self.rate**2
+
+
+def plane(scene: Scene) -> Plane | None:
+    """The plane in which a free body without an axis of symmetry moves, or None if there is none.
+
+    Decided in rationals: nothing of the start points out of the plane, and nothing of T leads out.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        return None
+    if not body.is_free or body.axis_of_symmetry is not None:
+        return None
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        outside = (start.linear[k], start.angular[i], start.angular[j])
+        if not any(outside) and _keeps_to_plane(body, i, j, k):
+            return _plane(body, start, i, j, k)
+    return None
+
+
+def _keeps_to_plane(body: ImmersedBody, i: int, j: int, k: int) -> bool:
+    """Whether Omega_i = Omega_j = U_k = 0, and U and Omega_k are the legend's, all over the plane."""
+    A, B, C = body.linear, body.coupling, body.angular
+    in_the_way = (A[i][j], A[i][k], A[j][k], C[i][k], C[j][k], B[k][k])
+    return not any(in_the_way) and not any(B[row][n] for row in (i, j) for n in range(3))
+
+
+def _plane(body: ImmersedBody, start: Impulse, i: int, j: int, k: int) -> Plane:
+    swapped = body.linear[i][i] > body.linear[j][j]
+    a, b = (j, i) if swapped else (i, j)
+    return Plane(
+        a=a,
+        b=b,
+        k=k,
+        side=-1 if swapped else 1,
+        p=(body.linear[a][a], body.linear[b][b]),
+        r=body.angular[k][k],
+        x=(start.linear[a], start.linear[b]),
+        y=start.angular[k],
+    )
+
+
+def regime(found: Plane) -> str:
+    """One word for a motion in a plane, decided in rationals.
+
+    - planar-steady: x and y are constant, the body moves straight on or not at all;
+    - planar-uniform: p_a = p_b or F = 0, and the body turns at a constant rate;
+    - planar-swing: it swings about the position broadside on;
+    - planar-turn: it turns over and over;
+    - planar-front: exactly between these, it turns once from end on to end on, the other way round.
+    """
+    if found.omega0_squared == 0:
+        return "planar-uniform" if found.rate else "planar-steady"
+    if found.rate == 0 and 0 in found.x:
+        return "planar-steady"
+    if found.lack == 0:
+        return "planar-front"
+    return "planar-swing" if found.lack > 0 else "planar-turn"

@@ -1,0 +1,223 @@
+"""The polynomial of x3 in Clebsch's body, z'^2 = f(z), in exact rationals, and its real roots.
+
+Legend, Hydromechanics 49: z = x3, F^2 = x.x and FG = x.y; p, p', q, q', r, r' are the
+coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest power first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+
+from taylor_verify.scenes.bodies import Clebsch
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.tensors import dot
+
+Polynomial = tuple[Fraction, ...]
+
+
+@dataclass(frozen=True)
+class Nutation:
+    """The constants of one motion of Clebsch's body, and the polynomial f that they make.
+
+    ``z`` and ``speed`` are x3 and dx3/dt at the start; ``m1`` is that of Hydromechanics 49 (7).
+    """
+
+    body: Clebsch
+    z: Fraction
+    speed: Fraction
+    F2: Fraction
+    FG: Fraction
+    y3: Fraction
+    m1: Fraction
+
+    @classmethod
+    def of(cls, body: Clebsch, start: Impulse) -> Nutation:
+        """The constants from the initial state; m1 from r (y1^2 + y2^2) at the start."""
+        x, y = start.linear, start.angular
+        linear, screw = body.p - body.p_prime, body.q - body.q_prime
+        return cls(
+            body=body,
+            z=x[2],
+            speed=body.r * (x[0] * y[1] - x[1] * y[0]),
+            F2=dot(x, x),
+            FG=dot(x, y),
+            y3=y[2],
+            m1=body.r * (y[0] ** 2 + y[1] ** 2) - linear * x[2] ** 2 - 2 * screw * x[2] * y[2],
+        )
+
+    @cached_property
+    def f(self) -> Polynomial:
+        """f(z) = r (F^2 - z^2) [(p-p') z^2 + 2 (q-q') y3 z + m1] - r^2 (FG - y3 z)^2."""
+        r, F2, FG, y3, m1 = self.body.r, self.F2, self.FG, self.y3, self.m1
+        linear = self.body.p - self.body.p_prime
+        screw = 2 * (self.body.q - self.body.q_prime) * y3
+        return stripped(
+            (
+                -r * linear,
+                -r * screw,
+                r * (F2 * linear - m1) - (r * y3) ** 2,
+                r * F2 * screw + 2 * r**2 * FG * y3,
+                r * F2 * m1 - (r * FG) ** 2,
+            )
+        )
+
+    @cached_property
+    def turn_rate(self) -> Fraction:
+        """The rate at which (x1, x2) turns about axis 3 at the start; zero where it vanishes.
+
+        If all of x is zero, the rate at which (y1, y2) does.
+        """
+        body, z = self.body, self.z
+        if self.F2 == 0:
+            return (body.r - body.r_prime) * self.y3
+        if self.F2 - z**2 == 0:
+            return Fraction(0)
+        pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
+        return (body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull
+
+    def touches_pole(self, side: int) -> bool:
+        """Whether f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
+        same_size = self.F2 * self.y3**2 == self.FG**2
+        return same_size and side * self.FG * self.y3 >= 0
+
+
+def stripped(polynomial: Polynomial) -> Polynomial:
+    """Without leading zeros; () is the zero polynomial."""
+    for k, coefficient in enumerate(polynomial):
+        if coefficient != 0:
+            return polynomial[k:]
+    return ()
+
+
+def value(polynomial: Polynomial, z: Fraction) -> Fraction:
+    total = Fraction(0)
+    for coefficient in polynomial:
+        total = total * z + coefficient
+    return total
+
+
+def derivative(polynomial: Polynomial) -> Polynomial:
+    degree = len(polynomial) - 1
+    return tuple((degree - k) * c for k, c in enumerate(polynomial[:-1]))
+
+
+def remainder(a: Polynomial, b: Polynomial) -> Polynomial:
+    rest = list(a)
+    while len(rest) >= len(b):
+        factor = rest[0] / b[0]
+        rest = [c - factor * d for c, d in zip(rest, b + (Fraction(0),) * len(rest), strict=False)]
+        del rest[0]
+    return stripped(tuple(rest))
+
+
+def sturm_chain(polynomial: Polynomial) -> tuple[Polynomial, ...]:
+    """Sturm's sequence; its last member is the greatest common divisor of f and f'."""
+    chain = [polynomial, derivative(polynomial)]
+    while rest := remainder(chain[-2], chain[-1]):
+        # Only signs are read: a positive factor keeps the numbers short.
+        size = abs(rest[0])
+        chain.append(tuple(-c / size for c in rest))
+    return tuple(chain)
+
+
+def has_repeated_root(polynomial: Polynomial) -> bool:
+    """Whether some root, real or complex, is repeated, for a polynomial of degree 1 or more."""
+    return len(sturm_chain(polynomial)[-1]) > 1
+
+
+def repeated_root(polynomial: Polynomial) -> Fraction | None:
+    """The one root that is repeated, which is rational; None if there is none, or more than one."""
+    common = sturm_chain(polynomial)[-1]  # (z - d)^n up to a factor, if d is the only one
+    times = len(common) - 1
+    if times == 0:
+        return None
+    root = -common[1] / (times * common[0])
+    while len(common) > 1:
+        if value(common, root) != 0:
+            return None
+        common = derivative(common)
+    return root
+
+
+@dataclass(frozen=True)
+class RealRoots:
+    """The real roots of a polynomial without repeated roots, enclosed in dyadic intervals."""
+
+    polynomial: Polynomial
+
+    def enclosed(self, width: Fraction) -> list[Fraction]:
+        """The real roots in ascending order, each within ``width`` of its true place."""
+        return [self._refined(low, high, width) for low, high in self._isolated]
+
+    @property
+    def number(self) -> int:
+        bound = self._bound()
+        return self._changes(-bound) - self._changes(bound)
+
+    def number_up_to(self, z: Fraction) -> int:
+        """How many of them are <= z."""
+        return self._changes(-self._bound()) - self._changes(z)
+
+    @cached_property
+    def _isolated(self) -> list[tuple[Fraction, Fraction]]:
+        """Disjoint intervals (low, high], each with one root."""
+        bound = self._bound()
+        return list(self._split(-bound, bound))
+
+    def _bound(self) -> Fraction:
+        """A power of two above every root: none exceeds twice the largest |c_k/c_0|^(1/k) (Fujiwara).
+
+        As near to the roots in any units, which Cauchy's 1 + max |c_k/c_0| is not.
+        """
+        first, *others = self.polynomial
+        exponents = [-(-(floor_log2(c / first) + 1) // k) for k, c in enumerate(others, 1) if c]
+        return power_of_two(1 + max(exponents, default=0))
+
+    def _split(self, low: Fraction, high: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
+        pending = [(low, high)]
+        while pending:
+            low, high = pending.pop()
+            number = self._changes(low) - self._changes(high)
+            if number == 1:
+                yield low, high
+            elif number > 1:
+                middle = (low + high) / 2
+                pending += [(middle, high), (low, middle)]
+
+    @cached_property
+    def _chain(self) -> tuple[Polynomial, ...]:
+        return sturm_chain(self.polynomial)
+
+    def _changes(self, z: Fraction) -> int:
+        """Sturm's number of sign changes: it falls by the number of roots in (low, high]."""
+        signs = [member > 0 for p in self._chain if (member := value(p, z)) != 0]
+        return sum(a != b for a, b in pairwise(signs))
+
+    def _refined(self, low: Fraction, high: Fraction, width: Fraction) -> Fraction:
+        """Quadratic interval refinement: every step is proved by a change of sign.
+
+        The interval is cut into ``parts`` and the one where the chord meets the axis is tried. If
+        the root is there, the number of parts is squared; if not, the interval is halved.
+        """
+        f = self.polynomial
+        above = value(f, low) or value(derivative(f), low)  # the sign of f just above low
+        parts = 4
+        while high - low > width:
+            at_low, at_high = value(f, low), value(f, high)
+            if at_high == 0:
+                return high
+            step = (high - low) / parts
+            left = low + min(int(parts * at_low / (at_low - at_high)), parts - 1) * step
+            before = left == low or value(f, left) * above > 0
+            if before and value(f, left + step) * above <= 0:
+                low, high, parts = left, left + step, parts**2
+            else:
+                middle = (low + high) / 2
+                low, high = (middle, high) if value(f, middle) * above > 0 else (low, middle)
+                parts = 4
+        return (low + high) / 2

@@ -1,0 +1,178 @@
+"""The kind of motion of Clebsch's body, and its turning points, decided in exact rationals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from taylor_verify.exact.kirchhoff.quartic import (
+    Nutation,
+    RealRoots,
+    derivative,
+    has_repeated_root,
+    repeated_root,
+    value,
+)
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.scene import Scene
+
+_NARROWINGS = 40
+
+
+def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
+    """The motion of a scene with Clebsch's energy and no loads, and its start.
+
+    Raises NoClosedForm, with the reason, for every other scene.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        raise TypeError(
+            f"expected a scene of the model kirchhoff, got {scene.model} @ {scene.name}"
+        )
+    if not body.is_free:
+        raise NoClosedForm("a force or a couple acts on the body")
+    if body.clebsch is None:
+        raise NoClosedForm("the energy is not of Clebsch's form about a body axis")
+    return Nutation.of(body.clebsch, start), start
+
+
+def regime(nutation: Nutation) -> str:
+    """One word for the motion, decided in rationals.
+
+    - rest: no impulse at all;
+    - euler-top: x = 0, and y turns about axis 3 at a constant rate;
+    - steady: x3 is constant;
+    - trigonometric: f is a quadratic, or x3 swings on one side of an isolated double root;
+    - hyperbolic: x3 comes from a double root of f and returns to it (homoclinic);
+    - algebraic: the same, but the root is triple, and x3 a rational function of time;
+    - heteroclinic: x3 goes from one pole to the other, and f is a square;
+    - cubic, four-roots, two-roots: f has simple roots alone, and of a quartic four or two are real.
+    """
+    f = nutation.f
+    if nutation.F2 == 0:
+        return "rest" if nutation.m1 == 0 and nutation.y3 == 0 else "euler-top"
+    if nutation.speed == 0 and value(derivative(f), nutation.z) == 0:
+        return "steady"
+    if len(f) < 4:
+        return "trigonometric"
+    if has_repeated_root(f):
+        return _repeated(nutation)
+    if len(f) == 4:
+        return "cubic"
+    return "four-roots" if RealRoots(f).number == 4 else "two-roots"
+
+
+def _repeated(nutation: Nutation) -> str:
+    """The kind of motion by the curvature of f where its root is repeated.
+
+    Two repeated roots can only be the poles: f would be a square, and f(+-F) <= 0.
+    """
+    root = repeated_root(nutation.f)
+    if root is None:
+        return "heteroclinic"
+    curvature = value(derivative(derivative(nutation.f)), root)
+    if curvature == 0:
+        return "algebraic"
+    return "hyperbolic" if curvature > 0 else "trigonometric"
+
+
+@dataclass(frozen=True)
+class TurningPoints:
+    """z1 <= z <= z2, and the other roots of f, as rationals near enough to the true ones.
+
+    Every difference of two of the numbers here, and F^2 - z1^2 and F^2 - z2^2, has the relative
+    error asked for. Going up from z1 and round through infinity, the real roots are z1, z2, z4, z3,
+    where None is infinity; a complex pair is given as ``pair`` = (middle, n^2) instead, for
+    middle +- i n. ``at_top`` says that z2 = F, and ``at_bottom`` that z1 = -F, exactly.
+    """
+
+    z1: Fraction
+    z2: Fraction
+    z3: Fraction | None
+    z4: Fraction | None
+    pair: tuple[Fraction, Fraction] | None
+    at_top: bool
+    at_bottom: bool
+
+
+def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
+    """The turning points to ``digits`` significant digits of every difference.
+
+    The smallest difference is not known beforehand: the roots are narrowed until it is large enough
+    beside what is left of their enclosures. Raises Unsettled if they do not come apart.
+    """
+    roots = RealRoots(nutation.f)
+    F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
+    width = F_above / 10**digits
+    for _ in range(_NARROWINGS):
+        points = _arranged(nutation, roots, width)
+        smallest = min(_allowances(nutation, points, width))
+        if width * 10**digits <= smallest:
+            return points
+        width = min(smallest / 10**digits, width) / 16 if smallest > 0 else width / 10**digits
+    raise Unsettled("the roots of the quartic of x3 do not come apart")
+
+
+def _arranged(nutation: Nutation, real: RealRoots, width: Fraction) -> TurningPoints:
+    """The roots in the order of the formulas, with those that are known exactly put in."""
+    roots = real.enclosed(width)
+    lower = real.number_up_to(nutation.z) - 1
+    if nutation.speed == 0:  # a start at a turning point: that root is rational
+        roots[lower] = nutation.z
+        if value(derivative(nutation.f), nutation.z) < 0:
+            lower -= 1
+    z1, z2 = roots[lower], roots[lower + 1]
+    at_top = _is_pole(nutation, roots, lower + 1, side=1)
+    at_bottom = _is_pole(nutation, roots, lower, side=-1)
+    if len(nutation.f) == 5 and len(roots) == 2:
+        pair = _complex_pair(nutation, z1, z2)
+        return TurningPoints(z1, z2, None, None, pair, at_top, at_bottom)
+    circle: list[Fraction | None] = [*roots]
+    if len(roots) == 3:
+        circle.append(None)
+    z4, z3 = circle[(lower + 2) % 4], circle[(lower + 3) % 4]
+    return TurningPoints(z1, z2, z3, z4, None, at_top, at_bottom)
+
+
+def _is_pole(nutation: Nutation, roots: list[Fraction], index: int, side: int) -> bool:
+    """Whether this root is the pole side * F: if the pole is a root at all, it is the nearest."""
+    if not nutation.touches_pole(side):
+        return False
+    distances = [
+        abs(nutation.F2 - root**2) if side * root > 0 else nutation.F2 + root**2 for root in roots
+    ]
+    return distances[index] == min(distances)
+
+
+def _complex_pair(nutation: Nutation, z1: Fraction, z2: Fraction) -> tuple[Fraction, Fraction]:
+    """(middle, n^2) from the coefficients and the two real roots."""
+    lead, cubic, square = nutation.f[:3]
+    middle = -(cubic / lead + z1 + z2) / 2
+    return middle, square / lead - z1 * z2 - 2 * middle * (z1 + z2) - middle**2
+
+
+def _allowances(nutation: Nutation, points: TurningPoints, width: Fraction) -> list[Fraction]:
+    """For each difference that enters, the error of a root that would be as large as it is."""
+    z1, z2 = points.z1, points.z2
+    F_above = power_of_two(floor_log2(nutation.F2) // 2 + 1)
+    allowed = [z2 - z1]
+    if nutation.speed != 0:
+        allowed += [nutation.z - z1, z2 - nutation.z]
+    allowed += [(nutation.F2 - z1**2) / (4 * F_above)] * (not points.at_bottom)
+    allowed += [(nutation.F2 - z2**2) / (4 * F_above)] * (not points.at_top)
+    others = [root for root in (points.z3, points.z4) if root is not None]
+    allowed += [abs(a - b) / 2 for a in others for b in (z1, z2)]
+    allowed += [abs(a - b) / 2 for a, b in pairwise(others)]
+    if points.pair is not None:
+        middle, n_squared = points.pair
+        if n_squared <= 0:
+            return [Fraction(0)]
+        cubic = abs(nutation.f[1] / nutation.f[0])
+        # d(n^2) <= influence * width, by differentiating the formulas of _complex_pair.
+        influence = 5 * (abs(z1) + abs(z2)) + 2 * cubic + 2 * abs(middle) + 10 * width
+        allowed += [n_squared / influence, power_of_two(floor_log2(n_squared) // 2)]
+    return allowed

@@ -1,0 +1,134 @@
+"""A body of revolution about body axis 1 or 2: solved in axes named anew.
+
+The closed forms are written for the axis 3. A cyclic change of names, v' = (v_j, v_k, v_axis), turns
+the body axes by a third of a turn about (1, 1, 1) and mirrors nothing, so Kirchhoff's equations keep
+their form; space axes stay, and of the attitude R' = R Q the columns change their places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import final
+
+import numpy as np
+
+from taylor_verify.exact.kirchhoff.displaced import centred, displaced
+from taylor_verify.exact.solution import Quantities, Solution
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion, Quaternion
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+_BODY_AXES = ("linear_impulse", "angular_impulse", "attitude")
+
+
+def enclosed(scene: Scene) -> Solution:
+    """The closed form in balls of a solid of revolution about any body axis, without loads.
+
+    Clebsch's energy, that is, about some point of the axis.
+
+    Raises NoClosedForm, with the reason, for every other scene.
+    """
+    from taylor_verify.exact.kirchhoff.weierstrass import enclosed
+
+    return _solved(scene, enclosed)
+
+
+def closed_form(scene: Scene) -> Solution:
+    """The same by Jacobi's functions in mpmath."""
+    from taylor_verify.exact.kirchhoff.jacobi import closed_form
+
+    return _solved(scene, closed_form)
+
+
+def upright(scene: Scene) -> tuple[Scene, int]:
+    """The scene in axes of which the third is the axis of symmetry, and that axis as it was.
+
+    A body without one keeps its axes, as does one with a choice that includes the third, and one
+    that loads act on.
+    """
+    body, start = scene.body, scene.initial
+    assert isinstance(body, ImmersedBody)
+    assert isinstance(start, Impulse)
+    axis = body.axis_of_symmetry or 3
+    if axis == 3 or not body.is_free:
+        return scene, 3
+    order = _order(axis)
+    return replace(
+        scene,
+        body=ImmersedBody(
+            linear=_matrix(body.linear, order),
+            coupling=_matrix(body.coupling, order),
+            angular=_matrix(body.angular, order),
+        ),
+        initial=Impulse(
+            _vector(start.linear, order),
+            _vector(start.angular, order),
+            _third_of_a_turn(start.attitude, 1 if axis == 1 else -1),
+            start.centre,
+        ),
+    ), axis
+
+
+@final
+class Turned(Solution):
+    """The solution of the body in the other axes, its components put back into their places."""
+
+    def __init__(self, inner: Solution, axis: int) -> None:
+        self.regime, self.route = inner.regime, inner.route
+        self._inner = inner
+        # Where the component i of the body's own axes stands in the other ones.
+        order = _order(axis)
+        self._places = [order.index(i) for i in range(3)]
+
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """A change of places leaves every norm, and so every radius, as it is."""
+        found = self._inner.motion(elapsed, digits)
+        return Motion(self._put_back(found.quantities), found.radius, found.radii)
+
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        return self._put_back(self._inner.evaluate(elapsed, digits))
+
+    def _put_back(self, quantities: Quantities) -> Quantities:
+        return {
+            name: np.take(rows, self._places, axis=-1) if name in _BODY_AXES else rows
+            for name, rows in quantities.items()
+        }
+
+
+def _solved(scene: Scene, solve: Callable[[Scene], Solution]) -> Solution:
+    named_anew, axis = upright(scene)
+    moved, distance = centred(named_anew)
+    found = solve(moved)
+    if distance:
+        found = displaced(found, distance, named_anew)
+    return found if axis == 3 else Turned(found, axis)
+
+
+def _order(axis: int) -> tuple[int, int, int]:
+    """Which component of v is each one of v': the last is that of the axis."""
+    return axis % 3, (axis + 1) % 3, (axis + 2) % 3
+
+
+def _vector(v: Vector, order: Sequence[int]) -> Vector:
+    return tuple(v[i] for i in order)
+
+
+def _matrix(m: Matrix, order: Sequence[int]) -> Matrix:
+    return tuple(_vector(m[i], order) for i in order)
+
+
+def _third_of_a_turn(q: Quaternion, side: int) -> Quaternion:
+    """q times (1, 1, 1, 1), or times its inverse, which turn by 120 degrees; the norm does not matter.
+
+    The first takes e1, e2, e3 to e2, e3, e1.
+    """
+    q0, q1, q2, q3 = q
+    return (
+        q0 - side * (q1 + q2 + q3),
+        q1 + side * (q0 + q2 - q3),
+        q2 + side * (q0 + q3 - q1),
+        q3 + side * (q0 + q1 - q2),
+    )

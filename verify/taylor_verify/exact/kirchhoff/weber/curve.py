@@ -1,0 +1,223 @@
+"""Weber's case of Clebsch's second: who is of it, and the curve of genus two, all in rationals.
+
+Legend: T = sum (p_i x_i^2 + r_i y_i^2)/2, to which multiples of F^2 = x.x and of x.y may be added, and
+x.y = 0. Where r_i = r, or p_i - p_j = theta r_k (r_j - r_i), the direction n = x/F of the impulse is led
+by Neumann's motion of a point on the sphere, n'' = -a n + (...) n, x' = rho x x y along its own time:
+
+    r_i = r:         a_i = r F^2 p_i,        rho = r,  and the motion is that one;
+    Clebsch's:       a_i = -theta F^2 r_i,   rho = 1,  and the motion commutes with that one.
+
+With elliptic coordinates u1 < u2 on the sphere and the integrals F_i of K. Uhlenbeck
+
+    A(z) = prod (z - a_i),    U(z) = A sum n_i^2/(z - a_i) = (z - u1)(z - u2),
+    F_i = n_i^2 + sum over j of (rho y_k)^2/(a_i - a_j),    B(z) = A sum F_i/(z - a_i),
+    w^2 = -4 A(z) B(z),    u1' = w1/(u1 - u2),  u2' = w2/(u2 - u1) in Neumann's time,
+
+the integrals v_m of z^m dz/w, summed over the two points (u, w), are linear in time: their rates are
+the ``flow``. The five roots of A B, in ascending order, are e1 ... e5; u1 swings between e2 and e3,
+u2 between e4 and e5. Only differences of the a_i count: they are taken from their middle one, in the
+unit sigma^2.
+
+Sources: H. Weber, Math. Ann. 14 (1878) 173; J. Moser, in The Chern Symposium (1980) 147.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, cmp_to_key
+from typing import Final
+
+from taylor_verify.exact.kirchhoff.plane import plane
+from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
+from taylor_verify.exact.solution import NoClosedForm
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
+
+REGIME: Final = "weber"
+CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+_ORTHOGONAL: Final = (
+    "of the bodies with r_1 = r_2 = r_3, and of Clebsch's second case, only the motions with FG = 0 "
+    "are solved (Weber's)"
+)
+_TRACKED: Final = "of Weber's motions only x and y are solved, not attitude and centre"
+_DEGENERATE: Final = (
+    "two branch points of Weber's curve coincide: the theta functions of genus two degenerate"
+)
+
+Quadratic = tuple[Fraction, Fraction, Fraction]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One of u1, u2 at the start: ``sheet`` is the sign of its w.
+
+    ``branch`` counts e1 ... e5 from 0 where the point is one of them, and w = 0.
+    """
+
+    u: Surd
+    sheet: int
+    branch: int | None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One motion of Weber's: the curve and the start on it.
+
+    ``a`` are the a_i in the order of the body's axes and in the unit sigma^2, from the middle one;
+    ``flow`` are the rates of the two integrals in that unit, ``start`` are x and y.
+    """
+
+    a: Vector
+    sigma: Fraction
+    rho: Fraction
+    flow: tuple[Fraction, Fraction]
+    start: Impulse
+
+    @cached_property
+    def F2(self) -> Fraction:
+        return tensors.dot(self.start.linear, self.start.linear)
+
+    @cached_property
+    def x_rate(self) -> Vector:
+        """x' along Neumann's time, at the start."""
+        return tensors.scaled(self.rho, tensors.cross(self.start.linear, self.start.angular))
+
+    @cached_property
+    def told(self) -> tuple[tuple[Fraction, Fraction], ...]:
+        """sigma^2 x_i and x_i' at the start, what the sign of c_i is told by.
+
+        With n_i and n_i' of the right sign, but for a common one, both products are positive, so that
+        their sum has its digits as long as one of the two is not small. Both are zero on a degenerate
+        curve alone.
+        """
+        pairs = zip(self.start.linear, self.x_rate, strict=True)
+        return tuple((self.sigma**2 * x, rate) for x, rate in pairs)
+
+    @cached_property
+    def uhlenbeck(self) -> Vector:
+        """F_1, F_2, F_3, of which the sum is 1."""
+        x, y, a = self.start.linear, self.start.angular, self.a
+        turned = [(self.rho * entry / self.sigma) ** 2 for entry in y]
+        return tuple(
+            x[i] ** 2 / self.F2 + turned[k] / (a[i] - a[j]) + turned[j] / (a[i] - a[k])
+            for i, j, k in CYCLIC
+        )
+
+    @cached_property
+    def B(self) -> Quadratic:
+        return self._over(self.uhlenbeck)
+
+    @cached_property
+    def U(self) -> Quadratic:
+        return self._over(tuple(entry**2 / self.F2 for entry in self.start.linear))
+
+    @cached_property
+    def U_rate(self) -> Quadratic:
+        """dU/dt in Neumann's time, of degree 1; at u1 and u2 it is -sigma w, in the unit sigma^2."""
+        pairs = zip(self.start.linear, self.x_rate, strict=True)
+        return self._over(tuple(2 * x * rate / self.F2 for x, rate in pairs))
+
+    @cached_property
+    def branches(self) -> tuple[Surd, ...]:
+        """e1 < ... < e5."""
+        points = [*(Surd(entry) for entry in self.a), *roots(*self.B)]
+        return tuple(sorted(points, key=cmp_to_key(compare)))
+
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """Which of the e, counted from 0, a_1, a_2 and a_3 are."""
+        return tuple(self.branches.index(Surd(entry)) for entry in self.a)
+
+    @cached_property
+    def points(self) -> tuple[Point, ...]:
+        """u1 and u2 at the start."""
+        _, slope, offset = self.U_rate
+        return tuple(
+            Point(
+                u,
+                -u.sign(slope, offset),
+                self.branches.index(u) if u in self.branches else None,
+            )
+            for u in roots(*self.U)
+        )
+
+    @property
+    def is_degenerate(self) -> bool:
+        """Whether two of the e coincide: some F_i is zero, or B has a double root."""
+        _, linear, constant = self.B
+        return not all(self.uhlenbeck) or linear**2 == 4 * constant
+
+    def _over(self, weights: Vector) -> Quadratic:
+        """A(z) sum weights_i/(z - a_i), the highest power first."""
+        a = self.a
+        return (
+            sum(weights, Fraction(0)),
+            -sum((weights[i] * (a[j] + a[k]) for i, j, k in CYCLIC), Fraction(0)),
+            sum((weights[i] * a[j] * a[k] for i, j, k in CYCLIC), Fraction(0)),
+        )
+
+
+def curve(scene: Scene) -> Curve | None:
+    """The curve of a motion of Weber's, or None for a body or a motion that is not of the family.
+
+    A motion in a plane of the body is left to the pendulum's formulas. Raises NoClosedForm, with the
+    reason, for what is of the family and has no theta functions of genus two.
+    """
+    body, start = scene.body, scene.initial
+    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
+        return None
+    if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
+        return None
+    if not belongs(body) or plane(scene) is not None:
+        return None
+    if tensors.dot(start.linear, start.angular) != 0:
+        raise NoClosedForm(_ORTHOGONAL)
+    if scene.track:
+        raise NoClosedForm(_TRACKED)
+    found = _curve(body, start)
+    if found is None or found.is_degenerate:
+        raise NoClosedForm(_DEGENERATE)
+    return found
+
+
+def belongs(body: ImmersedBody) -> bool:
+    """Whether T is diagonal in body axes, and r_i = r or Clebsch's sum (p_j - p_k)/r_i = 0, exactly."""
+    blocks = (body.linear, body.coupling, body.angular)
+    if not all(tensors.is_diagonal(block) for block in blocks):
+        return False
+    p, b, r = (_entries(body, block) for block in ("linear", "coupling", "angular"))
+    if len(set(b)) > 1:
+        return False
+    left = sum(((p[j] - p[k]) * r[j] * r[k] for i, j, k in CYCLIC), Fraction(0))
+    return len(set(r)) == 1 or left == 0
+
+
+def _curve(body: ImmersedBody, start: Impulse) -> Curve | None:
+    """The curve, or None where the a_i are equal."""
+    F2 = tensors.dot(start.linear, start.linear)
+    p, r = _entries(body, "linear"), _entries(body, "angular")
+    if len(set(r)) == 1:
+        a, rho = tensors.scaled(r[0] * F2, p), r[0]
+        flow = (Fraction(0), Fraction(1))
+    else:
+        i, j, k = CYCLIC[0]
+        theta = (p[i] - p[j]) / (r[k] * (r[j] - r[i]))
+        if theta == 0:
+            return None
+        a, rho = tensors.scaled(-theta * F2, r), Fraction(1)
+        # The rate of v_1 is 0 for z from zero, and this for z from the middle a.
+        flow = (1 / (theta * F2), sorted(r)[1])
+    middle = sorted(a)[1]
+    # The nearest power of 4 to the spread: it keeps every integral near 1, and rounds nothing.
+    sigma = power_of_two(floor_log2(max(a) - min(a)) // 2)
+    scaled = tuple((entry - middle) / sigma**2 for entry in a)
+    return Curve(scaled, sigma, rho, (sigma**3 * flow[0], sigma * flow[1]), start)
+
+
+def _entries(body: ImmersedBody, block: str) -> Vector:
+    return tuple(getattr(body, block)[i][i] for i in range(3))

@@ -1,0 +1,119 @@
+"""Weber's curve in balls: its periods, and where on its Jacobian the motion starts.
+
+Legend: that of curve.py and characteristics.py. On the stretch from e_s to e_{s+1} the substitution
+z = e_s + (e_{s+1} - e_s) sin^2 phi takes both end points out of w: there
+
+    z^m dz/|w| = z^m dphi/sqrt(prod of |z - e_j| over the other three j),
+
+analytic about the whole interval. FLINT's acb.integral encloses its integral.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from flint import acb, acb_mat, arb, arb_mat, ctx
+
+from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
+from taylor_verify.exact.kirchhoff.weber.surd import Surd
+
+# u1 is on the second stretch between neighbouring branch points, u2 on the fourth.
+OVALS = (1, 3)
+
+Integrand = Callable[[acb, bool], acb]
+
+
+@dataclass(frozen=True)
+class Jacobian:
+    """tau = iY, and Z = phase + rate t; ``neumann`` is the rate of Z along Neumann's time."""
+
+    tau: acb_mat
+    phase: tuple[arb, arb]
+    rate: tuple[arb, arb]
+    neumann: tuple[arb, arb]
+
+
+def branch_points(curve: Curve) -> list[arb]:
+    """e1 ... e5; raises Undecidable where the balls do not come apart."""
+    e = [_ball(surd) for surd in curve.branches]
+    if not all(a < b for a, b in pairwise(e)):
+        raise Undecidable("two branch points of Weber's curve share a ball")
+    return e
+
+
+def jacobian(curve: Curve) -> Jacobian:
+    """At the ambient precision of flint."""
+    e = branch_points(curve)
+    gap1, oval1, gap2, oval2 = (stretch(e, s, arb.pi() / 2) for s in range(4))
+    # The phase of w changes by a right angle at every branch point: hence the signs.
+    alpha = arb_mat([[2 * oval1[m], -2 * oval2[m]] for m in (0, 1)])
+    beta = arb_mat([[2 * gap1[m], 2 * (gap1[m] - gap2[m])] for m in (0, 1)])
+    to_turns = alpha.inv()
+    Y = to_turns * beta
+    # Riemann's relation makes Y symmetric: both balls hold the number.
+    across = Y[0, 1].intersection(Y[1, 0])
+    tau = acb_mat([[acb(0, Y[0, 0]), acb(0, across)], [acb(0, across), acb(0, Y[1, 1])]])
+    phase = [arb(0), arb(0)]
+    for k, point in enumerate(curve.points):
+        for n, share in enumerate(_share(e, k, point, to_turns)):
+            phase[n] += share
+    return Jacobian(
+        tau,
+        (phase[0], phase[1]),
+        _turned(to_turns, [ball(rate) for rate in curve.flow]),
+        _turned(to_turns, [arb(0), ball(curve.sigma)]),
+    )
+
+
+def stretch(e: Sequence[arb], s: int, angle: arb) -> tuple[arb, arb]:
+    """The integrals of dz/|w| and z dz/|w| from e_s, s counted from 0, to where phi is the angle."""
+    below = [e[s] - e[j] for j in range(s)]
+    above = [e[j] - e[s + 1] for j in range(s + 2, 5)]
+    width = e[s + 1] - e[s]
+
+    def weight(phi: acb, analytic: bool) -> acb:
+        sine, cosine = phi.sin_cos()
+        up, down = width * sine * sine, width * cosine * cosine
+        product = acb(1)
+        for distance in below:
+            product *= (distance + up).rsqrt(analytic)
+        for distance in above:
+            product *= (distance + down).rsqrt(analytic)
+        return product
+
+    def moment(phi: acb, analytic: bool) -> acb:
+        return weight(phi, analytic) * (e[s] + width * phi.sin() ** 2)
+
+    return _integral(weight, angle), _integral(moment, angle)
+
+
+def _integral(integrand: Integrand, angle: arb) -> arb:
+    """From 0, to an error that is small beside the integrand in the middle."""
+    goal = abs(integrand(acb(angle / 2), False)) * arb(2) ** -ctx.prec
+    return acb.integral(integrand, 0, acb(angle), abs_tol=goal).real
+
+
+def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[arb, arb]:
+    """What the point adds to Z; exactly nothing, or half a turn, where it is a branch point."""
+    s = OVALS[k]
+    if point.branch is not None:
+        half = arb(1) / 2 if point.branch == s + 1 else arb(0)
+        return (half, arb(0)) if k == 0 else (arb(0), half)
+    u = _ball(point.u)
+    if not e[s] < u < e[s + 1]:
+        raise Undecidable("a point and a branch point of Weber's curve share a ball")
+    angle = arb.atan2((u - e[s]).sqrt(), (e[s + 1] - u).sqrt())
+    return _turned(to_turns, [point.sheet * entry for entry in stretch(e, s, angle)])
+
+
+def _turned(matrix: arb_mat, vector: Sequence[arb]) -> tuple[arb, arb]:
+    found = matrix * arb_mat([[entry] for entry in vector])
+    return found[0, 0], found[1, 0]
+
+
+def _ball(surd: Surd) -> arb:
+    found: arb = surd.form(ball, arb.sqrt)
+    return found

@@ -1,0 +1,109 @@
+"""The exact motion as decimal text, with a radius that includes the rounding of the digits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm, Solution
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.scene import Scene
+
+# The motion is known to this many digits more than are printed, so that printing is what limits.
+_SPARE_DIGITS = 3
+# Below 10^-5, and where a number would need zeros that are no digits of it, an exponent is written.
+_LEAST_PLAIN_EXPONENT = -5
+# In bits. Beyond it the digits come from mpmath, whose own rounding is a thousandth of the last one.
+_LARGEST_RATIONAL = 100_000
+
+
+def document(
+    scene: Scene, found: Solution, times: Sequence[tuple[str, Fraction]], digits: int
+) -> dict[str, Any]:
+    """What `exact --json` prints: a row for each time, given as its text and its exact value.
+
+    ``radius`` bounds the error of every vector and matrix of the row in the Frobenius norm,
+    relative to its norm (absolute where that is zero). The row at the start is the initial state itself.
+    """
+    elapsed = [time - scene.clock.start for _, time in times]
+    motion = found.motion(elapsed, digits + _SPARE_DIGITS)
+    # Half a unit in the last of `digits` significant digits, of every entry.
+    printing = Fraction(1, 2 * 10 ** (digits - 1))
+    start = _start(scene)
+    rows = [
+        {"t": text}
+        | {
+            name: _text(values[k] if elapsed[k] else start[name], digits)
+            for name, values in motion.quantities.items()
+        }
+        | {"radius": decimal_text(exact_value(motion.radius[k]) + printing, 2, ROUND_CEILING)}
+        for k, (text, _) in enumerate(times)
+    ]
+    return {
+        "scene": scene.name,
+        "route": found.route,
+        "evidence": found.evidence,
+        "digits": digits,
+        "regime": _regime(scene, found),
+        "rows": rows,
+    }
+
+
+def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
+    """The initial state by name, as rationals: what is zero has no digits but that one."""
+    initial = scene.initial
+    if isinstance(initial, Spin):
+        state: dict[str, Any] = {"omega": initial.omega}
+    else:
+        state = {"linear_impulse": initial.linear, "angular_impulse": initial.angular}
+        state["centre"] = initial.centre
+    state["attitude"] = rotation_matrix(initial.attitude)
+    return {name: np.array(values, dtype=object) for name, values in state.items()}
+
+
+def _regime(scene: Scene, found: Solution) -> str:
+    """The kind of orbit where it is known, whatever route was taken to the numbers."""
+    try:
+        return solution(scene, "arb").regime
+    except NoClosedForm:
+        return found.regime
+
+
+def decimal_text(value: Fraction, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:
+    """The number, rounded once, with exactly that many significant digits; zero is "0".
+
+    Python, C and JSON read it as a number.
+    """
+    if not value:
+        return "0"
+    context = Context(prec=digits, rounding=rounding, Emax=MAX_EMAX, Emin=MIN_EMIN)
+    quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    exponent = quotient.adjusted()
+    # A quotient that comes out even lacks its last zeros.
+    padded = quotient.quantize(Decimal((0, (1,), exponent - digits + 1)), context=context)
+    is_plain = _LEAST_PLAIN_EXPONENT <= exponent < digits
+    return format(padded, "f" if is_plain else "e")
+
+
+def _text(values: np.ndarray[Any, Any], digits: int) -> Any:
+    if values.ndim > 1:
+        return [_text(row, digits) for row in values]
+    return [_entry(value, digits) for value in values]
+
+
+def _entry(value: Any, digits: int) -> str:
+    """The entry rounded once; on a separatrix it can be e^(-10^9), whose exact rational fills memory."""
+    if isinstance(value, Fraction):
+        return decimal_text(value, digits)
+    if value and abs(mp.mag(value)) > _LARGEST_RATIONAL:
+        with mp.workdps(digits + _SPARE_DIGITS):
+            return str(mp.nstr(value, digits, strip_zeros=False))
+    return decimal_text(exact_value(value), digits)

@@ -1,0 +1,68 @@
+"""The request of an exact motion: its times and its digits, as exact numbers or refused in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from decimal import Decimal
+from fractions import Fraction
+from numbers import Rational
+from operator import index
+from typing import Any, Final
+
+from taylor_verify.scenes.faults import brief
+from taylor_verify.scenes.table import exact_number
+
+MOST_DIGITS: Final = 10_000
+
+
+def exact_times(times: Iterable[Any]) -> list[Fraction]:
+    """Return each time as the rational that it is; a binary number of any width exactly.
+
+    Raises ValueError for what is no sequence of finite numbers: text in its place, a table, a number
+    that is masked.
+    """
+    expected = "a sequence of times"
+    if isinstance(times, str | bytes | set | frozenset) or hasattr(times, "columns"):
+        raise ValueError(f"expected {expected}, got the {_type(times)} {brief(times)}")
+    try:
+        listed = list(times)
+    except TypeError:
+        raise ValueError(f"expected {expected}, got {brief(times)}") from None
+    return [_exact_time(time, f"times[{i}]") for i, time in enumerate(listed)]
+
+
+def check_digits(digits: Any) -> int:
+    """Return the number of digits; ValueError for what is no whole number from 1 to ten thousand."""
+    try:
+        number = None if isinstance(digits, bool) else index(digits)
+    except TypeError:
+        number = None
+    if number is None or not 1 <= number <= MOST_DIGITS:
+        raise ValueError(f"expected digits from 1 to {MOST_DIGITS}, got {brief(digits)} @ digits")
+    return number
+
+
+def _exact_time(time: Any, place: str) -> Fraction:
+    try:
+        return _exact(time)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"expected {error}, got {brief(time)} @ {place}") from None
+
+
+def _exact(time: Any) -> Fraction:
+    if isinstance(time, str | Decimal):
+        return exact_number(time)
+    if isinstance(time, Rational) and not isinstance(time, bool):
+        return Fraction(int(time.numerator), int(time.denominator))
+    ratio = getattr(time, "as_integer_ratio", None)
+    if ratio is None or isinstance(time, bool):
+        raise ValueError("a finite number")
+    try:
+        numerator, denominator = ratio()
+    except (ValueError, OverflowError):
+        raise ValueError("a finite number") from None
+    return Fraction(int(numerator), int(denominator))
+
+
+def _type(value: object) -> str:
+    return "text" if isinstance(value, str) else type(value).__name__

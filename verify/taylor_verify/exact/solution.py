@@ -1,0 +1,130 @@
+"""An exact solution, and what it takes before one of its numbers is believed.
+
+The truth is independent of what it judges: nothing here imports models, solvers or the judge.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final, Protocol, final, runtime_checkable
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.scenes.motion import Motion
+
+Quantities = Mapping[str, np.ndarray[Any, Any]]
+
+NO_CLOSED_FORM: Final = "no closed form"
+
+_FIRST_GUARD_DIGITS = 3
+# Two evaluations that are compared differ by this much in precision.
+SETTLING_STEP_DIGITS: Final = 12
+# The precision rises by so many of these steps, attempt by attempt, until two evaluations agree: odd
+# numbers, so that what an evaluation does at every other step only, the next one does not.
+_RISES: Final = (1, 1, 3, 3, 9, 9, 27)
+
+
+@runtime_checkable
+class Orbital(Protocol):
+    """A closed form that knows the numbers of its orbit."""
+
+    def elements(self, digits: int) -> dict[str, mpf]:
+        """``period``, ``rate``, ``m`` and ``m_prime``, as far as the orbit has them."""
+        ...
+
+
+class NoClosedForm(Exception):
+    """The scene tracks something for which no closed form is implemented; the text says what."""
+
+
+class Unsettled(ArithmeticError):
+    """Raising the precision did not make two evaluations agree: there is no truth to compare with."""
+
+
+class Solution(ABC):
+    """The exact motion of one scene.
+
+    ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
+    ``route`` is ``arb`` or ``mpmath`` (closed forms), or ``taylor`` (enclosed Taylor series).
+    ``by_quadrature`` says that every instant costs an integral: what needs a motion at hundreds of
+    digits, or many of them, has a cheaper way than differences of this one.
+    """
+
+    regime: str
+    route: str
+    by_quadrature: bool = False
+
+    @property
+    def evidence(self) -> str:
+        """``proven`` where the radius is a bound; ``agreed`` where two precisions agree to that much."""
+        return "agreed" if self.route == "mpmath" else "proven"
+
+    @abstractmethod
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The motion at these times since the start, to ``digits`` digits of every vector and matrix.
+
+        Raises Unsettled where that cannot be had.
+        """
+
+    @abstractmethod
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The tracked quantities at these times, to about ``digits`` digits and without a claim.
+
+        Object arrays of mpf shaped as in Motion.
+        """
+
+
+class Settled(Solution):
+    """A solution that is believed when two evaluations at different precisions agree."""
+
+    @final
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The motion to ``digits`` significant digits of every vector and matrix.
+
+        Two evaluations at different precisions must agree to the digits asked for; until they do,
+        both precisions rise. The difference is the error of the poorer one; the better one is returned.
+
+        Raises Unsettled when some hundreds of digits do not suffice.
+        """
+        working = digits + _FIRST_GUARD_DIGITS
+        poorer = self.evaluate(elapsed, working)
+        for rise in _RISES:
+            finer = working + rise * SETTLING_STEP_DIGITS
+            better = self.evaluate(elapsed, finer)
+            with mp.workdps(finer):
+                radii = _differences(poorer, better)
+                radius = np.array(
+                    [_largest(row) for row in zip(*radii.values(), strict=True)], dtype=object
+                )
+                worst = _largest(radius)
+                # Written so that a NaN is not agreement.
+                if worst <= mpf(10) ** -digits:
+                    return Motion(better, radius, radii)
+            poorer, below, working = better, working, finer
+        raise Unsettled(
+            f"two evaluations of the exact solution at {below} and {working} digits do not agree to "
+            f"{digits} digits"
+        )
+
+
+def _differences(poorer: Quantities, better: Quantities) -> Quantities:
+    """Row by row, the relative Frobenius distance of every quantity."""
+    return {
+        name: np.array(
+            [_distance(p, b) for p, b in zip(poorer[name], rows, strict=True)], dtype=object
+        )
+        for name, rows in better.items()
+    }
+
+
+def _largest(differences: Iterable[mpf]) -> mpf:
+    """The largest, or a NaN if there is one (Python's max would lose it); 0 of none."""
+    return max(differences, key=lambda d: (d != d, d), default=mpf(0))
+
+
+def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:
+    size = mp.norm(list(b.flat))
+    return mp.norm(list((p - b).flat)) / (size if size > 0 else 1)

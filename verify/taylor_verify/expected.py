@@ -1,0 +1,112 @@
+"""Verdicts held against what was expected of them: the extremes have answers that are no `pass`.
+
+A verdict keeps its word. What is decided here is whether it was foreseen: a foreseen one changes no
+exit status, and what was foreseen and did not come, or came unforeseen, is a mismatch and fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.scenes.expected import Expectation, Expectations, Row, is_extreme, shipped
+from taylor_verify.solvers.registry import TAYLOR
+from taylor_verify.solvers.trajectory import Outcome
+
+_PASS = Expectation(Status.PASS.value, "")
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """A row that is not what was expected; ``got`` is a verdict or `no row`."""
+
+    row: Row
+    expected: Expectation
+    got: str
+
+    def __str__(self) -> str:
+        why = f" ({self.expected.why})" if self.expected.why else ""
+        return f"expected {self.expected.verdict}{why}, got {self.got} @ {' '.join(self.row)}"
+
+
+@dataclass(frozen=True)
+class Held:
+    """``expected`` has every row that was held to the file, ``mismatches`` those that differ."""
+
+    expected: Mapping[Row, Expectation] = field(default_factory=dict)
+    mismatches: tuple[Mismatch, ...] = ()
+
+    def met(self, verdict: Verdict) -> Expectation | None:
+        """What was expected of a row that is no pass and has come as expected; None for all others."""
+        found = self.expected.get(_row(verdict))
+        if found is None or verdict.verdict is Status.PASS:
+            return None
+        return found if found.verdict == verdict.verdict.value else None
+
+    def exit_status(self, verdicts: Sequence[Verdict]) -> int:
+        """1 for a mismatch; else that of the rows which are not as the file foresees.
+
+        Where nothing was judged: 2 if a package is missing, 0 if the machine lacks every number format
+        that was asked for, 3 otherwise.
+        """
+        if self.mismatches:
+            return 1
+        if not self.unjudged(verdicts):
+            return exit_status(verdict for verdict in verdicts if self.met(verdict) is None)
+        outcomes = {verdict.outcome for verdict in verdicts}
+        if Outcome.NO_PACKAGE.value in outcomes:
+            return 2
+        return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
+
+    def unjudged(self, verdicts: Sequence[Verdict]) -> str:
+        """The reasons why nothing was judged; empty where something was, or came as expected."""
+        if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in verdicts):
+            return ""
+        return "; ".join(dict.fromkeys(v.because for v in verdicts)) or "no run was asked for"
+
+    def row(self, verdict: Verdict) -> dict[str, Any]:
+        """The row as JSON holds it, with what was expected of it where it was held to the file."""
+        found = self.expected.get(_row(verdict))
+        if found is None:
+            return verdict.row()
+        is_met = found.verdict == verdict.verdict.value
+        told = {"verdict": found.verdict, "why": found.why, "met": is_met}
+        return {**verdict.row(), "expected": told}
+
+    def document(self, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+        """How many answers besides `pass` came as expected, and every mismatch in a sentence."""
+        met = sum(self.met(verdict) is not None for verdict in verdicts)
+        return {"met": met, "mismatches": [str(mismatch) for mismatch in self.mismatches]}
+
+
+def hold(verdicts: Sequence[Verdict], expectations: Expectations | None = None) -> Held:
+    """Every run of an extreme by the shipped solver held to the shipped file, or to another.
+
+    A run that this machine has no number type for is held to nothing, as no other one is.
+    """
+    runs: dict[tuple[str, str], dict[str, Verdict]] = {}
+    for verdict in verdicts:
+        if is_extreme(verdict.scene) and (verdict.solver, verdict.setting) == (TAYLOR, ""):
+            runs.setdefault((verdict.scene, verdict.rung), {})[verdict.quantity] = verdict
+    if not runs:
+        return Held()
+    expectations = expectations or shipped()
+    expected: dict[Row, Expectation] = {}
+    mismatches: list[Mismatch] = []
+    for run, found in runs.items():
+        foreseen = expectations.of_run(*run)
+        if not foreseen and all(v.verdict is Status.UNAVAILABLE for v in found.values()):
+            continue
+        for quantity in (*found, *(name for name in foreseen if name not in found)):
+            row, wanted = (*run, quantity), foreseen.get(quantity, _PASS)
+            expected[row] = wanted
+            got = found[quantity].verdict.value if quantity in found else "no row"
+            if got != wanted.verdict:
+                mismatches.append(Mismatch(row, wanted, got))
+    return Held(expected, tuple(mismatches))
+
+
+def _row(verdict: Verdict) -> Row:
+    return verdict.scene, verdict.rung, verdict.quantity

@@ -1,0 +1,381 @@
+"""The judgement of somebody's trajectory: conventions first, then every quantity it has.
+
+The file is taken as the scene writes things, or as it was found to write them where that is accepted.
+Rows before the scene's start and rows after it are two runs that begin at the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, isfinite, log10
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
+from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
+from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.judge.gyroscopic import gyroscopic_cause
+from taylor_verify.judge.initial import initial_verdict
+from taylor_verify.judge.inputs import input_rounding
+from taylor_verify.judge.judgement import Judgement, unjudged
+from taylor_verify.judge.partial import partial_judgement
+from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
+from taylor_verify.judge.verdict import Status, Verdict, summary
+from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.file import GROUPS, Recorded, TrajectoryFile
+from taylor_verify.solvers.values import held
+
+Array = np.ndarray[Any, Any]
+
+# What is not dyadic in a file, and a correction, is rounded so far below the rung.
+_SPARE_BITS: Final = 128
+_FLOAT32_BITS: Final = 24
+# Numbers as narrow as this are small integers and simple fractions in any precision.
+_TELLING_BITS: Final = 18
+# How far the Taylor route is sent for a file.
+_MOST_SPANS: Final = 100
+_MODELS: Final = {
+    "euler": ("omega", "quaternion", "attitude"),
+    "kirchhoff": tuple(GROUPS),
+}
+
+
+# The columns that the states are read from; what is conserved may need any of them.
+_MADE_OF: Final = {
+    "omega": ("omega",),
+    "impulse": ("linear_impulse", "angular_impulse"),
+    "attitude": ("quaternion", "attitude"),
+    "centre": ("centre",),
+}
+
+
+@dataclass(frozen=True)
+class FileJudgement(Judgement):
+    """The verdicts on a file, and what was found out about it.
+
+    ``conventions`` are those that are not the scene's, ``accepted`` says whether they were corrected,
+    ``notes`` are sentences about what was not compared and why.
+    """
+
+    file: TrajectoryFile
+    conventions: tuple[Finding, ...] = ()
+    accepted: bool = False
+    notes: tuple[str, ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """As JSON holds it: the rows of `run`, and what was found out."""
+        return {
+            "verdicts": [verdict.row() for verdict in self.verdicts],
+            "summary": summary(self.verdicts),
+            "conventions": [self._convention(finding) for finding in self.conventions],
+            "file": {
+                "name": self.file.name,
+                "rows": len(self.file.times),
+                "columns": ["t", *(c for group in self.file.groups for c in GROUPS[group])],
+                "notes": list(self.notes),
+            },
+        }
+
+    def _convention(self, found: Finding) -> dict[str, Any]:
+        return {
+            "about": found.subject,
+            "found": found.words,
+            "ambiguous": not found.is_certain,
+            "alternatives": list(found.alternatives),
+            "error_without": found.before if isfinite(found.before) else None,
+            "error_with": found.after if isfinite(found.after) else None,
+            "corrected": self.accepted and found.is_certain,
+            "sentence": found.sentence,
+        }
+
+
+def judge_file(
+    file: TrajectoryFile,
+    scene: Scene,
+    rung: Rung,
+    accept_conventions: bool = False,
+    partial: bool = False,
+) -> FileJudgement:
+    """Judge a file as arithmetic of the rung.
+
+    What its columns are is that of solvers.file; its times are absolute, in the scene's unit, and each
+    row is compared at its own time. With ``accept_conventions`` what was found out about it is corrected
+    before it is judged. A file that lacks a part of what the scene asks has a row `complete` that is
+    undecided, or vacuous if a ``partial`` answer is asked for. Raises Refused if it has nothing to
+    compare.
+    """
+    groups = _comparable(file, scene)
+    asked, notes = scene, tuple(_notes(file, groups, scene))
+    compared = replace(file, groups={name: file.groups[name] for name in groups})
+    scene = replace(scene, track=scene.track & _tracked(groups))
+    found = Conventions((), World(scene), {})
+    try:
+        found = conventions(compared, scene, rung)
+        answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
+        judged = _judged(answer, compared, rung, found)
+        extent = Extent.of(answer.scene, answer.times, rung)
+        notes += (*_no_start(answer.scene, answer.times), *_no_end(answer, extent))
+        lack = list(not_judged(extent, [_noun(name) for name in _missing(groups, asked)]))
+        if lack and judged.record is not None:
+            complete = complete_verdict(scene, file.name, rung, lack, partial)
+            judged = replace(judged, verdicts=(*judged.verdicts, complete))
+    except NotRepresentable as reason:
+        judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
+    except Unsettled as doubt:
+        judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt))
+    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
+    if "omega" in failed and (cause := gyroscopic_cause(compared, scene, rung, found)):
+        notes += (cause,)
+    if failed:
+        notes += (*_cut_off(file, rung), *_single_precision(file, rung))
+    return FileJudgement(
+        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes
+    )
+
+
+def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Conventions) -> Judgement:
+    scene = answer.scene
+    if found.world.scale != 1 and is_far(scene, answer.times):
+        why = (
+            f"{found.world.words}; as it stands the file asks for times far beyond the scene, which has "
+            "no closed form, and they are not computed: the rows near the start are wrong already"
+        )
+        return _alone(scene, file, rung, Status.FAIL, why)
+    if is_far(scene, answer.times, _MOST_SPANS):
+        why = (
+            f"the file goes more than {_MOST_SPANS} times as far as the scene, which has no closed "
+            "form: its exact motion is not computed up to there"
+        )
+        return _alone(scene, file, rung, Status.UNDECIDED, why)
+    sides = [_side(part, rung, file.name) for part in answer.sides()]
+    unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
+    if unfinished is not None:
+        return unfinished
+    return _united(sides, file, float(scene.clock.start))
+
+
+def _alone(scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str) -> Judgement:
+    """One row for a file that was not compared."""
+    return unjudged(scene, Recorded({}, setting=file.name), rung, status, why)
+
+
+# What can be compared, and what is said of the rest.
+
+
+def _comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
+    """The groups that the scene's motion has; what its model does not have is refused."""
+    foreign = [name for name in file.groups if name not in _MODELS[scene.model]]
+    known = " ".join(" ".join(GROUPS[name]) for name in _MODELS[scene.model])
+    faults = [
+        f"expected columns of a scene of model {scene.model} ({known}), got "
+        f"{' '.join(GROUPS[name])} @ {file.name}"
+        for name in foreign
+    ]
+    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
+    if not groups and not faults:
+        wanted = " or ".join(" ".join(GROUPS[name]) for name in _wanted(scene))
+        got = " ".join(n for name in file.groups for n in GROUPS[name]) or "t alone"
+        faults.append(f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name}")
+    if faults:
+        raise Refused(faults)
+    return groups
+
+
+def _is_known(group: str, scene: Scene) -> bool:
+    name = "attitude" if group == "quaternion" else group
+    return name in scene.track or name not in ("attitude", "centre")
+
+
+def _wanted(scene: Scene) -> list[str]:
+    main = ["omega"] if scene.model == "euler" else ["linear_impulse", "angular_impulse"]
+    return [
+        *main,
+        *(["quaternion"] if "attitude" in scene.track else []),
+        *(["centre"] if "centre" in scene.track else []),
+    ]
+
+
+def _tracked(groups: Sequence[str]) -> frozenset[str]:
+    found = {"attitude"} if {"attitude", "quaternion", "centre"} & set(groups) else set()
+    return frozenset(found | ({"centre"} & set(groups)))
+
+
+def _notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
+    for name in file.groups:
+        if name not in groups:
+            yield f"{' '.join(GROUPS[name])} not compared: {scene.name} does not track the {_noun(name)}"
+    for name in _missing(groups, scene):
+        other = " or r11 ... r33" if name == "quaternion" else ""
+        columns = " ".join(GROUPS[name])
+        yield f"the {_noun(name)} is not judged: the file has no {columns}{other}"
+
+
+def _missing(groups: Sequence[str], scene: Scene) -> list[str]:
+    """The groups that the scene asks for and the file lacks."""
+    has = {"quaternion" if name == "attitude" else name for name in groups}
+    return [name for name in _wanted(scene) if name not in has]
+
+
+def _no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
+    """Whether the initial state could not be compared."""
+    start = scene.clock.start
+    if all(float(time) != float(start) for time in times):
+        yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
+
+
+def _no_end(answer: _Answer, extent: Extent) -> Iterator[str]:
+    """Whether the file stops before the scene does."""
+    if extent.reaches_end or extent.rows[-1] < 0:
+        return
+    last = max(answer.times, key=lambda t: abs(t - answer.scene.clock.start))
+    end = float(answer.scene.clock.instants[-1])
+    yield (
+        f"the last row is at t = {float(last):g}, and the scene ends at t = {end:g}: "
+        "the rest was not judged"
+    )
+
+
+def _single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
+    """Whether every number of a wider rung is one of float32, and not by chance."""
+    if rung.bits <= _FLOAT32_BITS:
+        return
+    values = [v for rows in file.groups.values() for row in rows for v in row]
+    doubles = np.array([float(v) for v in values if isinstance(v, Fraction)])
+    with np.errstate(over="ignore"):
+        is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
+    if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):
+        yield (
+            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
+            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
+        )
+
+
+def _width(double: float) -> int:
+    """The bits of a number from its first to its last one."""
+    numerator = Fraction(double).numerator
+    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0
+
+
+def _cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
+    """Whether the file was printed with too few digits to be right."""
+    needed = ceil(rung.bits * log10(2)) + 1
+    if file.digits is not None and file.digits < needed - 2:
+        yield (
+            f"no number is written with more than {file.digits} significant digits, where "
+            f"{rung.name} has {needed}: what the printing cut off counts as error"
+        )
+
+
+def _noun(group: str) -> str:
+    return {"quaternion": "attitude", "omega": "angular velocity"}.get(group, group).replace(
+        "_", " "
+    )
+
+
+# The file as held numbers, corrected where that was accepted.
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """Times and quantities of a run, and the scene it is held against."""
+
+    scene: Scene
+    times: tuple[Fraction, ...]
+    quantities: Mapping[str, Array]
+
+    @classmethod
+    def of(
+        cls, file: TrajectoryFile, scene: Scene, rung: Rung, accepted: Conventions | None
+    ) -> _Answer:
+        bits = rung.bits + _SPARE_BITS
+        quantities = {name: held(rows, bits) for name, rows in file.groups.items()}
+        if "attitude" in quantities:
+            quantities["attitude"] = quantities["attitude"].reshape(-1, 3, 3)
+        if accepted is None:
+            return cls(scene, file.times, quantities)
+        world = accepted.world
+        scene, times = world.scene, world.times(file.times)
+        if accepted.readings:
+            R = _attitudes(scene, rung, times, bits)
+            with mp.workprec(bits):
+                for name, reading in accepted.readings.items():
+                    quantities[name] = reading.read(quantities[name], R)
+        return cls(scene, times, quantities)
+
+    def sides(self) -> list[_Answer]:
+        """The rows after the start and those before it, each in the order away from the start."""
+        start = self.scene.clock.start
+        later = sorted((k for k, t in enumerate(self.times) if t >= start), key=self._distance)
+        earlier = sorted((k for k, t in enumerate(self.times) if t < start), key=self._distance)
+        at_start = [k for k in later if self.times[k] == start]
+        if earlier and later == at_start:
+            later, earlier = [], at_start + earlier
+        return [self._rows(rows) for rows in (later, earlier) if rows]
+
+    def _distance(self, row: int) -> Fraction:
+        return abs(self.times[row] - self.scene.clock.start)
+
+    def _rows(self, rows: list[int]) -> _Answer:
+        quantities = {name: values[rows] for name, values in self.quantities.items()}
+        return _Answer(self.scene, tuple(self.times[k] for k in rows), quantities)
+
+
+def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
+    """The exact R at these times, for vectors that are in space axes."""
+    given = replace(adopt(scene, rung, times).given, track=frozenset({"attitude"}))
+    digits = ceil(bits * log10(2))
+    return solution(given).motion(given.clock.elapsed, digits)["attitude"]
+
+
+# The judgement of either side of the start, and of both.
+
+
+@dataclass(frozen=True)
+class _Side:
+    judgement: Judgement
+    gates: list[Graded]
+
+
+def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
+    problem = adopt(answer.scene, rung, answer.times)
+    judged = partial_judgement(problem, Recorded(answer.quantities, setting=name))
+    if judged.record is None:
+        return _Side(judged, [])
+    inputs = input_rounding(problem.given, rung, problem.scene)
+    return _Side(judged, graded(judged, inputs, float(rung.unit_roundoff)))
+
+
+def _united(sides: Sequence[_Side], file: TrajectoryFile, start: float) -> Judgement:
+    gates = [gate for side in sides for gate in side.gates]
+    names = list(dict.fromkeys(gate.verdict.quantity for gate in gates))
+    verdicts = [_verdict([g for g in gates if g.verdict.quantity == name], file) for name in names]
+    initial = initial_verdict(gates, start)
+    records = [side.judgement.record for side in sides if side.judgement.record is not None]
+    first = (initial,) if initial is not None else ()
+    return Judgement((*first, *verdicts), merged(records, gates))
+
+
+def _verdict(sides: Sequence[Graded], file: TrajectoryFile) -> Verdict:
+    is_sound = all(np.all(np.isfinite(side.errors)) for side in sides)
+    return verdict_of(sides, "" if is_sound else _flaw(file, sides[0].verdict.quantity))
+
+
+def _flaw(file: TrajectoryFile, quantity: str) -> str:
+    """Where the first value of a quantity stands that is no finite number; empty if there is none."""
+    groups = _MADE_OF.get(quantity, tuple(GROUPS))
+    for row, time in enumerate(file.times):
+        for group in groups:
+            values = file.groups[group][row] if group in file.groups else ()
+            for name, value in zip(GROUPS[group], values, strict=False):
+                if not isinstance(value, Fraction):
+                    return f"{name} is {value} in row {row + 1}, t = {float(time):g}"
+    return ""

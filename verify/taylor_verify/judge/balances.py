@@ -1,0 +1,189 @@
+"""What a clock that rounds does to the balances of a manufactured motion: its errors do work, for ever.
+
+z*, N  the motion that the loads are made for, and the rates of the free body: the load is z*' - N(z*)
+a      by how much the clock, cosine and sine of a wave of frequency nu, is off, in axes that turn with it
+zeta   what an offset of one in either of these axes makes of z*; J the derivative of N
+Q, u   the quantity of a balance; the unit roundoff
+
+A solver carries the clock as states, and what a step rounds there stays: a is the sum of all roundings so
+far. The state follows the clock and stays beside the motion, but the loads that did it were not those
+asked for, by zeta' - J(z*) zeta for each unit of a. So the balance of Q moves at a rate p a, and with P
+the integral of p, all N steps of a span T together leave by the time t
+
+    p = dQ(z) . (zeta' - J(z*) zeta),     u r [ N/T int_0^t |P(t) - P(s)|^2 ds ]^(1/2),
+
+r^2 = (1 + h nu)^2 / 2, the mean square of what one step of length h rounds in either of the two. It is
+added to what rounding the momenta leaves, as independent errors are. Where p has a mean it grows as the
+three halves power of time, and in the end it is what decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from math import ceil, pi
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.invariants import Invariant, invariants
+from taylor_verify.exact.rates import rates
+from taylor_verify.exact.route import solution
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.mpfr import in_mpfr, precision, to_mpf, to_mpfr
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Column = np.ndarray[Any, Any]
+
+# The rate p is made of products of four waves at most.
+_PRODUCTS: Final = 4
+# Of the fastest of them, so many nodes a period: the midpoint rule is then right to some percent.
+_NODES_A_PERIOD: Final = 6
+_LEAST_NODES, _MOST_NODES = 64, 2000
+# Of the motion at the nodes: norms are wanted to a digit or two.
+_DIGITS: Final = 12
+_MOMENTA: Final = {"euler": ("omega",), "kirchhoff": ("linear_impulse", "angular_impulse")}
+
+BECAUSE: Final = (
+    "and as many roundings of the clock of the loads, each of which does work ever after"
+)
+
+
+@dataclass(frozen=True)
+class ClockWork:
+    """The work on one quantity that an offset of the clock has done by the ends of equal parts of a span.
+
+    ``done`` (n + 1, m) is P over ``scale``, one column for an axis of a wave and a component of Q;
+    ``turns`` (m) is nu T of its wave. ``span`` is T.
+    """
+
+    span: float
+    scale: Any
+    turns: Floats
+    done: Floats
+
+    def drift(self, unit_roundoff: Fraction, steps: int, times: Floats, scale: Any) -> Floats:
+        """What the roundings of the clock leave at these times, over ``scale``."""
+        parts, count = len(self.done) - 1, max(steps, 1)
+        rounding = (1 + np.minimum(self.turns / count, 1.0)) ** 2 / 2
+        P = self.done
+        middle = (P[1:] + P[:-1]) / 2
+        first = np.vstack([np.zeros_like(P[:1]), np.cumsum(middle, axis=0)]) / parts
+        second = np.vstack([np.zeros_like(P[:1]), np.cumsum(middle**2, axis=0)]) / parts
+        share = np.arange(parts + 1)[:, None] / parts
+        # int |P(t) - P(s)|^2 ds, multiplied out; what is left of a difference of equals is no work.
+        squares = np.maximum(share * P**2 - 2 * P * first + second, 0.0)
+        left = np.sqrt(count * np.sum(rounding * squares, axis=1))
+        # Of the two ends of a part the later one.
+        places = np.minimum(np.ceil(times / self.span * parts).astype(int), parts)
+        found: Floats = float(unit_roundoff) * float(self.scale / scale) * left[places]
+        return found
+
+
+@lru_cache(maxsize=16)
+def clock_work(scene: Scene) -> Mapping[str, ClockWork]:
+    """By the name of every quantity that has a balance; empty without waves.
+
+    Raises Unsettled where the motion cannot be had.
+    """
+    motion = scene.body.manufactured
+    if motion is None or not motion.waves or not scene.clock.elapsed[-1]:
+        return {}
+    span = scene.clock.elapsed[-1]
+    times = _middles(span, motion)
+    # Enough for a difference of two motions of which one is as small as float64 has them.
+    with mp.workdps(2 * _DIGITS):
+        truth = in_mpfr(solution(scene).motion(times, _DIGITS))
+        pushes = [
+            (float(wave.frequency * abs(span)), push * (mp.convert(span) / len(times)))
+            for wave, push in _pushes(scene, motion, times)
+        ]
+        with precision():
+            return {
+                invariant.name: _work(scene, invariant, truth, pushes, abs(float(span)))
+                for invariant in invariants(scene)
+            }
+
+
+def _middles(span: Fraction, motion: Manufactured) -> list[Fraction]:
+    """The middles of equal parts of the span, small beside the waves as long as that is affordable."""
+    periods = _PRODUCTS * float(motion.highest * abs(span)) / (2 * pi)
+    count = min(max(ceil(_NODES_A_PERIOD * periods), _LEAST_NODES), _MOST_NODES)
+    return [span * Fraction(2 * k + 1, 2 * count) for k in range(count)]
+
+
+def _work(
+    scene: Scene,
+    invariant: Invariant,
+    truth: Motion,
+    pushes: Sequence[tuple[float, Column]],
+    span: float,
+) -> ClockWork:
+    scale = invariant.scale(truth)
+    turns, columns = [], []
+    for turn, push in pushes:
+        # Q is of second degree at most in the momenta, and such a difference is its derivative.
+        there, back = (
+            invariant.value(_displaced(scene, truth, sign * to_mpfr(push))) for sign in (1, -1)
+        )
+        found = ((there - back) / 2 / scale).astype(float).reshape(len(push), -1)
+        turns += [turn] * found.shape[1]
+        columns.append(found)
+    increments = np.hstack(columns)
+    done = np.vstack([np.zeros_like(increments[:1]), np.cumsum(increments, axis=0)])
+    return ClockWork(span, to_mpf(np.array([scale], dtype=object))[0], np.array(turns), done)
+
+
+def _displaced(scene: Scene, motion: Motion, by: Column) -> Motion:
+    """The motion with its momenta moved, the frame as it is."""
+    parts = _parts(scene, by)
+    moved = {name: motion[name] + parts[name] for name in parts}
+    return Motion({**motion.quantities, **moved}, motion.radius)
+
+
+# The loads of a clock that is off.
+
+
+def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> list[Any]:
+    """For either axis of every wave, the wave and zeta' - J(z*) zeta at every time, (n, d)."""
+    angles = [[mp.cos_sin(mp.convert(w.frequency * t)) for t in times] for w in motion.waves]
+    there = np.array([[mp.convert(z) for z in motion.constant]] * len(times), dtype=object)
+    offsets = []
+    for wave, pairs in zip(motion.waves, angles, strict=True):
+        c, s = (np.array(column, dtype=object)[:, None] for column in zip(*pairs, strict=True))
+        a, b = (
+            np.array([[mp.convert(z) for z in row]], dtype=object)
+            for row in (wave.cosine, wave.sine)
+        )
+        along, across = a * c + b * s, b * c - a * s
+        there = there + along
+        # A unit of offset along the clock is a larger wave, across it a later one; both turn.
+        nu = mp.convert(wave.frequency)
+        offsets += [(wave, along, nu * across), (wave, across, -nu * along)]
+    return [
+        (wave, rate - (_free(scene, there + zeta) - _free(scene, there - zeta)) / 2)
+        for wave, zeta, rate in offsets
+    ]
+
+
+def _free(scene: Scene, rows: Column) -> Column:
+    """The rates of the body without loads; of second degree, so that differences are derivatives."""
+    free = replace(scene, body=replace(scene.body, manufactured=None), track=frozenset())
+    zeros = np.array([mp.zero] * len(rows), dtype=object)
+    found = rates(free, Motion(_parts(scene, rows), zeros))
+    columns = [
+        found.velocity[name] * np.array([mp.ldexp(1, found.units[name] - found.time)], dtype=object)
+        for name in _MOMENTA[scene.model]
+    ]
+    joined: Column = np.concatenate(columns, axis=1)
+    return joined
+
+
+def _parts(scene: Scene, rows: Column) -> dict[str, Column]:
+    names = _MOMENTA[scene.model]
+    return {name: rows[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}

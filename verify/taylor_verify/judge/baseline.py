@@ -1,0 +1,272 @@
+"""A baseline: the verdicts of an earlier run, and what of a new run is a regression from them.
+
+The errors of a sound run are drawn anew by another processor or another order of a sum, and stay in
+their rounding class (see `rounding_class`, whose FACTOR and LEVEL these are). That class has two
+sides, for what is published must neither grow nor shrink. A regression has one:
+
+    verdict                   worse in the grades of the exit status: pass, nothing shown, fail
+    max, mean, final, ratio   now > FACTOR max(before, LEVEL attainable), or no finite number
+    row                       gone: a quantity that is no longer compared is no longer right
+
+By the figures of that class, rounding alone raises a false alarm at most 5e-6 times a row. Below 5
+attainable no error of a single row is seen as grown, whatever it was: chance may make it small.
+
+Attainable is here what the *former* number of steps would leave, for it grows as their root and
+errors may not be excused by more steps: the larger of the former one and of sqrt(former steps / steps
+now) times the present one, since the two maxima may be of unlike times.
+
+A row that was asked another question (another text of the scene, another unit or roundoff) cannot
+be held against its former self: it is undecided, never green. All else that left its class is told
+and fails nothing: an error that shrank, a better verdict, a new row, another cost.
+
+A baseline excuses nothing: a gate that fails does so though it failed before.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, NoReturn
+
+from taylor_verify.judge.rounding_class import (
+    ERRORS,
+    FACTOR,
+    LEVEL,
+    Departure,
+    departures,
+    finite,
+    has_grown,
+    paired,
+    told,
+)
+from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
+from taylor_verify.judge.verdict import COMPLETE, Status, Verdict, exit_status
+from taylor_verify.scenes.limit import Limit
+from taylor_verify.scenes.regular_file import read_bytes
+
+_TEXTS: Final = ("scene", "solver", "rung", "setting", "quantity", "outcome", "unit")
+_SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
+_COUNTS: Final = ("steps", "evaluations")
+# From the best: 0 all passed, 3 nothing shown, 1 failed.
+_GRADES: Final = (0, 3, 1)
+_MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
+
+
+@dataclass(frozen=True)
+class Held:
+    """A run held against a baseline: how many rows, and what is to be said of which."""
+
+    compared: int
+    regressions: tuple[Departure, ...]
+    undecided: tuple[Departure, ...]
+    changes: tuple[Departure, ...]
+
+    @property
+    def status(self) -> int:
+        """As an exit status: 1 for a regression, 3 where something could not be compared."""
+        if self.regressions:
+            return 1
+        return 3 if self.undecided or not self.compared else 0
+
+
+def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
+    """Hold every row made against the row of the baseline; rungs that a machine lacks are left out.
+
+    A row that is gone, a verdict that is worse, a quaternion that is no unit quaternion any more, and an
+    error beyond ten times the larger of what it was and half of what is attainable are regressions: below
+    that, roundings drawn anew may explain it.
+    """
+    rows = paired(_compared(baseline), _compared(made))
+    regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
+    undecided: list[Departure] = []
+    # This row is there only where it fails: of a sound run no baseline has one.
+    spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
+    other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
+    changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
+    changes += _machines(rows.absent)
+    for old, new in rows.shared:
+        other = list(_other_question(old, new))
+        grown = [] if other else list(_regressions(old, new))
+        undecided += other
+        regressions += grown
+        # Of a verdict that is worse the other numbers are the consequence.
+        changes += [] if other or grown else departures(old, new)
+    regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
+    return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
+
+
+def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
+    """All rows but that of the extent of an answer, which its own call has asked for or not."""
+    return (verdict for verdict in verdicts if verdict.quantity != COMPLETE)
+
+
+def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
+    if old.provenance.get("scene") != new.provenance.get("scene"):
+        yield _departure(new, "scene", "the text that the baseline was made of", "another")
+    for name in ("unit", "roundoff"):
+        was, now = getattr(old, name), getattr(new, name)
+        # A run that came to no comparison has neither.
+        if was and now and was != now:
+            yield _departure(new, name, str(was), str(now))
+
+
+def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
+    if _grade(new) > _grade(old):
+        yield _departure(new, "verdict", old.verdict.value, new.verdict.value)
+    grown = [(name, *found) for name in ERRORS if (found := _grown(old, new, name)) is not None]
+    if grown:
+        # They grow together: the first has the figures, the others are named.
+        name, limit, got = grown[0]
+        others = ", ".join(other for other, *_ in grown[1:])
+        yield _departure(new, f"{name} (and {others})" if others else name, limit, got)
+
+
+def _grown(old: Verdict, new: Verdict, name: str) -> tuple[str, str] | None:
+    """What was expected of an error that is beyond it, and what came."""
+    was, now = finite(old, name), finite(new, name)
+    level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
+    return (_limit(was, level), told(now)) if has_grown(was, now, level) else None
+
+
+def _grade(verdict: Verdict) -> int:
+    return _GRADES.index(exit_status([verdict]))
+
+
+def _attainable(old: Verdict, new: Verdict) -> float:
+    """What is attainable in the former number of steps."""
+    before, now = (finite(row, "attainable") or 0.0 for row in (old, new))
+    steps = old.steps / new.steps if 0 < old.steps < new.steps else 1.0
+    return max(before, math.sqrt(steps) * now)
+
+
+def _limit(was: float | None, level: float) -> str:
+    if was is None:
+        return told(was)
+    limit = FACTOR * max(was, level)
+    larger = f"the larger of the baseline's {was:.3g} and {LEVEL:g} attainable, {level:.3g}"
+    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)"
+
+
+def _machines(absent: Iterable[Verdict]) -> Iterator[Departure]:
+    for verdict in absent:
+        if verdict.verdict is Status.UNAVAILABLE:
+            yield _row(verdict, "the rung on both machines", "it on one: not compared")
+
+
+def _departure(verdict: Verdict, what: str, expected: str, got: str) -> Departure:
+    return Departure(verdict.scene, verdict.rung, verdict.quantity, what, expected, got)
+
+
+def _row(verdict: Verdict, expected: str, got: str) -> Departure:
+    return _departure(verdict, "", expected, got)
+
+
+# Reading.
+
+
+def load(file: Path | str) -> tuple[Verdict, ...]:
+    """The verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
+
+    Raises scenes.faults.Refused for a file that cannot be read, and ValueError, with what was expected
+    and where, for one that holds something else: a baseline that is half understood would let all pass.
+    """
+    content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
+    try:
+        document = _parsed(content)
+        rows = document.get("verdicts") if isinstance(document, Mapping) else None
+        if not isinstance(rows, list):
+            raise ValueError('expected an object with "verdicts", a list')
+        found = tuple(_read(row, f"verdicts[{i}]") for i, row in enumerate(rows))
+        _check_once(found)
+    except ValueError as fault:
+        raise ValueError(f"{fault} @ {file}") from fault
+    return found
+
+
+def _parsed(content: bytes) -> Any:
+    try:
+        return json.loads(content.decode(), parse_constant=_no_number)
+    except RecursionError:
+        raise ValueError("expected a JSON document, got brackets nested too deeply") from None
+
+
+def _check_once(found: Iterable[Verdict]) -> None:
+    rows = Counter((v.scene, v.solver, v.setting, v.rung, v.quantity) for v in found)
+    twice = [" ".join(filter(None, key)) for key, count in rows.items() if count > 1]
+    if twice:
+        raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
+
+
+def _no_number(text: str) -> NoReturn:
+    raise ValueError(f"expected a finite number or null, got {text}")
+
+
+def _read(row: Any, place: str) -> Verdict:
+    """A row; keys that this version does not know are left out."""
+    if not isinstance(row, Mapping):
+        raise ValueError(f"expected a row, got {row!r} @ {place}")
+    sizes = {name: _size(row, name, place) for name in _SIZES}
+    fields: dict[str, Any] = {
+        **{name: _text(row, name, place) for name in _TEXTS},
+        **{name: _count(row, name, place) for name in _COUNTS},
+        **sizes,
+        "verdict": _status(row, place),
+        "at": _number(row, "at", place),
+        "provenance": {"scene": _digest(row, place)},
+    }
+    found = Verdict(**fields)
+    if found.verdict is Status.PASS and None in sizes.values():
+        raise ValueError(f"expected numbers of a row that passed, got null @ {place}")
+    return found
+
+
+def _text(row: Mapping[str, Any], name: str, place: str) -> str:
+    value = row.get(name)
+    if not isinstance(value, str):
+        raise ValueError(f"expected a text, got {value!r} @ {place}.{name}")
+    return value
+
+
+def _number(row: Mapping[str, Any], name: str, place: str) -> float | None:
+    value = row.get(name)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"expected a number or null, got {value!r} @ {place}.{name}")
+    if not abs(value) <= sys.float_info.max:  # 1e999 is read as infinite
+        raise ValueError(f"expected a finite number or null, got {value!r:.60} @ {place}.{name}")
+    return float(value)
+
+
+def _size(row: Mapping[str, Any], name: str, place: str) -> float | None:
+    value = _number(row, name, place)
+    if value is not None and not value >= 0:
+        raise ValueError(f"expected a number that is not negative, got {value!r} @ {place}.{name}")
+    return value
+
+
+def _count(row: Mapping[str, Any], name: str, place: str) -> int:
+    value = row.get(name)
+    if isinstance(value, bool) or not isinstance(value, int) or not value >= 0:
+        raise ValueError(f"expected a count, got {value!r} @ {place}.{name}")
+    return value
+
+
+def _status(row: Mapping[str, Any], place: str) -> Status:
+    value = row.get("verdict")
+    if value not in list(Status):
+        known = ", ".join(Status)
+        raise ValueError(f"expected one of {known}, got {value!r} @ {place}.verdict")
+    return Status(value)
+
+
+def _digest(row: Mapping[str, Any], place: str) -> str:
+    provenance = row.get("provenance")
+    if not isinstance(provenance, Mapping):
+        raise ValueError(f"expected an object, got {provenance!r} @ {place}.provenance")
+    return _text(provenance, "scene", f"{place}.provenance")

@@ -1,0 +1,398 @@
+"""Finding out conventions: hypotheses tried on the exact motion, and the simplest one that explains.
+
+A hypothesis about the whole file is a *world*: a body as the file's author may have understood it, a
+map of time, and names of axes. In each world every group of columns has its readings. The finding is
+the world and the readings with the fewest departures whose error is as small as any. They leave a
+hundredth of the error of the scene's own conventions, in every group and in every row that is looked
+at, the first among them. Where two that are equally simple leave equally little, the file cannot tell
+them apart, and neither is taken.
+
+The first rows decide, for there even a poor answer is still right. A convention that shows only after
+a while, such as space axes of a body that starts in line with them, is tried on longer beginnings too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import ceil, inf, log10
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Quantities, Solution, Unsettled
+from taylor_verify.judge.conventions.axes import Frames, renamings
+from taylor_verify.judge.conventions.readings import Reading, readings, rotations, vector_columns
+from taylor_verify.judge.conventions.worlds import World, worlds
+from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.file import TrajectoryFile
+
+Array = np.ndarray[Any, Any]
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# A convention explains an error if it leaves no more than this part of it: the rest is the solver's.
+EXPLAINS: Final = 1e-2
+# Another one that leaves up to ten times as much as the best explains as well.
+_AS_WELL: Final = 10.0
+# Errors of so many units of roundoff, or of float64's, are not told apart.
+_NOISE_ROUNDOFFS: Final = 64
+_FLOAT64: Final = 2.0**-53
+# The start and one step, which is all that is right to a hundredth without a gyroscopic term; then a few
+# steps, and beginnings so many times as long each. The longest one is half of the file.
+_FEWEST_ROWS: Final = 2
+_FIRST_ROWS: Final = 5
+_LONGER: Final = 8
+_FEW_ROWS: Final = 12
+# So many rows, evenly chosen, stand for a beginning.
+_MOST_ROWS: Final = 24
+_DIGITS: Final = 20
+# The Taylor route is not sent further than this many spans of the scene for a hypothesis.
+_MOST_SPANS: Final = 10
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One convention of the file that is not the scene's.
+
+    ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
+    relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
+    """
+
+    subject: str
+    words: str
+    before: float
+    after: float
+    alternatives: tuple[str, ...] = ()
+
+    @property
+    def is_certain(self) -> bool:
+        return not self.alternatives
+
+    @property
+    def sentence(self) -> str:
+        figures = f"error {self.before:.2g} without it, {self.after:.2g} with it"
+        if self.is_certain:
+            return f"{self.words} ({figures})"
+        either = "; or ".join(f"[{words}]" for words in (self.words, *self.alternatives))
+        return f"{self.subject} is ambiguous, this motion cannot tell {either} ({figures})"
+
+
+@dataclass(frozen=True)
+class Conventions:
+    """The findings, and the world and readings that correct the file; only what is certain."""
+
+    findings: tuple[Finding, ...]
+    world: World
+    readings: Mapping[str, Reading]
+
+    @property
+    def _rank(self) -> tuple[int, int]:
+        return sum(finding.is_certain for finding in self.findings), len(self.findings)
+
+
+def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
+    """The conventions of a file of groups that the scene can be compared with.
+
+    Raises Unsettled where there is no exact motion, and NotRepresentable where the rung cannot hold
+    the scene.
+    """
+    searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
+    if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
+        return Conventions((), World(scene), {})
+    # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
+    return max((search.conventions() for search in searches), key=lambda found: found._rank)
+
+
+def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
+    """Finite rows of ever longer beginnings of a file, the shortest first."""
+    groups = file.groups.values()
+    finite = [
+        k
+        for k in range(len(file.times))
+        if all(isinstance(value, Fraction) for rows in groups for value in rows[k])
+    ]
+    longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
+    lengths, length = [_FEWEST_ROWS] if longest > _FEWEST_ROWS else [], _FIRST_ROWS
+    while length < longest:
+        lengths.append(length)
+        length *= _LONGER
+    return [_evenly(finite[:count]) for count in (*lengths, longest) if count]
+
+
+def _evenly(rows: Sequence[int]) -> tuple[int, ...]:
+    chosen = np.linspace(0, len(rows) - 1, min(len(rows), _MOST_ROWS))
+    return tuple(sorted({rows[round(k)] for k in chosen}))
+
+
+# One world, and how well every group can be read in it.
+
+
+@dataclass(frozen=True)
+class _Read:
+    """The simplest reading of a group that is as good as any, and others as simple and as good.
+
+    ``plain`` is the error of the scene's own reading. ``motion`` is how far the exact motion goes over
+    the rows, in the unit of the errors.
+    """
+
+    reading: Reading
+    error: float
+    plain: float
+    motion: float
+    others: tuple[Reading, ...]
+
+
+@dataclass(frozen=True)
+class _Fit:
+    world: World
+    groups: Mapping[str, _Read]
+
+    @property
+    def worst(self) -> float:
+        """The largest error of all groups in the scene's own conventions."""
+        return max(read.plain for read in self.groups.values())
+
+    @property
+    def cost(self) -> int:
+        return self.world.cost + sum(read.reading.cost for read in self.groups.values())
+
+    def size(self, noise: float) -> float:
+        """The sum of the orders of magnitude of all groups' errors."""
+        return sum(log10(max(read.error, noise)) for read in self.groups.values())
+
+    def gain(self, plain: _Fit) -> str:
+        """The group that the world explains best."""
+        return max(
+            self.groups, key=lambda g: plain.groups[g].error / (self.groups[g].error or _FLOAT64)
+        )
+
+    def explains(self, plain: _Fit, noise: float) -> bool:
+        """Return True if the world explains some group, and leaves no group unexplained.
+
+        A file that stands still has any unit of time in which the truth does not move either: a map
+        of time explains a motion only where there is one.
+        """
+        best = self.gain(plain)
+        gained, before = self.groups[best], plain.groups[best].error
+        if not gained.error <= EXPLAINS * before:
+            return False
+        if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
+            return False
+        return all(
+            read.error <= max(noise, EXPLAINS * max(plain.groups[group].error, read.motion))
+            for group, read in self.groups.items()
+        )
+
+
+def _simplest(fits: Sequence[_Fit], noise: float) -> tuple[_Fit, list[_Fit]]:
+    """The world of least cost among those as good as the best; and others, as good and as simple."""
+    best = min(fit.size(noise) for fit in fits)
+    good = [fit for fit in fits if fit.size(noise) <= best + log10(_AS_WELL)]
+    cost = min(fit.cost for fit in good)
+    simple = sorted((f for f in good if f.cost == cost), key=lambda fit: fit.size(noise))
+    return simple[0], simple[1:]
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Some rows of the file as floats, beside the exact motion in any world."""
+
+    file: TrajectoryFile
+    scene: Scene
+    rung: Rung
+    rows: tuple[int, ...]
+
+    def conventions(self) -> Conventions:
+        """The conventions that these rows tell."""
+        noise = self.noise
+        if self.plain.worst <= noise / EXPLAINS:
+            return Conventions((), World(self.scene), {})
+        tried = [fit for world in self.worlds() for fit in self.fits(world)]
+        fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, noise))]
+        return _conventions(self.plain, *_simplest(fits, noise))
+
+    @property
+    def noise(self) -> float:
+        return _NOISE_ROUNDOFFS * max(float(self.rung.unit_roundoff), _FLOAT64)
+
+    @cached_property
+    def plain(self) -> _Fit:
+        """The best readings in the scene's own world."""
+        return self.fits(World(self.scene), (Frames(),))[0]
+
+    @cached_property
+    def instants(self) -> tuple[Fraction, ...]:
+        return tuple(self.file.times[k] for k in self.rows)
+
+    @cached_property
+    def values(self) -> dict[str, Floats]:
+        return {
+            group: np.array([[_float(v) for v in rows[k]] for k in self.rows])
+            for group, rows in self.file.groups.items()
+        }
+
+    @cached_property
+    def frames(self) -> tuple[Frames, ...]:
+        """The renamings of axes that show in the file."""
+        active: dict[str, set[int]] = {"body": set(), "space": set()}
+        vectors = [group for group in self.values if group not in _ATTITUDES]
+        for group in vectors:
+            columns = set(np.flatnonzero(np.any(self.values[group], axis=0)).tolist())
+            active["space"] |= columns
+            active["body"] |= columns if group != "centre" else set()
+        has_attitude = len(vectors) < len(self.values)
+        if has_attitude:
+            active = {"body": {0, 1, 2}, "space": {0, 1, 2}}
+        joined = has_attitude or ("centre" in vectors and len(vectors) > 1)
+        return tuple(renamings(active["body"], active["space"], joined))
+
+    def solution(self, world: World) -> tuple[Scene, Solution]:
+        """The rounded scene of a world at the file's rows, with the attitude for space axes."""
+        track = {"attitude"} | ({"centre"} if "centre" in self.file.groups else set())
+        given = adopt(world.scene, self.rung, world.times(self.instants)).given
+        tracked = replace(given, track=frozenset(track))
+        return tracked, solution(tracked)
+
+    def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[_Fit]:
+        """The best readings in a world under each renaming of axes."""
+        given, exact = self.solution(world)
+        reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
+        elapsed = given.clock.elapsed
+        near = [k for k, t in enumerate(elapsed) if exact.route != "taylor" or abs(t) <= reach]
+        try:
+            truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
+        except Unsettled:
+            near, truth = [], {}
+        floats = _as_floats(_with_omega(given, truth)) if near else {}
+        columns = vector_columns(next(iter(self.values))) if self._is_one_vector else ()
+        return [
+            _Fit(
+                replace(world, frames=renamed, axes_words=renamed.words(columns)),
+                {group: self._best(group, floats, near, renamed) for group in self.values},
+            )
+            for renamed in frames or self.frames
+        ]
+
+    @property
+    def _is_one_vector(self) -> bool:
+        return len(self.values) == 1 and not _ATTITUDES & set(self.values)
+
+    def _best(
+        self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
+    ) -> _Read:
+        known = readings(group, frames)
+        if not near:
+            return _Read(known[0], 1.0, 1.0, 0.0, ())
+        columns, right = self.values[group][list(near)], truth[_QUANTITY.get(group, group)]
+        # A row out of reach of this world is not known to be right.
+        beyond = 1.0 if len(near) < len(self.rows) else 0.0
+        errors = [
+            max(_error(group, reading.read(columns, truth["attitude"]), right), beyond)
+            for reading in known
+        ]
+        enough = _AS_WELL * max(min(errors), self.noise)
+        good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
+        cost = good[0][0].cost
+        alike = [reading for reading, _ in good if reading.cost == cost]
+        motion = _distance(group, np.broadcast_to(right[0], right.shape), right)
+        return _Read(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
+
+    # Worlds.
+
+    def worlds(self) -> list[World]:
+        """Every body and clock that can be tried here, the scene's own first."""
+        others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
+        return [World(self.scene), *others]
+
+    def _is_possible(self, world: World) -> bool:
+        try:
+            given, exact = self.solution(world)
+        except NotRepresentable:
+            return False
+        span = max(abs(t) for t in self.scene.clock.elapsed)
+        reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
+        return reach <= _MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
+
+
+def is_far(scene: Scene, times: Iterable[Fraction], spans: int = _MOST_SPANS) -> bool:
+    """Return True if the Taylor route would have to go so many spans of the scene."""
+    span = max(abs(t) for t in scene.clock.elapsed)
+    reach = max(abs(t - scene.clock.start) for t in times)
+    return reach > spans * span and solution(scene).route == "taylor"
+
+
+# The errors of the groups.
+
+
+_QUANTITY: Final = {"quaternion": "attitude"}
+_ATTITUDES: Final = frozenset({"quaternion", "attitude"})
+
+
+def _with_omega(given: Scene, truth: Quantities) -> Quantities:
+    if isinstance(given.body, ImmersedBody):
+        with mp.workdps(_DIGITS):
+            return {**truth, "omega": angular_velocity(given.body, truth)}
+    return truth
+
+
+def _as_floats(truth: Quantities) -> dict[str, Floats]:
+    return {name: rows.astype(float) for name, rows in truth.items()}
+
+
+def _error(group: str, got: Floats, right: Floats) -> float:
+    """The largest error of columns in the scene's conventions."""
+    return _distance(group, rotations(got) if group == "quaternion" else got, right)
+
+
+def _distance(group: str, got: Floats, right: Floats) -> float:
+    """The largest distance over the rows, relative to the largest vector (absolute where all are zero).
+
+    Of a frame turned by a small angle, that angle. Infinite where anything is not finite.
+    """
+    flat = (got - right).reshape(len(right), -1)
+    if not np.all(np.isfinite(flat)):
+        return inf
+    size = np.max(np.linalg.norm(right.reshape(len(right), -1), axis=1)) or 1.0
+    if group in _ATTITUDES:
+        size = np.sqrt(2)
+    error = float(np.max(np.linalg.norm(flat, axis=1)) / size)
+    # Beyond doubles both may be infinite: no reading is right then.
+    return error if error == error else inf
+
+
+def _float(value: Fraction | float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
+
+
+# The findings.
+
+
+def _conventions(plain: _Fit, best: _Fit, others: Sequence[_Fit]) -> Conventions:
+    gained = best.gain(plain)
+    before, after = plain.groups[gained].error, best.groups[gained].error
+    alternatives = tuple(o.world.words or "the scene's own" for o in others)
+    findings = [
+        Finding(subject, words, before, after, alternatives)
+        for subject, words in best.world.subjects.items()
+    ]
+    # Where the axes are ambiguous none are renamed.
+    frames = Frames() if others else best.world.frames
+    certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
+    for group, read in best.groups.items():
+        if read.reading.cost and read.error <= EXPLAINS * read.plain:
+            words, unlike = read.reading.words, tuple(other.sentence for other in read.others)
+            findings.append(Finding(group, "; ".join(words), read.plain, read.error, unlike))
+            if not unlike:
+                certain[group] = next(r for r in readings(group, frames) if r.words == words)
+    return Conventions(tuple(findings), plain.world if others else best.world, certain)

@@ -1,0 +1,116 @@
+"""Hypotheses about a whole file: its unit and origin of time, its axes, and how its author read the body.
+
+A shift of the clock is a hypothesis only where it is anchored: the file's first row becomes the scene's
+start, or its first instant. Any other shift would take the row at the start away from the start, and
+with it the one row that says whether the file begins at the scene's initial state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.judge.conventions.axes import Frames
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.scene import Scene
+
+_SCALES: Final = (
+    (Fraction(1, 1000), "thousandths of the scene's unit (milliseconds for seconds)"),
+    (Fraction(1, 10**6), "millionths of the scene's unit (microseconds for seconds)"),
+    (Fraction(1, 10**9), "1e-9 of the scene's unit (nanoseconds for seconds)"),
+    (Fraction(60), "sixties of the scene's unit (minutes for seconds)"),
+    (Fraction(3600), "3600 of the scene's unit (hours for seconds)"),
+)
+
+
+@dataclass(frozen=True)
+class World:
+    """A hypothesis about the whole file: time of the scene = scale x t - shift, a body, and axes."""
+
+    scene: Scene
+    scale: Fraction = Fraction(1)
+    shift: Fraction = Fraction(0)
+    time_words: tuple[str, ...] = ()
+    body_words: str = ""
+    frames: Frames = Frames()  # noqa: RUF009 (frozen)
+    axes_words: str = ""
+
+    @property
+    def cost(self) -> int:
+        return len(self.time_words) + bool(self.body_words) + self.frames.cost
+
+    @property
+    def subjects(self) -> dict[str, str]:
+        """The departures in words, by what they are about."""
+        time = "; ".join(self.time_words)
+        every = {"time": time, "body": self.body_words, "axes": self.axes_words}
+        return {subject: words for subject, words in every.items() if words}
+
+    @property
+    def words(self) -> str:
+        return "; ".join(self.subjects.values())
+
+    @property
+    def moves_time(self) -> bool:
+        return self.scale != 1 or self.shift != 0
+
+    def times(self, instants: Iterable[Fraction]) -> tuple[Fraction, ...]:
+        return tuple(self.scale * t - self.shift for t in instants)
+
+
+def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
+    """Every body, unit and origin of time but the scene's own, for a file with rows at these times."""
+    every = [
+        World(other, scale, shift, time_words, body_words)
+        for other, body_words in [(scene, ""), *_other_bodies(scene)]
+        for scale, shift, time_words in _clocks(scene, times)
+    ]
+    return every[1:]
+
+
+def _clocks(
+    scene: Scene, times: Sequence[Fraction]
+) -> list[tuple[Fraction, Fraction, tuple[str, ...]]]:
+    """Units of time, each with the file's origin and with its first row at the scene's own."""
+    start, instants = scene.clock.start, scene.clock.instants
+    first = min(times) if instants[-1] > start else max(times)
+    clocks: list[tuple[Fraction, Fraction, tuple[str, ...]]] = []
+    for scale, unit in ((Fraction(1), ""), *_SCALES):
+        words = (f"t counts {unit}",) if unit else ()
+        clocks.append((scale, Fraction(0), words))
+        if any(scale * t == start for t in times):
+            continue
+        for origin in dict.fromkeys((start, instants[0])):
+            if shift := scale * first - origin:
+                clocks.append((scale, shift, (*words, _late(shift))))
+    return clocks
+
+
+def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
+    """The same numbers by the other convention: products of inertia, and the order of the coupling."""
+    body = scene.body
+    if isinstance(body, RigidBody):
+        turned = tuple(
+            tuple(entry if i == k else -entry for k, entry in enumerate(row))
+            for i, row in enumerate(body.inertia)
+        )
+        if turned == body.inertia or not tensors.is_positive_definite(turned):
+            return []
+        words = (
+            "the body has its products of inertia with the other sign (a scene writes components of "
+            "the tensor, I_12 = -int xy dm)"
+        )
+        return [(replace(scene, body=replace(body, inertia=turned)), words)]
+    transposed = tensors.transpose(body.coupling)
+    other = replace(body, coupling=transposed)
+    if transposed == body.coupling or not tensors.is_positive_definite(other.energy_matrix):
+        return []
+    words = "the body has its coupling B transposed (a scene's T has x.B y: its rows go with x)"
+    return [(replace(scene, body=other), words)]
+
+
+def _late(shift: Fraction) -> str:
+    return f"t is {'late' if shift > 0 else 'early'} by {float(abs(shift)):.15g}"

@@ -1,0 +1,308 @@
+"""How errors grow with time over an ensemble of starts: exponent, interval, word, and a gate.
+
+t_k          instants, equally many to a decade        e_ik   error of lane i at t_k, signed
+p_i          slope of log |e_ik| against log t_k       n      lanes, independent of each other
+
+The roundings of a run are as good as independent of each other (Brouwer's law): what they do to a
+conserved quantity is a random walk, e ~ t^1/2, and to a phase, whose rate depends on the conserved
+quantities, the integral of one, e ~ t^3/2. An error that always has the same sign makes t and t^2.
+
+A process with e(ct) ~ c^p e(t) in distribution has E log |e_ik| = p log t_k + constant, whatever its
+distribution and however its instants are correlated. So p_i is unbiased, the lanes are draws of it,
+and Student's interval of their mean holds; lanes of different size do not disturb it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import cos, exp, inf, isfinite, log, nan, pi, sin, sqrt, tan
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.verdict import Status
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# An interval misses the exponent, and a word is wrong, once in a hundred.
+LEVEL: Final = 0.99
+# A page of a hundred gates raises a false alarm once in a thousand publications.
+FALSE_ALARM: Final = 1e-5
+
+# Powers are half apart. What swings within a period, and a bias that has a walk beside it, bend a line
+# over few decades: an interval that is narrower than a tenth of that half, on either side, counts
+# as so wide where a word is looked for.
+_RESOLUTION: Final = 0.05
+
+_LEAST_LANES: Final = 2
+# Two late instants are held against the early ones, of which one alone has no spread to speak of.
+_LATE: Final = 2
+_LEAST_INSTANTS: Final = _LATE + 2
+
+
+class Law(StrEnum):
+    """What independent roundings make of a quantity: the null hypothesis of its gate.
+
+    WALK is a conserved quantity, whose error grows with the half power of time; INTEGRATED a phase, the
+    integral of such an error, which grows with the power 3/2 (D. Brouwer, 1937).
+    """
+
+    WALK = "a random walk"
+    INTEGRATED = "the integral of a random walk"
+
+
+EXACT: Final = "exact"
+BOUNDED: Final = "bounded"
+RANDOM_WALK: Final = "random walk"
+BIAS: Final = "bias"
+NO_WORD: Final = "no number"
+
+# The words of a phase say what the single errors are: one that is passed on to the rate of the phase
+# grows by one power of time more.
+_WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
+    Law.WALK: {0: BOUNDED, 0.5: RANDOM_WALK, 1: BIAS},
+    Law.INTEGRATED: {
+        0: BOUNDED,
+        0.5: "jitter",
+        1: "constant rate",
+        1.5: RANDOM_WALK,
+        2: BIAS,
+    },
+}
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """The mean slope of the lanes, its interval at ``level``, and the word for it.
+
+    NaN where no two lanes have finite errors throughout.
+    """
+
+    value: float
+    low: float
+    high: float
+    word: str
+    lanes: int
+    level: float = LEVEL
+
+
+@dataclass(frozen=True)
+class Gate:
+    """Whether the errors grow no faster than ``law`` allows.
+
+    ``chance`` is the probability that the law makes them grow as fast as they do, or faster; the gate
+    fails where it is less than ``false_alarm``, which is therefore how often the law itself fails.
+    """
+
+    verdict: Status
+    law: Law
+    chance: float
+    statistic: float
+    freedom: int
+    because: str
+    false_alarm: float = FALSE_ALARM
+
+
+@dataclass(frozen=True)
+class Growth:
+    """One quantity of one ensemble: its root mean square over the lanes at every instant, and more.
+
+    ``late`` is the exponent of the second half of the decades alone; ``gate`` is None for an error
+    without a sign, of which no law gives the distribution.
+    """
+
+    times: tuple[float, ...]
+    rms: tuple[float, ...]
+    exponent: Exponent
+    late: Exponent
+    gate: Gate | None
+
+
+def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
+    """The growth of errors of shape (lanes, instants); NaN stands for what a lane did not reach.
+
+    ``times`` (instants) are since the start and increase. ``law`` is what the errors are held
+    against, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the
+    errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do
+    not increase.
+    """
+    times, errors = _checked(times, errors)
+    with np.errstate(all="ignore"):
+        rms = np.sqrt(np.mean(errors**2, axis=0))
+    half = len(times) // 2
+    return Growth(
+        times=tuple(times.tolist()),
+        rms=tuple(rms.tolist()),
+        exponent=exponent(times, errors, law, roundoff),
+        late=exponent(times[half:], errors[:, half:], law, roundoff),
+        gate=gate(times, errors, law, roundoff) if signed else None,
+    )
+
+
+def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
+    times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
+    if errors.ndim != 2 or errors.shape[1] != len(times):
+        raise ValueError(
+            f"expected errors of shape (lanes, {len(times)}), got {errors.shape} @ growth"
+        )
+    if not (errors.shape[0] >= _LEAST_LANES and errors.shape[1] >= _LEAST_INSTANTS):
+        raise ValueError(
+            f"expected at least {_LEAST_LANES} lanes and {_LEAST_INSTANTS} instants, got "
+            f"{errors.shape[0]} and {errors.shape[1]} @ growth"
+        )
+    if not (times[0] > 0 and np.all(np.diff(times) > 0)):
+        raise ValueError("expected instants after the start that increase, got others @ growth")
+    return times, errors
+
+
+# The exponent.
+
+
+def exponent(
+    times: Floats, errors: Floats, law: Law, roundoff: float, level: float = LEVEL
+) -> Exponent:
+    """Student's interval of the mean of the lanes' slopes, of log |error| over log time.
+
+    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; ``level`` is the
+    probability that the interval holds the mean, ``law`` what chooses the word for it. An error of
+    exactly zero, which has no logarithm, counts as one rounding.
+    """
+    whole = errors[np.isfinite(errors).all(axis=1)]
+    count = len(whole)
+    if count < _LEAST_LANES:
+        return Exponent(nan, nan, nan, NO_WORD, count, level)
+    if not whole.any():
+        return Exponent(0.0, 0.0, 0.0, EXACT, count, level)
+    slopes = _slopes(np.log(times), np.log(np.where(whole == 0, roundoff, np.abs(whole))))
+    mean = float(np.mean(slopes))
+    reach = student(count - 1, level) * float(np.std(slopes, ddof=1)) / sqrt(count)
+    found = word(mean, max(reach, _RESOLUTION), law)
+    return Exponent(mean, mean - reach, mean + reach, found, count, level)
+
+
+def _slopes(x: Floats, y: Floats) -> Floats:
+    """The slope of the least-squares line of every row of y."""
+    centred = x - np.mean(x)
+    slopes: Floats = y @ centred / (centred @ centred)
+    return slopes
+
+
+def word(value: float, reach: float, law: Law) -> str:
+    """The one word whose exponent is within reach; else that several are, or between which it is."""
+    words, low, high = _WORDS[law], value - reach, value + reach
+    inside = [name for power, name in words.items() if low <= power <= high]
+    if inside:
+        return inside[0] if len(inside) == 1 else f"unclear: {' or '.join(inside)}"
+    below = [name for power, name in words.items() if power < low]
+    above = [name for power, name in words.items() if high < power]
+    if not (below or above):
+        return NO_WORD
+    if not below:
+        return "shrinking"
+    return f"between {below[-1]} and {above[0]}" if above else f"faster than {below[-1]}"
+
+
+# The gate.
+
+
+def gate(
+    times: Floats, errors: Floats, law: Law, roundoff: float, false_alarm: float = FALSE_ALARM
+) -> Gate:
+    """Whether the last two instants are further out than the law allows after those before them.
+
+    The law's covariance makes of the errors of a lane independent numbers z_ik of one variance (of a
+    walk: its increments over the square roots of their times). With L_i and E_i the sums of squares
+    of the last two and of the m before, (L_i/2)/(E_i/m) has Fisher's distribution F(2, m) exactly,
+    P(L_i/E_i > r) = (1 + r)^(-m/2), whatever the size of the lane's roundings; and of n independent
+    lanes -2 sum log P_i = m sum log(1 + L_i/E_i) is chi-square with 2n degrees of freedom.
+
+    The gate fails where that chance is below ``false_alarm``. Errors that are bounded, or smaller
+    early than one rounding (``roundoff``), make E_i larger than the law does: the gate then fails
+    less often. An error that is not finite fails.
+    """
+    early, late = early_and_late(times, errors, law, roundoff)
+    lanes, m = len(errors), len(times) - _LATE
+    with np.errstate(all="ignore"):
+        statistic = float(m * np.sum(np.log1p(late / early)))
+    chance = chi_square_tail(statistic, 2 * lanes)
+    passed = false_alarm <= chance  # written so that a NaN fails
+    because = (
+        f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
+        f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
+    )
+    if not isfinite(statistic):
+        because = f"expected finite errors of every lane, to be held against {law.value}"
+    verdict = Status.PASS if passed else Status.FAIL
+    return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
+
+
+def early_and_late(
+    times: Floats, errors: Floats, law: Law, roundoff: float
+) -> tuple[Floats, Floats]:
+    """E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
+    covariance = covariance_of(law, times)
+    spread = np.sqrt(np.diag(covariance))
+    # In units of their own spread the instants have a covariance that is far from singular.
+    root = np.linalg.cholesky(covariance / np.outer(spread, spread))
+    squares = np.linalg.solve(root, (errors / spread).T).T ** 2
+    least = (roundoff / spread[0]) ** 2
+    return np.sum(squares[:, :-_LATE], axis=1) + least, np.sum(squares[:, -_LATE:], axis=1)
+
+
+def covariance_of(law: Law, times: Floats) -> Floats:
+    """Of unit walk W: E W(s) W(t) = min(s, t); of its integral s^2 (3 t - s)/6 for s <= t.
+
+    Times count the last one, which leaves both laws as they are but for their size.
+    """
+    scaled = times / times[-1]
+    s, t = np.minimum.outer(scaled, scaled), np.maximum.outer(scaled, scaled)
+    found: Floats = s if law is Law.WALK else s * s * (3 * t - s) / 6
+    return found
+
+
+# Two distributions, in closed form for whole degrees of freedom.
+
+
+def chi_square_tail(value: float, freedom: int) -> float:
+    """P(chi-square > value) for an even number of degrees of freedom: a Poisson sum (DLMF 8.4.8)."""
+    if not value >= 0:
+        return nan
+    half = value / 2
+    if half == inf:
+        return 0.0
+    terms, term = 1.0, 1.0
+    # exp(-half) underflows where the sum may be large: both in logarithms of its largest part.
+    shift = 0.0
+    for j in range(1, freedom // 2):
+        term *= half / j
+        terms += term
+        if terms > 1e200:
+            term, terms, shift = term / terms, 1.0, shift + log(terms)
+    return min(1.0, exp(log(terms) + shift - half))
+
+
+def student(freedom: int, level: float) -> float:
+    """The t for which Student's variable is between -t and t with probability ``level``."""
+    low, high = 0.0, pi / 2
+    for _ in range(200):
+        middle = (low + high) / 2
+        if _student_within(middle, freedom) < level:
+            low = middle
+        else:
+            high = middle
+    return sqrt(freedom) * tan((low + high) / 2)
+
+
+def _student_within(theta: float, freedom: int) -> float:
+    """P(|t| < sqrt(freedom) tan theta), by the finite sums in sines and cosines."""
+    s, c = sin(theta), cos(theta)
+    first = 1 if freedom % 2 else 0
+    term, total = (c, c) if first else (1.0, 1.0)
+    for j in range(first + 2, freedom - 1, 2):
+        term *= c * c * (j - 1) / j
+        total += term
+    if not first:
+        return s * total
+    return 2 / pi * (theta + (s * total if freedom > 1 else 0.0))

@@ -1,0 +1,91 @@
+"""The verdict on the start alone: an answer that is wrong there says so before anything else.
+
+Of the rows of all states at the start the one counts that is nearest to its bound. The gate is that of
+the state at this sample: a rounding of the data, and nothing that an orbit has made of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.regraded import Graded
+from taylor_verify.judge.verdict import INITIAL, STATES, Verdict
+
+_RUN: Final = "one rounding of each component of the start on the rung"
+_FILE: Final = "a rounding of the input and one of the row"
+
+
+def with_initial(judgement: Judgement, start: float) -> Judgement:
+    """The judgement of a run with the verdict on its start in front, if a sample is at the start."""
+    record = judgement.record
+    if record is None:
+        return judgement
+    times = np.array(record.times)
+    gates = [
+        Graded.of(verdict, times, np.array(gate.errors), np.array(gate.attainable), "")
+        for verdict, gate in zip(judgement.verdicts, record.gates, strict=True)
+    ]
+    initial = initial_verdict(gates, start, _RUN)
+    if initial is None:
+        return judgement
+    return replace(judgement, verdicts=(initial, *judgement.verdicts))
+
+
+def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE) -> Verdict | None:
+    """The verdict on the row at the start; None where there is no such row.
+
+    ``allowed`` says in words what is attainable there.
+    """
+    starts = [
+        (gate, int(k))
+        for gate in gates
+        if gate.verdict.quantity in STATES
+        for k in np.flatnonzero(gate.times == start)[:1]
+    ]
+    if not starts:
+        return None
+    findings = [_finding(gate, k, allowed) for gate, k in starts]
+    worst = index_of_largest(np.array([finding.ratio for finding in findings]))
+    (gate, k), finding = starts[worst], findings[worst]
+    error, attainable = float(gate.errors[k]), float(gate.attainable[k])
+    is_within = error <= FACTOR * attainable
+    said = (
+        f"the row at the start, t = {start:g}, is the scene's initial state"
+        if is_within
+        else f"the row at the start, t = {start:g}, is not the scene's initial state: its "
+        f"{gate.verdict.quantity} is off by {error:.3g}, and everything after follows from it"
+    )
+    return replace(
+        gate.verdict,
+        quantity=INITIAL,
+        verdict=finding.status,
+        max=error,
+        mean=error,
+        final=error,
+        at=start,
+        bound=FACTOR * attainable,
+        because=f"{said}; {finding.because}",
+        attainable=attainable,
+        ratio=finding.ratio,
+        ratio_at=start,
+        time_shift=None,
+        residual=None,
+        shift=None,
+        trend=None,
+        remains=None,
+    )
+
+
+def _finding(gate: Graded, k: int, allowed: str) -> Finding:
+    error = np.array([mpf(float(gate.errors[k]))], dtype=object)
+    width = np.array([mp.inf if gate.is_doubtful else mp.zero], dtype=object)
+    row = Errors(gate.verdict.quantity, gate.verdict.unit, error, width, {}, is_state=True)
+    return judge(row, gate.attainable[k : k + 1], allowed)

@@ -1,0 +1,328 @@
+"""The judgement of one trajectory: every quantity compared, every comparison a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import ceil, fsum, inf, log10
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.judge.attainable import Floats, Floor, floor
+from taylor_verify.judge.balances import BECAUSE, ClockWork, clock_work
+from taylor_verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
+from taylor_verify.judge.drifts import drifts
+from taylor_verify.judge.errors import Errors, state_errors
+from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
+from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.record import GateRecord, Record
+from taylor_verify.judge.shift import Kind, Shift, time_shifts
+from taylor_verify.judge.steps import Steps, count_steps
+from taylor_verify.judge.unit_quaternion import unit_quaternion
+from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.mpfr import in_mpfr
+from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+# The truth is asked for this many digits beyond the rung's own: its error is then below a
+# thousandth of a unit of roundoff, where the narrowest bound is some units.
+_MORE_DIGITS = 3
+# Differences of exactly held numbers lose no more than their leading bits at this precision.
+_SPARE_BITS = 96
+
+
+class NotPassed(AssertionError):
+    """A judgement that is no pass; the text is every verdict that is none, with its reason."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdicts of one run and the record they rest on (None if the run never came to a truth).
+
+    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ... The
+    truth value of a judgement is ``passed``.
+    """
+
+    verdicts: tuple[Verdict, ...]
+    record: Record | None
+    costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def passed(self) -> bool:
+        """Whether a gate was judged, and nothing failed or stayed undecided."""
+        was_judged = any(verdict.verdict is Status.PASS for verdict in self.verdicts)
+        return was_judged and exit_status(self.verdicts) == 0
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, an AssertionError, unless the judgement passed."""
+        if not self.passed:
+            others = [v for v in self.verdicts if v.verdict is not Status.PASS]
+            lines = [f"{v.scene} {v.rung} {v.quantity}: {v.verdict}: {v.because}" for v in others]
+            raise NotPassed("\n".join(lines) or "nothing was judged")
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What is the same in every verdict of a run."""
+
+    problem: Problem
+    solver: Solver
+    trajectory: Trajectory
+    steps: Steps
+
+    def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
+        scene, trajectory = self.problem.scene, self.trajectory
+        return Verdict(
+            scene=scene.name,
+            solver=self.solver.name,
+            rung=self.problem.rung.name,
+            setting=self.solver.setting,
+            quantity=quantity,
+            verdict=status,
+            outcome=trajectory.outcome.value,
+            roundoff=float(self.problem.rung.unit_roundoff),
+            steps=trajectory.steps,
+            evaluations=trajectory.evaluations,
+            seconds=trajectory.seconds,
+            provenance=provenance(scene.digest),
+            **numbers,
+        )
+
+
+def judgement(
+    problem: Problem, solver: Solver, trajectory: Trajectory, seconds: float | None = None
+) -> Judgement:
+    """Compare a trajectory with the exact solution of the same rounded data, and judge it.
+
+    ``seconds`` is how long the answer took by the caller's clock, which limits the steps that a solver
+    may claim. A trajectory that is not finished, and a truth that cannot be had, are verdicts and raise
+    nothing.
+    """
+    run = _Run(problem, solver, trajectory, Steps(trajectory.steps))
+    main = main_quantity(problem.scene)
+    if trajectory.outcome is not Outcome.FINISHED:
+        status = Status.UNAVAILABLE if trajectory.outcome.is_unavailable else Status.FAIL
+        return Judgement((run.verdict(main, status, because=_unfinished(trajectory)),), None)
+    exact = solution(problem.given)
+    try:
+        steps = count_steps(problem, solver, trajectory.steps, seconds)
+        return _compare(replace(run, steps=steps), exact)
+    except Unsettled as doubt:
+        return Judgement((run.verdict(main, Status.UNDECIDED, because=str(doubt)),), None)
+
+
+def _unfinished(trajectory: Trajectory) -> str:
+    if trajectory.outcome.is_unavailable:
+        return str(trajectory.detail)
+    detail = f" ({trajectory.detail})" if trajectory.detail else ""
+    return f"a run that did not finish is not scored: it {trajectory.outcome.value}{detail}"
+
+
+def _compare(run: _Run, exact: Solution) -> Judgement:
+    problem, trajectory = run.problem, run.trajectory
+    given, bits = problem.given, problem.rung.bits
+    digits = ceil(bits * log10(2)) + _MORE_DIGITS
+    costs = Costs()
+    with costs.of(TRUTH):
+        truth = exact.motion(given.clock.elapsed, digits)
+        start = exact.motion([Fraction(0)], digits + _MORE_DIGITS)
+    answer = trajectory.motion(bits + _SPARE_BITS)
+    with mp.workprec(bits + _SPARE_BITS):
+        with costs.of(CONDITION):
+            base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
+        with costs.of(ERRORS):
+            states = state_errors(given, truth, answer)
+            shifts = time_shifts(given, exact, truth, answer, digits, states)
+            gated = [
+                _state(run, base, errors, shift)
+                for errors, shift in zip(states, shifts, strict=True)
+            ]
+        with costs.of(CONSERVED):
+            work, quick = clock_work(problem.scene), in_mpfr(truth)
+            gated += [
+                _conserved(
+                    run,
+                    base,
+                    base.of_invariant(invariant, quick, _scale(errors)),
+                    errors,
+                    work.get(invariant.name),
+                )
+                for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
+            ]
+            gated += _lengths(run, base)
+    record = _record(run, exact, digits, tuple(gate for _, gate in gated))
+    return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
+
+
+def _scale(errors: Errors) -> Any:
+    return next(iter(errors.parts.values()))
+
+
+Gated = tuple[Verdict, GateRecord]
+
+
+def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated:
+    attainable = base.of_state(errors)
+    finding = judge(errors, attainable, _reason(run, base, errors, attainable, "orbit"))
+    if shift is None:
+        return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+    passed = finding.status is Status.PASS
+    if not passed:
+        meaning = f"as a shift of time: {shift.sentence()}"
+        finding = replace(finding, because=f"{finding.because}; {meaning}")
+    verdict = replace(
+        _verdict(run, errors, attainable, finding),
+        time_shift=shift.time_shift,
+        residual=shift.residual,
+        shift=shift.kind.value,
+        trend=shift.trend if shift.kind is Kind.DRIFTING else None,
+        remains=None if shift.kind is Kind.NONE else shift.remains,
+    )
+    return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+
+
+def _lengths(run: _Run, base: Floor) -> list[Gated]:
+    """The row of quaternions that are no unit quaternions; none where they are."""
+    quaternions = run.trajectory.quantities.get("quaternion")
+    failed = None if quaternions is None else unit_quaternion(quaternions, base)
+    if failed is None:
+        return []
+    errors, attainable, finding = failed
+    return [(_verdict(run, errors, attainable, finding), _gate(errors, attainable))]
+
+
+def _conserved(
+    run: _Run, base: Floor, attainable: Floats, errors: Errors, work: ClockWork | None
+) -> Gated:
+    """``attainable`` is what rounding the momenta leaves; under a clock its roundings do ``work`` too."""
+    if work is not None:
+        steps = max(run.steps.counted, len(base.times))
+        roundoff = run.problem.rung.unit_roundoff
+        attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
+    loads = f", {BECAUSE}" if work else ""
+    reason = _reason(run, base, errors, attainable, "gradient", loads)
+    finding = judge(errors, attainable, reason)
+    return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+
+
+def _reason(
+    run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str, loads: str = ""
+) -> str:
+    told = f"{base.reason(attainable, index_of_largest(errors.doubles), carried)}{loads}"
+    return f"{told}; {run.steps.because}" if run.steps.because else told
+
+
+def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
+    instants = run.problem.given.clock.instants
+    worst = finding.worst
+    return run.verdict(
+        errors.quantity,
+        finding.status,
+        max=float(errors.doubles[worst]),
+        mean=_mean(errors.doubles),
+        final=float(errors.doubles[-1]),
+        at=float(instants[worst]),
+        unit=errors.unit,
+        bound=float(FACTOR * attainable[worst]),
+        because=finding.because,
+        attainable=float(attainable[worst]),
+        ratio=finding.ratio,
+        ratio_at=float(instants[finding.ratio_at]),
+    )
+
+
+def _mean(errors: Floats) -> float:
+    """The mean; infinite where the sum is beyond doubles."""
+    try:
+        return fsum(errors) / len(errors)
+    except OverflowError:
+        return inf
+
+
+def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> GateRecord:
+    return GateRecord(
+        quantity=errors.quantity,
+        unit=errors.unit,
+        errors=_four_digits(errors.doubles),
+        attainable=_four_digits(attainable),
+        truth_radius=_bound(max(errors.widths)),
+        shifts=_four_digits(shifts),
+    )
+
+
+def _bound(radius: float) -> float:
+    """Three digits, and not less: the rest tells how the truth was come by, which may differ by run."""
+    return float(f"{1.006 * radius:.3g}")
+
+
+def _four_digits(values: Iterable[Any]) -> tuple[float, ...]:
+    return tuple(float(f"{float(value):.4g}") for value in values)
+
+
+def _floats(values: Iterable[Any]) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)
+
+
+def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ...]) -> Record:
+    problem, trajectory = run.problem, run.trajectory
+    scene, units = problem.scene, problem.units
+    return Record(
+        scene=scene.name,
+        title=scene.title,
+        solver=run.solver.name,
+        rung=problem.rung.name,
+        track=tuple(sorted(scene.track)),
+        equations=problem.form.text(),
+        parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
+        units={
+            "time": str(units.time),
+            "momentum": str(units.momentum),
+            "impulse": str(units.impulse),
+        },
+        regime=exact.regime,
+        route=exact.route,
+        truth_digits=digits,
+        outcome=trajectory.outcome.value,
+        steps=trajectory.steps,
+        unit_roundoff=float(problem.rung.unit_roundoff),
+        times=_floats(problem.given.clock.instants),
+        gates=gates,
+    )
+
+
+def unjudged(
+    scene: Scene,
+    solver: Solver,
+    rung: Rung,
+    status: Status,
+    why: str,
+    outcome: Outcome = Outcome.NOT_REPRESENTABLE,
+) -> Judgement:
+    """The judgement of a run that could not begin."""
+    verdict = Verdict(
+        scene=scene.name,
+        solver=solver.name,
+        rung=rung.name,
+        setting=solver.setting,
+        quantity=main_quantity(scene),
+        verdict=status,
+        outcome=outcome.value,
+        because=str(why),
+        provenance=provenance(scene.digest),
+    )
+    return Judgement((verdict,), None)
+
+
+def main_quantity(scene: Scene) -> str:
+    return "omega" if scene.model == "euler" else "impulse"

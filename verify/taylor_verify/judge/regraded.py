@@ -1,0 +1,126 @@
+"""A judgement graded anew, with the rounding of the input in what is attainable.
+
+It works on the record, which is everything a run was judged by: the errors and floors of every gate at
+every sample. Of two judgements that go either way in time from one start the graver counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
+from taylor_verify.judge.inputs import InputRounding
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.record import GateRecord, Record
+from taylor_verify.judge.verdict import STATES, Status, Verdict
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# The gravest first.
+_GRAVITY: Final = (Status.FAIL, Status.UNDECIDED, Status.VACUOUS, Status.PASS)
+_RULE: Final = f"{FACTOR} x attainable; "
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One gate: its verdict, and its terms at all samples in the order of time from the start.
+
+    A truth that was narrow enough for the rounding alone is so for the larger floor: ``is_doubtful``
+    tells a gate for which it was not.
+    """
+
+    verdict: Verdict
+    times: Floats
+    errors: Floats
+    attainable: Floats
+    is_doubtful: bool
+    reason: str
+
+    @classmethod
+    def of(
+        cls, verdict: Verdict, times: Floats, errors: Floats, attainable: Floats, reason: str
+    ) -> Graded:
+        """A gate whose verdict tells whether the truth was narrow enough."""
+        is_doubtful = verdict.verdict is Status.UNDECIDED
+        return cls(verdict, times, errors, attainable, is_doubtful, reason)
+
+
+def graded(judgement: Judgement, inputs: InputRounding, roundoff: float) -> list[Graded]:
+    """Every gate of a judgement, its floor the root of the squares of rounding and input."""
+    record = judgement.record
+    if record is None:
+        return []
+    gates = zip(judgement.verdicts, record.gates, strict=True)
+    return [_graded(v, g, np.array(record.times), inputs, roundoff) for v, g in gates]
+
+
+def _graded(
+    verdict: Verdict, gate: GateRecord, times: Floats, inputs: InputRounding, roundoff: float
+) -> Graded:
+    rounding = np.array(gate.attainable)
+    # The length of a quaternion owes nothing to the input.
+    moved = inputs.at_samples.get(gate.quantity, np.zeros(len(rounding)))
+    both = np.hypot(rounding, moved)
+    worst = index_of_largest(np.array(gate.errors))
+    reason = (
+        f"attainable = (rounding^2 + input^2)^(1/2) = {both[worst]:.2g}; "
+        f"input: {inputs.moved}, moved by u = {roundoff:.2g} of its size, "
+        f"moves this by {moved[worst]:.2g}; "
+        f"rounding: {verdict.because.split(_RULE)[-1]}"
+    )
+    return Graded.of(verdict, times, np.array(gate.errors), both, reason)
+
+
+def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
+    """The verdict of one gate: that of the direction of time which is graver, or else nearer to it.
+
+    ``flaw`` says where the data have no finite number, if there is such a place.
+    """
+    return min((_verdict(side, flaw) for side in sides), key=_gravity)
+
+
+def _gravity(verdict: Verdict) -> tuple[int, float]:
+    ratio = verdict.ratio
+    told = float("inf") if ratio is None or ratio != ratio else ratio
+    return _GRAVITY.index(verdict.verdict), -told
+
+
+def _verdict(side: Graded, flaw: str) -> Verdict:
+    gate, times, attainable = side.verdict, side.times, side.attainable
+    column = np.array([mpf(float(e)) for e in side.errors], dtype=object)
+    widths = np.array([mp.inf if side.is_doubtful else mp.zero] * len(times), dtype=object)
+    is_state = gate.quantity in STATES
+    errors = Errors(gate.quantity, gate.unit, column, widths, {}, is_state)
+    finding = judge(errors, attainable, side.reason)
+    worst = finding.worst
+    return replace(
+        gate,
+        verdict=finding.status,
+        max=float(side.errors[worst]),
+        at=float(times[worst]),
+        bound=float(FACTOR * attainable[worst]),
+        because=f"{flaw}; {finding.because}" if flaw else finding.because,
+        attainable=float(attainable[worst]),
+        ratio=finding.ratio,
+        ratio_at=float(times[finding.ratio_at]),
+    )
+
+
+def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:
+    """The record of the longer side, with the floors that were used; None where there is none."""
+    if not records:
+        return None
+    record = max(records, key=lambda r: len(r.times))
+    used = {g.verdict.quantity: g for g in gates if len(g.times) == len(record.times)}
+    kept = tuple(
+        replace(gate, attainable=tuple(float(f"{a:.4g}") for a in used[gate.quantity].attainable))
+        for gate in record.gates
+        if gate.quantity in used
+    )
+    return replace(record, gates=kept)

@@ -1,0 +1,204 @@
+"""The rounding class of a published number: what a run on another processor may make of it.
+
+Fused multiplications, vector widths and elementary functions differ between processors, so that the
+roundings of a run are drawn anew, and its error is another draw from the same random walk. What must
+come again is therefore the verdict, the cost and the size of the error:
+
+    verdict, outcome, unit, roundoff   the same
+    steps, evaluations a step          within a tenth (or two steps)
+    bound, attainable                  within a tenth, where both maxima are of the same time
+    max, mean, final, ratio            new <= FACTOR max(old, LEVEL attainable), and the reverse
+
+(``ratio`` is in units of attainable already; for the others the larger attainable of both counts.)
+``time_shift``, ``residual``, ``shift``, ``trend`` and ``remains`` have no class. Of a gate that
+passed they are read from roundings alone, whose sign and course in time are drawn anew: only those of a
+failed gate are published.
+
+FACTOR and LEVEL come from the distribution of the maximum of a random walk, in units of its standard
+deviation, which attainable is. A maximum can be small by chance: the error of an orbit with one
+unstable direction is its first roundings magnified, and a Gaussian is below x with probability
+0.8 x. So no ratio of two errors is absurd, and below LEVEL all errors count as LEVEL. A large maximum
+is no chance: an error leaves its class only where one of the two is beyond FACTOR LEVEL = 5
+attainable at its own time. For a walk that is 4 Q(5) = 1.1e-6, for a single Gaussian
+2 Q(5) = 5.7e-7, Q being the Gaussian tail; asked of every sample of N steps, at most
+25 Q(5) ln N = 5e-5 for N = 1000. The other of the two is then below a tenth of it, which for the
+maximum over all samples is itself rarer than one in twenty. So a row raises a false alarm at most
+5e-6 times in a change of processor, and a table of a thousand rows once in two hundred; on
+one and the same processor all is equal to the last bit, and there is none. This takes for granted
+that a solver's walk has no larger steps than attainable counts, which ``ratio`` near 1 says.
+
+A step is the p-th root of the size of a Taylor coefficient, p >= 9: for the steps to change by a
+tenth, coefficients would have to change by a factor of two. Attainable grows as the root of the steps.
+
+The operations of MPFR are rounded correctly, its elementary functions too, so that mpN ought to be
+the same anywhere. Until that has been seen on unlike processors it has the same class as the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from taylor_verify.judge.verdict import Status, Verdict
+
+FACTOR: Final = 10.0
+LEVEL: Final = 0.5
+# Of steps, evaluations, attainable and bound.
+SLACK: Final = 0.1
+FEW_STEPS: Final = 2
+
+ERRORS: Final = ("max", "mean", "final", "ratio")
+_SAME = ("verdict", "outcome", "unit", "roundoff")
+
+Key = tuple[str, str, str, str]
+
+
+@dataclass(frozen=True)
+class Departure:
+    """A row or number that is not what was published; ``what`` is empty for a whole row."""
+
+    scene: str
+    rung: str
+    quantity: str
+    what: str
+    expected: str
+    got: str
+
+    def __str__(self) -> str:
+        place = " ".join(part for part in (self.scene, self.rung, self.quantity, self.what) if part)
+        return f"expected {self.expected}, got {self.got} @ {place}"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How many rows were held against published ones, and what departed from them."""
+
+    compared: int
+    departures: tuple[Departure, ...]
+
+
+def compare(published: Iterable[Verdict], made: Iterable[Verdict]) -> Comparison:
+    """Hold every row made against its published one.
+
+    A row of one side alone is a departure. Only runs on a rung that either machine does not have are
+    left out: there is nothing to compare.
+    """
+    rows = paired(published, made)
+    missing = [_row(verdict, "this row", "none") for verdict in rows.missing]
+    extra = [_row(verdict, "no such row", "one") for verdict in rows.extra]
+    found = [departure for pair in rows.shared for departure in departures(*pair)]
+    return Comparison(len(rows.shared), (*missing, *extra, *found))
+
+
+@dataclass(frozen=True)
+class Paired:
+    """Rows of before and of now: those of one side alone, and the pairs as (before, now).
+
+    ``absent`` are rows of runs on a rung that one of the two machines does not have.
+    """
+
+    missing: tuple[Verdict, ...]
+    extra: tuple[Verdict, ...]
+    shared: tuple[tuple[Verdict, Verdict], ...]
+    absent: tuple[Verdict, ...]
+
+
+def paired(published: Iterable[Verdict], made: Iterable[Verdict]) -> Paired:
+    """Every row beside the one of the same scene, solver, setting, rung and quantity."""
+    old, new = list(published), list(made)
+    unavailable = {_run(v) for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
+    before = {_key(v): v for v in old if _run(v) not in unavailable}
+    after = {_key(v): v for v in new if _run(v) not in unavailable}
+    return Paired(
+        missing=tuple(v for key, v in before.items() if key not in after),
+        extra=tuple(v for key, v in after.items() if key not in before),
+        shared=tuple((before[key], v) for key, v in after.items() if key in before),
+        absent=tuple(v for v in (*old, *new) if _run(v) in unavailable),
+    )
+
+
+def departures(old: Verdict, new: Verdict) -> Iterator[Departure]:
+    """Everything by which one row is out of the class of its published one."""
+    if old.provenance.get("scene") != new.provenance.get("scene"):
+        expected = "the scene as it was published (`make reports` publishes anew)"
+        yield Departure(new.scene, new.rung, new.quantity, "", expected, "another text")
+    for name in _SAME:
+        was, now = getattr(old, name), getattr(new, name)
+        if was != now:
+            yield Departure(new.scene, new.rung, new.quantity, name, str(was), str(now))
+    yield from _unlike_costs(old, new)
+    if old.at == new.at:
+        for name in ("attainable", "bound"):
+            yield from _unlike(old, new, name, getattr(old, name), getattr(new, name))
+    for name in ERRORS:
+        yield from _unlike_errors(old, new, name)
+
+
+def _unlike_costs(old: Verdict, new: Verdict) -> Iterator[Departure]:
+    """Steps, and their order as the evaluations of each."""
+    yield from _unlike(old, new, "steps", old.steps, new.steps, FEW_STEPS)
+    if old.steps and new.steps:
+        each = (old.evaluations / old.steps, new.evaluations / new.steps)
+        yield from _unlike(old, new, "evaluations a step", *each)
+
+
+def _unlike(
+    old: Verdict,
+    new: Verdict,
+    name: str,
+    was: float | None,
+    now: float | None,
+    few: float = 0.0,
+) -> Iterator[Departure]:
+    """A number that is not within a tenth, or ``few``, of what it was."""
+    if was is None or now is None:
+        same = was is now
+    else:
+        same = abs(now - was) <= max(few, SLACK * min(abs(now), abs(was)))
+    if not same:
+        expected = f"{told(was)} within {SLACK:.0%}"
+        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
+
+
+def _unlike_errors(old: Verdict, new: Verdict, name: str) -> Iterator[Departure]:
+    was, now = finite(old, name), finite(new, name)
+    level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
+    if has_grown(was, now, level) or has_grown(now, was, level):
+        expected = f"{told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
+        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
+
+
+def finite(verdict: Verdict, name: str) -> float | None:
+    """A number of a verdict as its row has it: None for NaN and the infinities."""
+    value: float | None = getattr(verdict, name)
+    return value if value is not None and math.isfinite(value) else None
+
+
+def has_grown(was: float | None, now: float | None, level: float) -> bool:
+    """Whether an error has left its class upwards; to be no finite number is beyond every error."""
+    if was is None or now is None:
+        return now is None and was is not None
+    return not now <= FACTOR * max(was, level)
+
+
+def _attainable(old: Verdict, new: Verdict) -> float:
+    """The maxima may be of unlike times; the later one, of more steps, has the larger floor."""
+    return max(old.attainable or 0.0, new.attainable or 0.0)
+
+
+def told(value: float | None) -> str:
+    return "no finite number" if value is None else f"{value:.3g}"
+
+
+def _row(verdict: Verdict, expected: str, got: str) -> Departure:
+    return Departure(verdict.scene, verdict.rung, verdict.quantity, "", expected, got)
+
+
+def _run(verdict: Verdict) -> Key:
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
+
+
+def _key(verdict: Verdict) -> tuple[Key, str]:
+    return _run(verdict), verdict.quantity

@@ -1,0 +1,60 @@
+"""The length of an answer's quaternions, which is 1 but for roundings.
+
+An attitude is read from a quaternion of any length, so that no other gate sees the length. A solver that
+rounds q in every step and takes none of it back leaves, after N steps, no more than
+
+    | |q| - 1 |  <=  u N,
+
+all roundings going one way. The row is there only where the length is beyond ten times that: then it
+fails. A quaternion that is a unit one to roundoff needs no row to say so.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.judge.attainable import Floats, Floor
+from taylor_verify.judge.errors import Errors, norms
+from taylor_verify.judge.gates import Finding, index_of_largest, judge
+from taylor_verify.judge.verdict import Status
+
+UNIT_QUATERNION: Final = "unit quaternion"
+# A length is written out where six digits show that it is not 1.
+_SHOWN: Final = 1e-4
+
+
+def unit_quaternion(
+    quaternions: np.ndarray[Any, Any], base: Floor
+) -> tuple[Errors, Floats, Finding] | None:
+    """The errors of length, what is attainable, and the failure; None where q is a unit quaternion.
+
+    ``quaternions`` (n, 4) are numbers of mpmath; one that is not finite is the attitude's failure.
+    """
+    lengths = norms(quaternions)
+    if not all(mp.isfinite(length) for length in lengths):
+        return None
+    exact = np.array([mp.zero] * len(lengths), dtype=object)
+    errors = Errors(UNIT_QUATERNION, "1", abs(lengths - 1), exact, {})
+    elapsed = base.times / (np.max(base.times) or 1.0)
+    steps = 1 + float(np.sum(base.steps_at)) * elapsed
+    attainable = base.unit_roundoff * steps
+    worst = index_of_largest(errors.doubles)
+    lowest, highest = (float(end(lengths - 1)) for end in (min, max))
+    extent = dict.fromkeys(_length(excess, attainable[worst]) for excess in (lowest, highest))
+    reason = (
+        f"attainable = u N = {base.unit_roundoff:.2g} x {steps[worst]:.4g} = {attainable[worst]:.2g}: in "
+        "each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
+        f"{' to '.join(extent)}"
+    )
+    finding = judge(errors, attainable, reason)
+    return (errors, attainable, finding) if finding.status is Status.FAIL else None
+
+
+def _length(excess: float, roundings: float) -> str:
+    """The length 1 + excess, with the digits that tell it from 1."""
+    if abs(excess) <= roundings:
+        return "1"
+    return f"{1 + excess:.6g}" if abs(excess) > _SHOWN else f"1{excess:+.2g}"

@@ -1,0 +1,94 @@
+"""Euler's equations of a rigid body, in the angular momentum.
+
+H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
+M  moment, body axes                  I  inertia tensor, H = I omega
+D  differences of K's diagonal, D1 = K33 - K22, D2 = K11 - K33, D3 = K22 - K11; their sum is 0
+
+The integrated form is H' = H x K H + M. Whatever symmetric K is stored, it is a rigid body:
+|H|^2 is constant identically, which no pair of separately rounded I and I^-1 gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from taylor_verify.models.algebra import ABSENT, Terms, add, apply, cross, is_absent, minus, times
+
+
+def angular_velocity(H: Terms, K: Sequence[Terms]) -> list[Any]:
+    """omega = K H, body axes."""
+    return apply(K, H)
+
+
+def momentum_rate(H: Terms, K: Sequence[Terms], M: Terms) -> list[Any]:
+    """H' = H x K H + M, body axes: Euler's equations for any symmetric tensor K.
+
+    Only differences of K's diagonal enter, because H x H = 0. In a nearly spherical body they are
+    small and, the rounding of a difference of neighbours being exact, known to full precision; written
+    with K itself the rate would be a difference of large numbers.
+    """
+    free = principal_rate(H, differences(K)) if _is_diagonal(K) else turning(H, _deviation(K))
+    return add(free, M)
+
+
+def differences(K: Sequence[Terms]) -> list[Any]:
+    """D, in the arithmetic of K."""
+    k1, k2, k3 = (K[i][i] for i in range(3))
+    return [minus(k3, k2), minus(k1, k3), minus(k2, k1)]
+
+
+def principal_rate(H: Terms, D: Terms, summed: int | None = None) -> list[Any]:
+    """H x K H in principal axes, where three products of the state serve for six.
+
+    The difference at the place ``summed``, if there is one, is minus the sum of the two others.
+    """
+    products = [H[1] * H[2], H[2] * H[0], H[0] * H[1]]
+    rates = [times(d, product) for d, product in zip(D, products, strict=True)]
+    if summed is not None:
+        one, other = (times(d, products[summed]) for i, d in enumerate(D) if i != summed)
+        rates[summed] = minus(-one, other)
+    return rates
+
+
+def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
+    """H x K H for K = deviation + any sphere."""
+    return cross(H, apply(deviation, H))
+
+
+def _deviation(K: Sequence[Terms]) -> list[list[Any]]:
+    """K - K33 1, a symmetric tensor again: what is left of the body when a sphere is taken away."""
+    return [
+        [
+            ABSENT if i == j == 2 else minus(K[i][j], K[2][2]) if i == j else K[i][j]
+            for j in range(3)
+        ]
+        for i in range(3)
+    ]
+
+
+def _is_diagonal(K: Sequence[Terms]) -> bool:
+    return all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j)
+
+
+def heinbockel_moment(omega: Terms, omega_rate: Terms, I: Sequence[Terms]) -> list[Any]:
+    """The left side of Heinbockel (2.2.70), M_m = I_im omega_i' - e_tmj I_ij omega_i omega_t.
+
+    Not integrated: it stands here so that a test can prove the form above equal to the text's, index
+    by index; (2.2.71) is its expansion and (2.2.72) its form in principal axes.
+    """
+    return [
+        sum(I[i][m] * omega_rate[i] for i in range(3))
+        - sum(
+            _permutation_sign(t, m, j) * I[i][j] * omega[i] * omega[t]
+            for t in range(3)
+            for j in range(3)
+            for i in range(3)
+        )
+        for m in range(3)
+    ]
+
+
+def _permutation_sign(i: int, j: int, k: int) -> int:
+    """The permutation symbol e_ijk for indices 0, 1, 2."""
+    return (i - j) * (j - k) * (k - i) // 2

@@ -1,0 +1,163 @@
+"""The form of a system of equations: which states and which parameters it has, and nothing numeric.
+
+Two scenes with the same form share one compiled integrator. A parameter that is zero is no
+parameter, an untracked attitude no state: `for_scene` builds only what the scene requires.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Protocol, runtime_checkable
+
+from taylor_verify.models.algebra import ABSENT, is_absent
+from taylor_verify.models.euler import angular_velocity, momentum_rate
+from taylor_verify.models.frame import attitude_rate, centre_rate
+from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
+from taylor_verify.models.symbol import Symbol, operations
+
+CLEBSCH_NAMES = ("p", "p'", "q", "q'", "r", "r'")
+
+
+class Named(dict[str, Any]):
+    """Symbols by name; a name that the form does not have is an absent term."""
+
+    def __missing__(self, name: str) -> int:
+        return ABSENT
+
+    def vector(self, letter: str) -> list[Any]:
+        return [self[f"{letter}{i}"] for i in (1, 2, 3)]
+
+    def matrix(self, letter: str) -> list[list[Any]]:
+        return [[self[f"{letter}{i}{j}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+
+    def symmetric(self, letter: str) -> list[list[Any]]:
+        """A matrix of which the upper triangle alone is named."""
+        return [[self[f"{letter}{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
+
+    def quaternion(self) -> list[Any]:
+        return [self[f"e{i}"] for i in range(4)]
+
+
+Equations = Callable[[Named], Mapping[str, Any]]
+
+
+@runtime_checkable
+class Abbreviated(Protocol):
+    """Equations that are too long to be read as they are, and have names for parts of themselves."""
+
+    def lines(self, n: Named) -> Mapping[str, Any]:
+        """What to write for each name on a left side, a rate (``H1'``) or a part (``M1``)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Form:
+    """Equations together with the names of the states and parameters that enter them.
+
+    States: H1 H2 H3 (Euler) or x1 x2 x3 y1 y2 [y3] (Kirchhoff), then e0..e3 (attitude quaternion) and
+    c1 c2 c3 (centre) where they are tracked.
+    """
+
+    equations: Equations
+    states: tuple[str, ...]
+    parameters: tuple[str, ...]
+
+    def rates(self, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
+        """d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent."""
+        named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True))
+        rates = self.equations(named)
+        return [rates[name] for name in self.states]
+
+    def text(self) -> tuple[str, ...]:
+        """The equations as they are built, a line for each state: what is absent is not there.
+
+        Where they are abbreviated there is a line for each of the parts as well.
+        """
+        if isinstance(self.equations, Abbreviated):
+            names = self.states + self.parameters
+            lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
+            return tuple(f"{name} = {value}" for name, value in lines.items())
+        rates = zip(self.states, self._symbolic(), strict=True)
+        return tuple(f"{name}' = {rate}" for name, rate in rates)
+
+    def written(self) -> str:
+        """All rates in full."""
+        return " ".join(map(str, self._symbolic()))
+
+    def operations(self) -> dict[str, int]:
+        """The distinct sums, products and quotients of one evaluation of the rates."""
+        return operations(self._symbolic())
+
+    def _symbolic(self) -> list[Any]:
+        states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
+        return self.rates(list(states), list(parameters))
+
+    def constants(self) -> tuple[str, ...]:
+        """The impulses that no term changes: x1 to y3, as far as their rates are absent.
+
+        The momentum of a rigid body stays a state all the same: whoever steps by himself moves it.
+        """
+        return _constants(self)
+
+    def entering(self) -> tuple[str, ...]:
+        """The parameters that occur in the equations: with y3 = 0, for one, Clebsch's r' does not."""
+        return _entering(self)
+
+
+# Forms are few and scenes are many: a family of bodies asks for one and the same.
+@lru_cache(maxsize=256)
+def _constants(form: Form) -> tuple[str, ...]:
+    rates = zip(form.states, form._symbolic(), strict=True)
+    return tuple(name for name, rate in rates if name[0] in "xy" and is_absent(rate))
+
+
+@lru_cache(maxsize=256)
+def _entering(form: Form) -> tuple[str, ...]:
+    written = set(re.findall(r"[A-Za-z]\d*'?", form.written()))
+    return tuple(name for name in form.parameters if name in written)
+
+
+def euler_equations(n: Named) -> dict[str, Any]:
+    """H' = H x K H + M, and the attitude where it is tracked."""
+    H, K = n.vector("H"), n.symmetric("K")
+    rates = labelled("H", momentum_rate(H, K, n.vector("M")))
+    return rates | frame_rates(n, angular_velocity(H, K), U=None)
+
+
+def kirchhoff_equations(n: Named) -> dict[str, Any]:
+    """48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
+    x, y = n.vector("x"), n.vector("y")
+    U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
+    x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
+
+
+def clebsch_equations(n: Named) -> dict[str, Any]:
+    """Clebsch's T about axis 3; y3 is a state only where a couple turns it."""
+    x, y = n.vector("x"), n.vector("y")
+    six = [n[name] for name in CLEBSCH_NAMES]
+    x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
+    p, p_prime, q, q_prime, r, r_prime = six
+    U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
+
+
+def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
+    rates: dict[str, Any] = {}
+    if "e0" in n:
+        attitude = attitude_rate(n.quaternion(), omega)
+        rates |= {f"e{i}": rate for i, rate in enumerate(attitude)}
+    if "c1" in n and U is not None:
+        rates |= labelled("c", centre_rate(n.quaternion(), U))
+    return rates
+
+
+def labelled(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
+    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+
+
+def _axial(transverse: Any, axial: Any) -> list[list[Any]]:
+    return [[transverse, 0, 0], [0, transverse, 0], [0, 0, axial]]

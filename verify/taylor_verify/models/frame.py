@@ -1,0 +1,40 @@
+"""Attitude and centre: how the body frame moves in space.
+
+q  unit quaternion, scalar first, body to space: v_space = R(q) v_body
+c  the body's origin in space axes
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from taylor_verify.models.algebra import Terms, apply, dot, minus, plus, times
+
+
+def attitude_rate(q: Terms, omega: Terms) -> list[Any]:
+    """q' = q (0, omega) / 2, the same as R' = R [omega]x."""
+    q0, q1, q2, q3 = q
+    w1, w2, w3 = omega
+    doubled = [
+        minus(0, dot([q1, q2, q3], omega)),
+        plus(times(q0, w1), minus(times(q2, w3), times(q3, w2))),
+        plus(times(q0, w2), minus(times(q3, w1), times(q1, w3))),
+        plus(times(q0, w3), minus(times(q1, w2), times(q2, w1))),
+    ]
+    return [component / 2 for component in doubled]
+
+
+def rotation(q: Terms) -> list[list[Any]]:
+    """R(q), which is |q|^2 times a rotation where q is not a unit quaternion."""
+    q0, q1, q2, q3 = q
+    s0, s1, s2, s3 = q0 * q0, q1 * q1, q2 * q2, q3 * q3
+    return [
+        [s0 + s1 - s2 - s3, 2 * (q1 * q2 - q0 * q3), 2 * (q1 * q3 + q0 * q2)],
+        [2 * (q1 * q2 + q0 * q3), s0 - s1 + s2 - s3, 2 * (q2 * q3 - q0 * q1)],
+        [2 * (q1 * q3 - q0 * q2), 2 * (q2 * q3 + q0 * q1), s0 - s1 - s2 + s3],
+    ]
+
+
+def centre_rate(q: Terms, U: Terms) -> list[Any]:
+    """c' = R(q) U, space axes."""
+    return apply(rotation(q), U)

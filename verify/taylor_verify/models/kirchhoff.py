@@ -1,0 +1,97 @@
+"""Kirchhoff's equations of a solid moving through an ideal fluid (Hydromechanics 48-49).
+
+x  linear impulse, body axes           U      = dT/dx, velocity of the body's origin
+y  impulsive couple about the origin   Omega  = dT/dy, angular velocity
+X, L  force and couple, body axes      T      = x.A x/2 + x.B y + y.C y/2
+
+p, p', q, q', r, r' are Clebsch's coefficients, 49 (1), with body axis 3 the axis of symmetry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from taylor_verify.models.algebra import Terms, add, apply, cross, minus, plus, times, transpose
+
+
+def velocities(
+    x: Terms, y: Terms, A: Sequence[Terms], B: Sequence[Terms], C: Sequence[Terms]
+) -> tuple[list[Any], list[Any]]:
+    """U = A x + B y and Omega = B^T x + C y, body axes."""
+    U = add(apply(A, x), apply(B, y))
+    Omega = add(apply(transpose(B), x), apply(C, y))
+    return U, Omega
+
+
+def impulse_rates(
+    x: Terms, y: Terms, U: Terms, Omega: Terms, X: Terms, L: Terms
+) -> tuple[list[Any], list[Any]]:
+    """x' = x x Omega + X and y' = y x Omega + x x U + L: 48 (3) and (4), all 21 coefficients."""
+    x_rate = add(cross(x, Omega), X)
+    y_rate = add(add(cross(y, Omega), cross(x, U)), L)
+    return x_rate, y_rate
+
+
+def clebsch_rates(
+    x: Terms, y: Terms, coefficients: Terms, X: Terms, L: Terms
+) -> tuple[list[Any], list[Any]]:
+    """The same for Clebsch's T, where six products of the state serve for eighteen.
+
+    x3' is 49 (3). y3' is the couple's third component alone, by 49 (2), whatever the force: without
+    it y3 is a constant and the caller passes a parameter. Coefficients stand by themselves, never as
+    differences such as q' - q, which the arithmetic of a rung would have to round. Where q' is the
+    very object that q is, the body is the same in all directions as far as q goes, and the terms of
+    that difference are left out; likewise p' and p, r' and r.
+    """
+    p, p_prime, q, q_prime, r, r_prime = coefficients
+    x1, x2, x3 = x
+    y1, y2, y3 = y
+    x1x3, x2x3, x3y1, x3y2 = x1 * x3, x2 * x3, x3 * y1, x3 * y2
+    x1y3, x2y3, y1y3, y2y3 = times(x1, y3), times(x2, y3), times(y1, y3), times(y2, y3)
+
+    def sum_of(positive: Sequence[Terms], negative: Sequence[Terms]) -> Any:
+        plus_terms, minus_terms = _uncancelled(positive, negative)
+        total: Any = 0
+        for coefficient, term in plus_terms:
+            total = plus(total, times(coefficient, term))
+        for coefficient, term in minus_terms:
+            total = minus(total, times(coefficient, term))
+        return total
+
+    x_rate = [
+        sum_of([(q_prime, x2x3), (r_prime, x2y3)], [(q, x2x3), (r, x3y2)]),
+        sum_of([(q, x1x3), (r, x3y1)], [(q_prime, x1x3), (r_prime, x1y3)]),
+        times(r, x1 * y2 - x2 * y1),
+    ]
+    y_rate = [
+        sum_of(
+            [(q_prime, x3y2), (r_prime, y2y3), (p_prime, x2x3), (q_prime, x2y3)],
+            [(q, x2y3), (r, y2y3), (p, x2x3), (q, x3y2)],
+        ),
+        sum_of(
+            [(q, x1y3), (r, y1y3), (p, x1x3), (q, x3y1)],
+            [(q_prime, x3y1), (r_prime, y1y3), (p_prime, x1x3), (q_prime, x1y3)],
+        ),
+        0,
+    ]
+    return add(x_rate, X), add(y_rate, L)
+
+
+def _uncancelled(
+    positive: Sequence[Terms], negative: Sequence[Terms]
+) -> tuple[list[Terms], list[Terms]]:
+    """The products without those that occur with both signs: the same coefficient, the same term."""
+    left, kept = list(negative), []
+    for one in positive:
+        twin = next((i for i, other in enumerate(left) if _are_one(one, other)), None)
+        if twin is None:
+            kept.append(one)
+        else:
+            del left[twin]
+    return kept, left
+
+
+def _are_one(one: Terms, other: Terms) -> bool:
+    """Identity, not equality: two numbers may be equal by chance, and in one body only."""
+    return one[0] is other[0] and one[1] is other[1]

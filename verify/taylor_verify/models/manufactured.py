@@ -1,0 +1,193 @@
+"""Loads that make a chosen motion one of the body's, with the cosines and sines carried as states.
+
+h, k         z* at the start: H0, or x0 and y0         n1, n2, ..   the frequencies nu
+a1i, b1i ..  what cosine and sine put into H* or x*     u1, v1, ..   cos nu t and sin nu t: states
+f1i, g1i ..  the same of y*                             e_ijk        the permutation symbol
+
+    H*_i = h_i + sum over waves of a_i (u - 1) + b_i v,      u' = -n v,  v' = n u
+
+so that H* begins at h, a number of the rung, and not at a sum that would have to be rounded. Everything
+here is a number of the rung, or formed from such by + - x: the motion H* solves the equations as they
+stand, whatever rounding made of their coefficients. Time itself does not enter.
+
+A clock that rounding has put off by d, from time s on, does no lasting harm. For any u and v at all H* is
+a solution along them, so that the error at t is DH* d, that of the moment, less Phi(t, s) DH* d, which goes
+as any error of H does: with |DH*| the amplitude of the waves, it is of the order of a rounding of H.
+
+The loads are written out by indices and share neither cross product nor tensor form with the equations
+that they load: what is wrong there is not undone here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from taylor_verify.models.algebra import ABSENT, Terms, add, is_absent, minus, plus, times
+from taylor_verify.models.form import Equations, Named, labelled
+from taylor_verify.models.symbol import Symbol
+from taylor_verify.scenes.manufactured import Manufactured, Wave
+from taylor_verify.scenes.tensors import Vector
+
+# For each vector the letters of its start, its cosines and its sines.
+_MOMENTUM = (("h", "a", "b"),)
+_IMPULSES = (("h", "a", "b"), ("k", "f", "g"))
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """The equations ``free`` of a body under the loads of its manufactured motion.
+
+    Values, as the equations of special.py: two scenes with as many waves share one compiled integrator.
+    """
+
+    free: Equations
+    waves: int
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        loads = _loads(n, [_motion(n, letters, self.waves) for letters in _letters(n)])
+        return dict(self.free(Named({**n, **loads}))) | self._clock(n)
+
+    def lines(self, n: Named) -> dict[str, Any]:
+        """The rates by M, or X and L, these by H*, or x* and y*, and these by the clock."""
+        written: dict[str, Any] = {}
+        motion: list[_Part] = []
+        for letters, name in zip(_letters(n), "H" if "H1" in n else "xy", strict=True):
+            value, rate = _motion(n, letters, self.waves)
+            parts = [_starred(name, "*", value), _starred(name, "*'", rate)]
+            written |= parts[0] | parts[1]
+            motion.append((_symbols(parts[0]), _symbols(parts[1])))
+        loads = _loads(n, motion)
+        named = {name: Symbol(name) for name, load in loads.items() if not is_absent(load)}
+        rates = dict(self.free(Named({**n, **named}))) | self._clock(n)
+        return {f"{name}'": rates[name] for name in rates if name in n} | loads | written
+
+    def _clock(self, n: Named) -> dict[str, Any]:
+        rates: dict[str, Any] = {}
+        for k in range(1, self.waves + 1):
+            u, v, nu = n[f"u{k}"], n[f"v{k}"], n[f"n{k}"]
+            rates |= {f"u{k}": minus(ABSENT, times(nu, v)), f"v{k}": times(nu, u)}
+        return rates
+
+
+def states(motion: Manufactured) -> tuple[str, ...]:
+    """The clock: a cosine and a sine for each wave."""
+    return tuple(f"{letter}{k}" for k in range(1, len(motion.waves) + 1) for letter in "uv")
+
+
+def numbers(motion: Manufactured) -> dict[str, Fraction]:
+    """Every parameter of a rounded motion, and the clock at its start.
+
+    The constant part does not enter: it is what the start, H0 or x0 and y0, leaves of it.
+    """
+    found: dict[str, Fraction] = {}
+    for place, (begin, cosine, sine) in enumerate(_IMPULSES[: len(motion.constant) // 3]):
+        own = slice(3 * place, 3 * place + 3)
+        found |= labelled(begin, motion.start[own])
+        for k, wave in enumerate(motion.waves, start=1):
+            found |= labelled(f"{cosine}{k}", wave.cosine[own])
+            found |= labelled(f"{sine}{k}", wave.sine[own])
+    for k, wave in enumerate(motion.waves, start=1):
+        found |= {f"n{k}": wave.frequency, f"u{k}": Fraction(1), f"v{k}": Fraction(0)}
+    return found
+
+
+def told(motion: Manufactured) -> tuple[str, ...]:
+    """What a reader of the equations should know."""
+    letters = "H* is the motion" if len(motion.constant) == 3 else "x* and y* are the motion"
+    told = [f"the loads are those under which {letters}"]
+    if motion.waves:
+        told.append(f"{', '.join(states(motion))} are states, so that time does not enter")
+    return tuple(told)
+
+
+def begun(waves: Sequence[Wave], start: Vector) -> Manufactured:
+    """The motion of these waves that is exactly there at its start."""
+    constant = start
+    for wave in waves:
+        constant = tuple(c - a for c, a in zip(constant, wave.cosine, strict=True))
+    return Manufactured(constant, tuple(waves))
+
+
+# The loads.
+
+
+# A vector of the motion, and its rate.
+_Part = tuple[Sequence[Any], Sequence[Any]]
+
+
+def _letters(n: Named) -> tuple[tuple[str, str, str], ...]:
+    return _MOMENTUM if "H1" in n else _IMPULSES
+
+
+def _loads(n: Named, motion: Sequence[_Part]) -> dict[str, Any]:
+    """M, or X and L, by name."""
+    return _moment(n, *motion) if len(motion) == 1 else _force_and_couple(n, *motion)
+
+
+def _moment(n: Named, momentum: _Part) -> dict[str, Any]:
+    """M_i = H*_i' - e_ijk H*_j K_kl H*_l."""
+    (H, H_rate), K = momentum, n.symmetric("K")
+    omega = [_row(K[k], H) for k in range(3)]
+    return labelled("M", [minus(H_rate[i], _permuted(i, H, omega)) for i in range(3)])
+
+
+def _force_and_couple(n: Named, linear: _Part, angular: _Part) -> dict[str, Any]:
+    """X_i = x*_i' - e_ijk x*_j Omega*_k and L_i = y*_i' - e_ijk (y*_j Omega*_k + x*_j U*_k)."""
+    (x, x_rate), (y, y_rate) = linear, angular
+    A, B, C = n.symmetric("A"), n.matrix("B"), n.symmetric("C")
+    U = [plus(_row(A[k], x), _row(B[k], y)) for k in range(3)]
+    Omega = [plus(_row([B[j][k] for j in range(3)], x), _row(C[k], y)) for k in range(3)]
+    X = [minus(x_rate[i], _permuted(i, x, Omega)) for i in range(3)]
+    turned = [plus(_permuted(i, y, Omega), _permuted(i, x, U)) for i in range(3)]
+    L = [minus(y_rate[i], turned[i]) for i in range(3)]
+    return labelled("X", X) | labelled("L", L)
+
+
+def _starred(letter: str, mark: str, vector: Sequence[Any]) -> dict[str, Any]:
+    return {f"{letter}{i}{mark}": component for i, component in enumerate(vector, start=1)}
+
+
+def _symbols(named: Mapping[str, Any]) -> list[Any]:
+    """Names in place of components, what is absent staying so."""
+    return [ABSENT if is_absent(value) else Symbol(name) for name, value in named.items()]
+
+
+def _motion(n: Named, letters: tuple[str, str, str], waves: int) -> tuple[list[Any], list[Any]]:
+    """One vector of the motion, and its rate."""
+    begin, cosine, sine = letters
+    value, rate = n.vector(begin), [ABSENT] * 3
+    for k in range(1, waves + 1):
+        u, v, nu = n[f"u{k}"], n[f"v{k}"], n[f"n{k}"]
+        a, b = n.vector(f"{cosine}{k}"), n.vector(f"{sine}{k}")
+        value = add(value, [plus(times(p, u - 1), times(q, v)) for p, q in zip(a, b, strict=True)])
+        swing = [minus(times(q, u), times(p, v)) for p, q in zip(a, b, strict=True)]
+        rate = add(rate, [times(nu, s) for s in swing])
+    return value, rate
+
+
+def _permuted(i: int, p: Terms, q: Terms) -> Any:
+    """e_ijk p_j q_k, summed over j and k."""
+    total: Any = ABSENT
+    for sign, j, k in _permutations(i):
+        product = times(p[j], q[k])
+        total = plus(total, product) if sign > 0 else minus(total, product)
+    return total
+
+
+def _permutations(i: int) -> Iterator[tuple[int, int, int]]:
+    """Every (e_ijk, j, k) that is not zero."""
+    for j in range(3):
+        for k in range(3):
+            sign = (i - j) * (j - k) * (k - i) // 2
+            if sign:
+                yield sign, j, k
+
+
+def _row(coefficients: Terms, vector: Terms) -> Any:
+    total: Any = ABSENT
+    for c, component in zip(coefficients, vector, strict=True):
+        total = plus(total, times(c, component))
+    return total

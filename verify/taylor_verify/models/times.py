@@ -1,0 +1,98 @@
+"""Sample times as numbers of a rung, rounded all at once where that is provably one rounding each.
+
+Times that are equally spaced are quotients (a + k b)/d of whole numbers. Where a number of the rung
+holds numerator and denominator exactly, its division, IEEE 754's, rounds the quotient to nearest,
+once; a power of two more or less changes no digit inside the range of the rung.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.scenes.instants import EquallySpaced, Instants
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, nearest, power_of_two
+
+_HARDWARE: Final[dict[str, Any]] = {"f32": np.float32, "f64": np.float64, "f80": np.longdouble}
+# The numerators are formed in 64-bit integers, one bit of which is the sign.
+_INTEGER_BITS: Final = 63
+
+
+class TypedTimes(Instants):
+    """Numbers of a rung of the hardware: ``typed`` holds each of them exactly, as a NumPy array."""
+
+    def __init__(self, typed: np.ndarray[Any, Any]) -> None:
+        super().__init__(len(typed), lambda: map(exact_value, typed))
+        self.typed = typed
+
+    @property
+    def are_distinct(self) -> bool:
+        return bool(np.all(self.typed[1:] != self.typed[:-1]))
+
+
+class BinaryTimes(Instants):
+    """Numbers of any rung: time k is significand times 2^exponent by ``pairs[k]``, both whole."""
+
+    def __init__(self, pairs: Sequence[tuple[int, int]]) -> None:
+        super().__init__(len(pairs), lambda: (m * power_of_two(e) for m, e in pairs))
+        self.pairs = pairs
+
+    @property
+    def are_distinct(self) -> bool:
+        return all(one != other for one, other in pairwise(self.pairs))
+
+
+def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction]:
+    """Time since the initial state over ``unit``, a power of two, each rounded once to the rung.
+
+    Raises OverflowError for a time that the rung has no number for.
+    """
+    if isinstance(clock.instants, EquallySpaced):
+        a, b, d = clock.instants.over_common_denominator(clock.start)
+        count, shift = len(clock.instants), -floor_log2(unit)
+        largest = max(abs(a), abs(a + (count - 1) * b))
+        if _is_in_range(largest, d, shift, rung):
+            if _is_held(largest, d, rung):
+                return TypedTimes(_quotients(a, b, d, count, shift, rung))
+            numerators = range(a, a + count * b, b)
+            return BinaryTimes([_shifted(nearest(n, d, rung.bits), shift) for n in numerators])
+    return tuple(rung.round(t / unit) for t in clock.elapsed)
+
+
+def are_distinct(times: Sequence[Fraction]) -> bool:
+    """Whether no two are equal; the instants were monotonic, and rounding keeps their order."""
+    if isinstance(times, TypedTimes | BinaryTimes):
+        return times.are_distinct
+    return all(one != other for one, other in pairwise(times))
+
+
+def _is_in_range(largest: int, d: int, shift: int, rung: Rung) -> bool:
+    """Whether every quotient n/d 2^shift with 0 < n <= largest is a normal number of the rung."""
+    if rung.emin is None or rung.emax is None:
+        return True
+    return shift - d.bit_length() > rung.emin and largest.bit_length() + shift < rung.emax
+
+
+def _is_held(largest: int, d: int, rung: Rung) -> bool:
+    """Whether the rung is a type of this machine that holds every numerator and the denominator."""
+    kind = _HARDWARE.get(rung.name)
+    if kind is None or np.finfo(kind).nmant + 1 != rung.bits:
+        return False
+    return max(largest, d).bit_length() <= min(rung.bits, _INTEGER_BITS)
+
+
+def _quotients(a: int, b: int, d: int, count: int, shift: int, rung: Rung) -> np.ndarray[Any, Any]:
+    kind = _HARDWARE[rung.name]
+    numerators = (a + b * np.arange(count, dtype=np.int64)).astype(kind)
+    found: np.ndarray[Any, Any] = np.ldexp(numerators / kind(d), shift)
+    return found
+
+
+def _shifted(number: tuple[int, int], shift: int) -> tuple[int, int]:
+    significand, exponent = number
+    return significand, exponent + shift

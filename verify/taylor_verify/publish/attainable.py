@@ -1,0 +1,108 @@
+"""The table of what each solver reached beside what was attainable: by rung, then by scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from statistics import median
+from typing import Final
+
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, ratio, word
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
+from taylor_verify.publish.runs import Run, is_scored, place_of_rung, runs
+
+_WHAT: Final = (
+    "Attainable is what would be left if every step rounded each component once and did nothing else "
+    "wrong: such roundings add up like a random walk, and the orbit carries them on. How near to that "
+    "did each run come?"
+)
+_MODEL: Final = (
+    "It is a model of random roundings and no bound: a run of few steps may be lucky and stay far below "
+    "it, and the largest of hundreds of samples may lie somewhat above. A gate stands at ten times it."
+)
+
+
+def attainable(verdicts: Sequence[Verdict]) -> str:
+    """A line a rung, then a line for every state quantity of every scene with a cell for each rung."""
+    found = runs(verdicts)
+    shown = [verdict for run in found for verdict in run.state]
+    legend = [
+        "A cell is *reached, attainable, ratio @ t*: the largest error of all samples; what was "
+        "attainable at its time; and the largest ratio of the two at one sample, with the time of that "
+        "sample, which may be another one.",
+        "A single 0 with what was attainable is a state without any error.",
+        "A word, or a bold one behind the numbers, is a verdict other than pass.",
+        roundoffs(shown),
+        "[gates](gates.md) has the arithmetic of every attainable error, in words.",
+    ]
+    return page(
+        "Attainable and reached",
+        verdicts,
+        f"{_WHAT} {_MODEL}",
+        counts(shown),
+        "## By rung",
+        _by_rung(shown),
+        "## How to read a cell",
+        bullets(legend),
+        sections(found, _section),
+    )
+
+
+def _by_rung(shown: Sequence[Verdict]) -> str:
+    headings = ("u", "errors", "median ratio", "ratio at most 1", "largest ratio")
+    columns = [Column("rung"), *(Column(heading, True) for heading in headings), Column("where")]
+    rungs = sorted({verdict.rung for verdict in shown}, key=place_of_rung)
+    return table(columns, [_rung_row(rung, [v for v in shown if v.rung == rung]) for rung in rungs])
+
+
+def _rung_row(rung: str, verdicts: Sequence[Verdict]) -> list[str]:
+    scored = [verdict for verdict in verdicts if is_scored(verdict)]
+    if not scored:
+        return [rung, *[NOTHING] * 6]
+    ratios = [_or_infinite(verdict) for verdict in scored]
+    worst = max(scored, key=_or_infinite)
+    within = sum(value <= 1 for value in ratios)
+    middle = median(ratios)
+    return [
+        rung,
+        figure(scored[0].roundoff),
+        str(len(scored)),
+        figure(middle) if middle < float("inf") else bold(INFINITE),
+        f"{within} of {len(scored)}",
+        ratio(worst) if worst.verdict is Status.PASS else bold(ratio(worst)),
+        f"{code(worst.quantity)} of {code(worst.scene)} at t = {instant(worst.ratio_at)}",
+    ]
+
+
+def _or_infinite(verdict: Verdict) -> float:
+    """A ratio that is none stands above every number: an error without one is not small."""
+    return float("inf") if verdict.ratio is None else verdict.ratio
+
+
+def _section(group: Sequence[Run]) -> str:
+    rungs = sorted({run.rung for run in group}, key=place_of_rung)
+    lines: dict[tuple[str, str], dict[str, Verdict]] = {}
+    for run in group:
+        for verdict in run.state:
+            lines.setdefault((run.scene, verdict.quantity), {})[run.rung] = verdict
+    columns = [Column("scene"), Column("quantity"), *(Column(rung, True) for rung in rungs)]
+    rows = [
+        [code(scene), code(quantity), *(_cell(by_rung.get(rung)) for rung in rungs)]
+        for (scene, quantity), by_rung in lines.items()
+    ]
+    parts = [table(columns, rows), unscored(group)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _cell(verdict: Verdict | None) -> str:
+    if verdict is None:
+        return NOTHING
+    if verdict.max is None:
+        return bold(prose(word(verdict)))
+    if verdict.max == 0:
+        return f"0, {figure(verdict.attainable)}"
+    where = f" @ {instant(verdict.ratio_at)}" if verdict.ratio_at is not None else ""
+    numbers = f"{figure(verdict.max)}, {figure(verdict.attainable)}, {ratio(verdict)}{where}"
+    passed = verdict.verdict is Status.PASS
+    return numbers if passed else f"{numbers} {bold(verdict.verdict.value)}"

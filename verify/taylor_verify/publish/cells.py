@@ -1,0 +1,72 @@
+"""What stands in a cell: a number in three digits, or a word for why there is none."""
+
+from __future__ import annotations
+
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish.markdown import bold
+from taylor_verify.publish.runs import is_scored
+
+NOTHING = "\N{EN DASH}"
+INFINITE = "∞"
+
+
+def figure(value: float | None) -> str:
+    """Three significant digits: 0.531, 42.0, 6.67e-6."""
+    if value is None:
+        return NOTHING
+    if value == 0:
+        return "0"
+    mantissa, _, tail = f"{value:.2e}".partition("e")
+    exponent = int(tail)
+    if -2 <= exponent <= 2:
+        return f"{value:.{2 - exponent}f}"
+    return f"{mantissa}e{exponent}"
+
+
+def instant(value: float | None) -> str:
+    """A time of the scene, which has its own number of digits."""
+    return NOTHING if value is None else f"{value:.6g}"
+
+
+def in_roundoffs(verdict: Verdict, value: float | None) -> float | None:
+    """An error in units of the rung's u; None where u is unknown or too small for a double."""
+    return value / verdict.roundoff if value is not None and verdict.roundoff else None
+
+
+def word(verdict: Verdict) -> str:
+    """In place of an error that is no number: the verdict, or how a failed run ended."""
+    unfinished = verdict.verdict is Status.FAIL and not is_scored(verdict)
+    return verdict.outcome if unfinished else verdict.verdict.value
+
+
+def error(verdict: Verdict) -> str:
+    return word(verdict) if verdict.max is None else figure(verdict.max)
+
+
+def ratio(verdict: Verdict) -> str:
+    """Error over attainable: infinite where there is an error and nothing is attainable."""
+    if verdict.ratio is None and is_scored(verdict):
+        return word(verdict) if verdict.max is None else INFINITE
+    return figure(verdict.ratio)
+
+
+def judged(verdict: Status) -> str:
+    """The verdict's word; one that is no pass stands out."""
+    return verdict.value if verdict is Status.PASS else bold(verdict.value)
+
+
+def peak(verdict: Verdict) -> str:
+    """Maximum, mean and where, in units of u."""
+    largest, mean = (in_roundoffs(verdict, value) for value in (verdict.max, verdict.mean))
+    if largest is None:
+        return word(verdict)
+    if largest == 0:
+        return figure(largest)
+    return f"{figure(largest)}, {figure(mean)} @ {instant(verdict.at)}"
+
+
+def reason(verdict: Verdict) -> str:
+    """The reason of the gate, and first what the reason of a gate does not say."""
+    if verdict.max is None and is_scored(verdict):
+        return f"the error is not a finite number; {verdict.because}"
+    return verdict.because

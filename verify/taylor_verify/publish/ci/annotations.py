@@ -1,0 +1,67 @@
+"""Verdicts as GitHub annotations: the lines that a runner reads from a step's output.
+
+    ::error title=...::...     fail, and a regression
+    ::warning title=...::...   undecided, vacuous, refused: the step is red by its exit status
+    ::notice title=...::...    unavailable, and vacuous as --partial asks
+
+A scene that is a file is named, so that GitHub shows the line beside it. GitHub keeps the first ten
+lines of each level and step and drops the rest without a word, so the tenth counts the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish.ci.case import Case, Remark, cases
+
+_LEVELS: Final = {
+    Status.FAIL: "error",
+    Status.UNDECIDED: "warning",
+    Status.VACUOUS: "warning",
+    Status.REFUSED: "warning",
+}
+_HARMLESS: Final = "notice"
+_MOST: Final = 10
+
+
+def annotation_lines(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> list[str]:
+    """The lines, errors first; none where every row is a pass."""
+    shown = [case for case in cases(verdicts, remarks) if case.status is not Status.PASS]
+    lines: list[str] = []
+    for level in (*dict.fromkeys(_LEVELS.values()), _HARMLESS):
+        lines += _of_level(level, [case for case in shown if _level(case) == level])
+    return lines
+
+
+def _level(case: Case) -> str:
+    return _HARMLESS if case.is_harmless else _LEVELS[case.status]
+
+
+def _of_level(level: str, found: list[Case]) -> Iterator[str]:
+    told = found if len(found) <= _MOST else found[: _MOST - 1]
+    for case in told:
+        yield _line(level, {**_place(case), "title": case.title}, case.text)
+    rest = len(found) - len(told)
+    if rest:
+        text = "GitHub shows ten of a kind; the step summary and the JUnit file have all"
+        yield _line(level, {"title": f"and {rest} more"}, text)
+
+
+def _place(case: Case) -> dict[str, str]:
+    return {"file": case.scene, "line": "1"} if case.scene.endswith(".toml") else {}
+
+
+def _line(level: str, properties: dict[str, str], text: str) -> str:
+    given = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
+    return f"::{level} {given}::{_data(text)}"
+
+
+def _data(text: str) -> str:
+    """Escaped as the runner undoes it: a line of somebody's stderr must not be a command of its own."""
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,120 @@
+"""Verdicts as JUnit XML, as Jenkins, GitLab and most others read it.
+
+A run is a testsuite, each of its quantities a testcase. The file is green where the exit status is
+0, and only there:
+
+    pass                          nothing inside the testcase
+    fail, regression              failure: the answer is wrong
+    undecided, vacuous, refused   error: nothing was shown, which no reader may count as success;
+                                  readers show a skipped case in green or not at all
+    unavailable                   skipped: this machine has no such number type
+    vacuous as --partial asks     skipped
+
+Both the schema of Surefire 3.0 and that of Jenkins (junit-10) admit it: the root is ``testsuites``
+for the latter, each suite in it is one of the former.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from typing import Final
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish.ci.case import Case, Remark, cases
+
+# A status that is not listed is a KeyError, and never green.
+_ELEMENTS: Final = {
+    Status.PASS: "",
+    Status.FAIL: "failure",
+    Status.UNDECIDED: "error",
+    Status.VACUOUS: "error",
+    Status.REFUSED: "error",
+}
+_COUNTED: Final = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+_HEAD: Final = '<?xml version="1.0" encoding="UTF-8"?>'
+# XML 1.0 has no way to write these: a program's stderr may hold any of them.
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def junit(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> str:
+    """The document, which ends with a newline."""
+    # A row that vanished has its place in the suite of its run.
+    found = sorted(cases(verdicts, remarks), key=_Runs().place)
+    root = Element("testsuites", name="taylor-verify")
+    for _, group in groupby(found, key=_run):
+        root.append(_suite(list(group)))
+    for name in ("tests", "failures", "errors"):
+        root.set(name, str(sum(int(suite.get(name, "0")) for suite in root)))
+    ElementTree.indent(root)
+    return f"{_HEAD}\n{ElementTree.tostring(root, encoding='unicode')}\n"
+
+
+class _Runs:
+    """The places of runs, in the order in which they are met."""
+
+    def __init__(self) -> None:
+        self._places: dict[tuple[str, ...], int] = {}
+
+    def place(self, case: Case) -> int:
+        return self._places.setdefault(_run(case), len(self._places))
+
+
+def _run(case: Case) -> tuple[str, ...]:
+    return case.scene, case.solver, case.setting, case.rung
+
+
+def _suite(group: Sequence[Case]) -> Element:
+    some = group[0]
+    suite = Element("testsuite", name=_xml(f"{some.scene} {some.rung}"), tests=str(len(group)))
+    found = [_element(case) for case in group]
+    for attribute, element in _COUNTED.items():
+        suite.set(attribute, str(found.count(element)))
+    suite.set("time", _time(_seconds(group)))
+    properties = SubElement(suite, "properties")
+    for name, value in (("solver", some.solver), ("setting", some.setting), ("rung", some.rung)):
+        SubElement(properties, "property", name=name, value=_xml(value))
+    for i, case in enumerate(group):
+        # The solver ran once for all: readers that add up the cases find its time once.
+        suite.append(_testcase(case, _seconds(group) if i == 0 else 0.0))
+    return suite
+
+
+def _seconds(group: Sequence[Case]) -> float:
+    return max((case.verdict.seconds or 0.0 for case in group if case.verdict), default=0.0)
+
+
+def _testcase(case: Case, seconds: float) -> Element:
+    name = _element(case)
+    found = Element(
+        "testcase", name=_xml(case.quantity), classname=_xml(_classname(case)), time=_time(seconds)
+    )
+    if name:
+        inside = SubElement(found, name, message=_xml(case.text))
+        if name != "skipped":  # Surefire's has no type
+            inside.set("type", case.status.value)
+        inside.text = _xml(f"{case.title}\n{case.text}")
+    return found
+
+
+def _element(case: Case) -> str:
+    return "skipped" if case.is_harmless else _ELEMENTS[case.status]
+
+
+def _classname(case: Case) -> str:
+    """Scene and rung as a dotted name, whose parts readers fold into a tree."""
+    parts = (*case.scene.removesuffix(".toml").split("/"), case.rung)
+    return ".".join(part.replace(".", "_") for part in parts if part.strip("."))
+
+
+def _time(seconds: float) -> str:
+    """To the millisecond, as the schema of Surefire has it; 0 for what is no finite number."""
+    return f"{seconds:.3f}" if 0 <= seconds < float("inf") else "0.000"
+
+
+def _xml(text: str) -> str:
+    """The text with an escape in place of what XML cannot hold."""
+    return _NOT_XML.sub(lambda found: f"\\x{ord(found[0]):02x}", text)

@@ -1,0 +1,64 @@
+"""What else lies in a report folder, beside the tables that every run makes: named where it is there."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+from taylor_verify.publish.cells import NOTHING
+
+
+@dataclass(frozen=True)
+class Page:
+    """A file or folder below the report's own, and what it has."""
+
+    path: str
+    what: str
+    has_sheet: bool = False
+
+    def row(self, seen_from: str = "") -> list[str]:
+        """A link, from the folder ``seen_from`` of the report, and what it leads to."""
+        place = PurePosixPath(self.path)
+        if seen_from and place.is_relative_to(seen_from):
+            place = place.relative_to(seen_from)
+        elif seen_from:
+            place = PurePosixPath("..", place)
+        return [f"[{place}]({place})", self.what]
+
+    @property
+    def sheet(self) -> str:
+        """Where the page's own numbers are with every digit; those of a page at the top too."""
+        return f"tables/{PurePosixPath(self.path).stem}.csv"
+
+    def row_with_sheet(self) -> list[str]:
+        """The row as ``tables`` shows it, with a link to the sheet where there is one."""
+        link, what = self.row("tables")
+        name = PurePosixPath(self.sheet).name
+        return [link, f"[csv]({name})" if self.has_sheet else NOTHING, what]
+
+
+_PAGES: Final = (
+    Page("tables/controls.md", "what each gate sees of solvers that were broken on purpose"),
+    Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
+    Page("tables/tradeoff.md", "speed against accuracy, every solver, measured once"),
+    Page("tables/prices.md", "what each thing costs that a scene may ask for"),
+    Page("tables/reach.md", "how far each precision carries, and where it ends"),
+    Page("tables/growth.md", "how drift and phase grow over decades of time"),
+    Page("tables/extremes.md", "what becomes of the hardest scenes, and what was expected of each"),
+    Page("tables/worst.md", "the worst that a search has found, family by family"),
+    Page("claims.md", "every numbered equation of the two source texts, checked; errata in front"),
+    Page("figures/README.md", "pictures of some motions, and of their errors"),
+    Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
+    Page("reference/README.md", "exact motions in digits, to test other programs with"),
+)
+
+
+def others(folder: Path, made: Collection[str] = ()) -> list[Page]:
+    """Those that are there, or are among the files that are about to be."""
+
+    def is_there(path: str) -> bool:
+        return path in made or (folder / path).exists()
+
+    return [replace(page, has_sheet=is_there(page.sheet)) for page in _PAGES if is_there(page.path)]

@@ -1,0 +1,220 @@
+"""Verdicts and records as JSON files: what a run found, apart from how long it took and where.
+
+    verdicts.json   every verdict, one a line; the same on any machine that computes the same;
+                    shifts of time of failed gates alone: a passed one has them of its roundings
+    timings.json    seconds of every run; Python, processor and command of every machine
+    records/        one file a run: the equations built and every sample's error
+
+Floats are written so that they read back to the last bit; one that is not finite is null.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.judge.record import Record
+from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.publish import file_names
+from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.publish.runs import Run, runs
+
+FOLDER: Final = "data"
+VERDICTS: Final = "verdicts.json"
+TIMINGS: Final = "timings.json"
+RECORDS: Final = "records"
+
+_MADE_BY = {"made_by": "taylor-verify run; do not edit"}
+# What the numbers do not depend on: it may differ where verdicts.json may not.
+_MACHINE = ("processor", "command")
+_SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
+_RUN = ("scene", "solver", "setting", "rung")
+
+_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+
+
+def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) -> tuple[Path, ...]:
+    """Write ``folder``/data, in place of an earlier one, and return the files written.
+
+    Raises OSError if that cannot be done, and ValueError for verdicts of unlike versions or two
+    unlike records of one run; the earlier data then stay as they are.
+    """
+    found = runs(verdicts)
+    data = folder / FOLDER
+    # The verdicts come last: once they are in place, what they speak of is there.
+    texts = _record_texts(records)
+    texts[TIMINGS] = laid_out({**_MADE_BY, **_timings(found)})
+    rows = [row(verdict) for run in found for verdict in run.verdicts]
+    same = versions(verdict for run in found for verdict in run.verdicts)
+    texts[VERDICTS] = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
+    return replace_files(data, texts, stale=_own_records(data))
+
+
+def load(folder: Path) -> tuple[Verdict, ...]:
+    """The verdicts of ``folder``/data as they were written, in reading order.
+
+    A number that was not finite is None. Raises OSError for files that cannot be read and
+    ValueError for files that hold something else. Timings may be missing.
+    """
+    file = folder / FOLDER / VERDICTS
+    stored = read_document(file)
+    timed = _timed(folder / FOLDER / TIMINGS)
+    with expecting("verdicts", file):
+        same = stored["versions"]
+        return tuple(verdict(each, same, timed.get(_key(each), {})) for each in stored["verdicts"])
+
+
+def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
+    """The versions all verdicts were made with; not Python's, on which no number depends."""
+    found = [_numerical(verdict.provenance.get("versions", {})) for verdict in verdicts]
+    unlike = next((other for other in found if other != found[0]), None)
+    if unlike is not None:
+        raise ValueError(f"expected one set of versions, got {found[0]} and {unlike}")
+    return found[0] if found else {}
+
+
+def _numerical(found: Mapping[str, str]) -> dict[str, str]:
+    return {package: version for package, version in found.items() if package != "python"}
+
+
+# Writing.
+
+
+def row(verdict: Verdict) -> dict[str, Any]:
+    """A verdict as it is stored: without what is another number every time, or on every machine."""
+    stored = verdict.row()
+    del stored["seconds"]
+    if verdict.verdict is not Status.FAIL:
+        # Which way roundings push the time is another draw on every machine.
+        for name in _SHIFT:
+            del stored[name]
+    apart = ("versions", *_MACHINE)
+    stored["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
+    return stored
+
+
+def _timings(found: Iterable[Run]) -> dict[str, Any]:
+    """The seconds of each run, with the place of its machine in a list of them."""
+    machines: list[dict[str, Any]] = []
+    timings = []
+    for run in found:
+        verdict = run.verdicts[0]
+        own = machine(verdict)
+        if own not in machines:
+            machines.append(own)
+        key = {name: getattr(run, name) for name in _RUN}
+        place = machines.index(own)
+        timings.append({**key, "seconds": verdict.seconds, "machine": place})
+    return {"machines": machines, "timings": timings}
+
+
+def machine(verdict: Verdict) -> dict[str, Any]:
+    """Where a verdict was made, as far as it says so: Python, processor and command."""
+    given = verdict.provenance
+    python = given.get("versions", {}).get("python")
+    known = {"python": python} if python else {}
+    return {**known, **{name: given[name] for name in _MACHINE if name in given}}
+
+
+def _record_texts(records: Iterable[Record]) -> dict[str, str]:
+    texts: dict[str, str] = {}
+    for record in records:
+        stem = f"{file_names.of_scene(record.scene)}.{file_names.of_solver(record.solver)}"
+        name = f"{stem}.{record.rung}.json"
+        text = laid_out({**_MADE_BY, **record.document()})
+        if texts.setdefault(f"{RECORDS}/{name}", text) != text:
+            raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
+    return texts
+
+
+def _own_records(data: Path) -> list[Path]:
+    """The records of an earlier run: files that name their maker, and no others."""
+    maker = laid_out(_MADE_BY).removesuffix("}\n") + ","
+    return [file for file in (data / RECORDS).glob("*.json") if first_line(file) == maker]
+
+
+def laid_out(document: Mapping[str, Any]) -> str:
+    """JSON with a line for every key and for every row of a list of rows."""
+    keys = (f"{_json(key)}: {_value(value)}" for key, value in document.items())
+    return "{" + ",\n ".join(keys) + "}\n"
+
+
+def _value(value: Any) -> str:
+    rows = value if isinstance(value, (list, tuple)) else ()
+    if rows and all(isinstance(row, dict) for row in rows):
+        return "[\n  " + ",\n  ".join(_json(row) for row in rows) + "\n ]"
+    return _json(value)
+
+
+def _json(value: Any) -> str:
+    try:
+        return _ENCODER.encode(value)
+    except ValueError:
+        return _ENCODER.encode(_finite(value))
+
+
+def _finite(value: Any) -> Any:
+    """The same with None for every float that JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+# Reading.
+
+
+def read_document(file: Path) -> dict[str, Any]:
+    """The JSON object in a file; ValueError, with the file, for anything else."""
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as fault:
+        raise ValueError(f"expected a JSON document, got a fault: {fault} @ {file}") from fault
+    if not isinstance(document, dict):
+        raise ValueError(f"expected a JSON object, got {type(document).__name__} @ {file}")
+    return document
+
+
+def _timed(file: Path) -> dict[tuple[str, ...], dict[str, Any]]:
+    """Each run's seconds and machine; nothing where there is no such file."""
+    if not file.exists():
+        return {}
+    stored = read_document(file)
+    with expecting("timings", file):
+        machines = stored["machines"]
+        return {
+            _key(timing): {"seconds": timing["seconds"], "machine": machines[timing["machine"]]}
+            for timing in stored["timings"]
+        }
+
+
+def _key(row: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(row[name] for name in _RUN)
+
+
+def verdict(
+    stored: Mapping[str, Any], same: Mapping[str, str], timing: Mapping[str, Any]
+) -> Verdict:
+    """A stored row as it was, made with the versions ``same``; seconds and machine as timed."""
+    own = dict(timing.get("machine", {}))
+    python = {"python": own.pop("python")} if "python" in own else {}
+    found = {**python, **same}
+    provenance: dict[str, Any] = {"versions": found} if found else {}
+    provenance |= {**own, **stored["provenance"]}
+    given = {**stored, "verdict": Status(stored["verdict"]), "provenance": provenance}
+    return Verdict(**given, seconds=timing.get("seconds"))
+
+
+@contextmanager
+def expecting(what: str, file: Path) -> Iterator[None]:
+    """Whatever goes wrong in reading stored rows is told as a ValueError that names the file."""
+    try:
+        yield
+    except (AttributeError, LookupError, TypeError, ValueError) as fault:
+        got = f"{type(fault).__name__}: {fault}"
+        raise ValueError(f"expected {what}, got a fault, {got} @ {file}") from fault

@@ -1,0 +1,156 @@
+"""What was measured, as CSV: the rows of a stored measurement, with every digit and a heading line.
+
+A page shows the few numbers that a reader asks for first. Its sheet has them all, one row for each, and in
+every row what it belongs to: a program needs no page to read it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import zip_longest
+from typing import Any, Final
+
+from taylor_verify.publish.sheets import sheet
+
+Row = Mapping[str, Any]
+
+_GROWTH: Final = (
+    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
+    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
+    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word"),
+    *("level", "gate", "law", "chance", "false_alarm", "scene_sha256"),
+)
+_REACH: Final = (
+    "family",
+    "value",
+    "rung",
+    "periods",
+    "error",
+    "attainable",
+    "lost",
+    "steps",
+    "why",
+)
+_PRICES: Final = (
+    *("rung", "variant", "against", "states", "parameters", "sums", "products", "quotients"),
+    *("order", "steps_per_time", "microseconds", "step_ratio", "step_low", "step_high"),
+    *("time_ratio", "time_low", "time_high", "error", "ratio_at_equal_error", "what"),
+)
+_GATED: Final = ("omega", "T", "H2")
+_TRAPS: Final = (
+    *("trap", "title", "case", "reports", "silent", "error", "driver", "driver_error", "steps"),
+    *(f"{name}_{field}" for name in _GATED for field in ("verdict", "over_bound")),
+    *("cause", "documented", "script"),
+)
+_WORST: Final = (
+    *("family", "what", "rung", "judged", "ratio", "quantity", "max", "verdict", "scene"),
+    "factor",
+)
+_CLAIMS: Final = (
+    *("id", "verdict", "statement", "correction", "condition", "counterexample"),
+    *("residual", "residual_transcribed", "bound", "because", "domain", "method", "mutations"),
+    *("lost", "open", "void", "remark"),
+)
+
+
+def growth(runs: Iterable[Row]) -> str:
+    """A row for every quantity of every ensemble: its exponent with the interval, and its gate."""
+    return sheet(_GROWTH, (_grown(run, row) for run in runs for row in run["quantities"]))
+
+
+def _grown(run: Row, row: Row) -> dict[str, Any]:
+    gate = row["gate"] or {}
+    late, late_low, late_high = row["late"]
+    return {
+        **{name: run[name] for name in ("scene", "solver", "rung", "lost", "period")},
+        **{name: row[name] for name in ("quantity", "in_walks", "exponent", "low", "high", "word")},
+        "starts": run["lanes"],
+        "periods_first": run["counts"][0],
+        "periods_last": run["counts"][-1],
+        "steps_last": run["steps"][-1],
+        "rms_first": row["rms"][0],
+        "rms_last": row["rms"][-1],
+        "late": late,
+        "late_low": late_low,
+        "late_high": late_high,
+        "late_word": row["late_word"],
+        "level": row["level"],
+        "gate": gate.get("verdict"),
+        **{name: gate.get(name) for name in ("law", "chance", "false_alarm")},
+        "scene_sha256": run["digest"],
+    }
+
+
+def reach(rows: Iterable[Row]) -> str:
+    """A row for every number of periods that was looked at; one, with the reason, where none was."""
+    return sheet(_REACH, (found for row in rows for found in _reached(row)))
+
+
+def _reached(row: Row) -> Iterator[dict[str, Any]]:
+    """An error that is missing was so large that nobody followed it on: the run is lost."""
+    own = {name: row[name] for name in ("family", "value", "rung", "steps", "why")}
+    if not row["errors"]:
+        yield own
+        return
+    for periods, error, floor in zip_longest(row["periods"], row["errors"], row["floors"]):
+        lost = "yes" if error is None else "no"
+        yield {**own, "periods": periods, "error": error, "attainable": floor, "lost": lost}
+
+
+def prices(rows: Iterable[Row], equal: Iterable[Row]) -> str:
+    """A row for every variant and rung; ``equal`` has the prices at equal error, which are of f64."""
+    at_equal = {row["variant"]: row["ratio"] for row in equal}
+    return sheet(_PRICES, (_priced(row, at_equal) for row in rows))
+
+
+def _priced(row: Row, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
+    step, step_low, step_high = row["step_ratio"]
+    time, time_low, time_high = row["time_ratio"]
+    intervals = {
+        **{"step_ratio": step, "step_low": step_low, "step_high": step_high},
+        **{"time_ratio": time, "time_low": time_low, "time_high": time_high},
+    }
+    equal = at_equal.get(row["variant"]) if row["rung"] == "f64" else None
+    return {**row, **intervals, "ratio_at_equal_error": equal}
+
+
+def traps(rows: Iterable[Row]) -> str:
+    """A row for every case of every trap, with the verdict of each gate that was asked."""
+    return sheet(_TRAPS, (_trapped(row, case) for row in rows for case in row["cases"]))
+
+
+def _trapped(row: Row, case: Row) -> dict[str, Any]:
+    gates = {
+        f"{name}_{field}": case["gates"].get(name, {}).get(field)
+        for name in _GATED
+        for field in ("verdict", "over_bound")
+    }
+    return {
+        "trap": row["key"],
+        **{name: row[name] for name in ("title", "cause", "documented", "script")},
+        "silent": "yes" if row["silent"] else "no",
+        "reports": case["said"],
+        **{name: case[name] for name in ("case", "error", "driver", "driver_error", "steps")},
+        **gates,
+    }
+
+
+def worst(stored: Row) -> str:
+    """A row for every family."""
+    shared = {name: stored[name] for name in ("rung", "factor")}
+    return sheet(_WORST, ({**row, **shared, "family": row["name"]} for row in stored["families"]))
+
+
+def claims(rows: Sequence[Row]) -> str:
+    """A row for every entry of the ledger."""
+    return sheet(_CLAIMS, (_claimed(row) for row in rows))
+
+
+def _claimed(row: Row) -> dict[str, Any]:
+    residual = row["residual"]
+    return {
+        **row,
+        "residual": residual["statement"],
+        "residual_transcribed": residual.get("transcribed"),
+        "mutations": "; ".join(row["mutations"]),
+    }

@@ -1,0 +1,173 @@
+"""The errors of every rung against time, beside the powers of time that roundings leave.
+
+Both axes are logarithmic; a line is the largest error so far. Errors are in units of the rung's own unit
+roundoff u, in which the rungs lie on each other where nothing but their roundings is at work. First a
+conserved quantity, with the power 1/2 of Brouwer's law; then the state and the attitude, with the power
+3/2 of a phase whose rate has drifted, and the centre.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import accumulate
+from math import exp, isfinite, log
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.publish.pictures.diagram import add_axes, frames_of, free_place, line_of, widened
+from taylor_verify.publish.pictures.legend import draw_legend, foot_of
+from taylor_verify.publish.pictures.log_axes import number_axes
+from taylor_verify.publish.pictures.palette import QUIET
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_rung, place_of_rung
+from taylor_verify.publish.pictures.wording import plain, stem_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Record = Mapping[str, Any]
+Points = list[tuple[float, float]]
+
+# Heading, the quantities of which the first that a record has is drawn, the power and its name.
+PANELS: Final = (
+    ("conserved", ("T", "H2", "FG", "F2"), 0.5, "\N{SQUARE ROOT}t"),
+    ("state", ("omega", "impulse"), 1.5, "t\N{SQUARE ROOT}t"),
+    ("attitude", ("attitude",), 1.5, "t\N{SQUARE ROOT}t"),
+    ("centre", ("centre",), None, ""),
+)
+_NAMES: Final = {"T": "energy T", "H2": "|H|\N{SUPERSCRIPT TWO}", "omega": "angular velocity"}
+_NOTE: Final = "The largest error up to t, in u, the rung's unit roundoff."
+_POWER: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8, "dashes": (5, 2)}
+# So many marks on a line, whose samples are crowded on the right.
+_MARKS: Final = 9
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One quantity: a line for each rung, and the power of time that belongs to it, if one does."""
+
+    heading: str
+    quantity: str
+    lines: Mapping[str, Points]
+    power: float | None
+    words: str
+
+
+def series(records: Sequence[Record], start: float | None = None) -> dict[str, dict[str, Points]]:
+    """By quantity and rung: the time since the start, and the error in u; what is zero is left out.
+
+    ``start`` is the time of the initial state, the first sample where it is not given.
+    """
+    found: dict[str, dict[str, Points]] = {}
+    for record in sorted(records, key=lambda one: place_of_rung(one["rung"])):
+        first, u = record["times"][0] if start is None else start, record["unit_roundoff"]
+        for gate in record["gates"]:
+            pairs = zip(record["times"], gate["errors"], strict=True)
+            points = [(abs(t - first), e / u) for t, e in pairs if _is_drawable(t - first, e)]
+            if points:
+                found.setdefault(gate["quantity"], {})[record["rung"]] = points
+    return found
+
+
+def _is_drawable(elapsed: float, error: float | None) -> bool:
+    return elapsed != 0 and error is not None and isfinite(error) and error > 0
+
+
+def picture(scene: str, records: Sequence[Record], start: float | None = None) -> Picture:
+    """Of all rungs of one scene. Raises ValueError for records without any error above zero."""
+    panels = panels_of(series(records, start))
+    if not panels:
+        raise ValueError(f"expected errors above zero, got none @ {scene}")
+    ends = "; ".join(
+        f"{panel.quantity} on {rung} {plain(points[-1][1])} u at the end"
+        for panel in panels
+        for rung, points in panel.lines.items()
+    )
+    alt = (
+        f"Errors of {scene} against the time since the start for each rung, both logarithmic, in units "
+        f"of the rung's roundoff: {' and '.join(panel.quantity for panel in panels)}. {ends}."
+    )
+    document = {"scene": scene}
+    title = f"Errors over time: {scene}"
+    return Picture(stem_of(document, "errors"), title, alt, partial(_figure, panels))
+
+
+def panels_of(found: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
+    """A conserved quantity, then what the state consists of, or that of them which there is.
+
+    Under loads that change with time nothing is conserved.
+    """
+    panels = []
+    for heading, names, power, words in PANELS:
+        name = next((name for name in names if name in found), None)
+        if name is not None:
+            panels.append(Panel(heading, name, found[name], power, words))
+    return panels
+
+
+def _figure(panels: Sequence[Panel]) -> Figure:
+    from matplotlib.figure import Figure
+
+    rungs = sorted({rung for panel in panels for rung in panel.lines}, key=place_of_rung)
+    entries = [(line_of(look_of_rung(rung)), rung) for rung in rungs]
+    powers = dict.fromkeys(panel.words for panel in panels if panel.power)
+    entries += [(dict(_POWER), " and ".join(powers))] if powers else []
+    frames, height = frames_of([0] * len(panels), foot_of(entries, _NOTE))
+    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    for frame, panel in zip(frames, panels, strict=True):
+        _draw(add_axes(figure, frame), panel)
+    draw_legend(figure, entries, _NOTE, free_place(frames))
+    return figure
+
+
+def _draw(axes: Axes, panel: Panel) -> None:
+    axes.set(xscale="log", yscale="log", xlabel="time since the start")
+    unit = "u rad" if panel.quantity == "attitude" else "u"
+    axes.set(ylabel=f"error of {_NAMES.get(panel.quantity, panel.quantity)} ({unit})")
+    axes.set_title(panel.heading, pad=4)
+    lines = {rung: so_far(points) for rung, points in panel.lines.items()}
+    everything = [point for points in lines.values() for point in points]
+    axes.set(xlim=widened([t for t, _ in everything], 0.04, 0.08))
+    axes.set(ylim=widened([e for _, e in everything], 0.05, 0.08))
+    number_axes(axes)
+    if panel.power:
+        draw_power(axes, everything, panel.power)
+    for rung, points in lines.items():
+        look = {**line_of(look_of_rung(rung)), "markevery": _marked(points)}
+        axes.plot(*zip(*points, strict=True), gid=rung, zorder=3, alpha=0.9, **look)
+
+
+def _marked(points: Points) -> list[int]:
+    """Places about as far from each other on a logarithmic axis."""
+    (first, _), (last, _) = points[0], points[-1]
+    apart = log(last / first) / _MARKS
+    found = [0]
+    for i, (t, _) in enumerate(points):
+        if log(t / points[found[-1]][0]) >= apart > 0:
+            found.append(i)
+    return found
+
+
+def so_far(points: Points) -> Points:
+    """The largest error up to each time: single errors fall to nothing wherever one changes its sign."""
+    largest = accumulate((error for _, error in points), max)
+    return [(t, error) for (t, _), error in zip(points, largest, strict=True)]
+
+
+def draw_power(axes: Axes, points: Points, power: float) -> None:
+    """Through the middle of the points (of their logarithms), across the panel."""
+    shift = exp(sum(log(e) - power * log(t) for t, e in points) / len(points))
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    first = max(left, (bottom / shift) ** (1 / power))
+    last = min(right, (top / shift) ** (1 / power))
+    axes.plot(
+        [first, last],
+        [shift * first**power, shift * last**power],
+        zorder=4,
+        gid=f"power {power:g}",
+        scalex=False,
+        scaley=False,
+        **_POWER,
+    )

@@ -1,0 +1,50 @@
+"""The numbers at two logarithmic axes: powers of ten, and on a short axis 1, 2 and 5 of each."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures.wording import power_of_ten
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Between them a number is shorter in plain digits.
+_LEAST_PLAIN: Final = 1e-3
+_MOST_PLAIN: Final = 1e5
+
+
+def number_axes(axes: Axes) -> None:
+    """Numbers and a grid for axes whose limits are set."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    axes.grid(True, which="major")
+    axes.tick_params(which="minor", length=1.5)
+    for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        is_long = powers_within(*limits) >= 2
+        axis.set_major_locator(LogLocator(subs=(1.0,) if is_long else (1.0, 2.0, 5.0)))
+        axis.set_major_formatter(partial(_formatted, is_long))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _formatted(is_long: bool, value: float, place: int | None) -> str:
+    del place
+    return number(value, is_long)
+
+
+def powers_within(low: float, high: float) -> int:
+    """How many powers of ten lie on an axis."""
+    return floor(log10(high)) - ceil(log10(low)) + 1
+
+
+def number(value: float, is_long: bool) -> str:
+    """Of a long axis a power of ten, of a short one a number of one digit."""
+    if is_long:
+        return power_of_ten(value)
+    if _LEAST_PLAIN <= value < _MOST_PLAIN:
+        return f"{value:.1g}" if value < 1 else f"{value:.0f}"
+    power = floor(log10(value) + 1e-9)
+    digit = round(value / 10.0**power)
+    return power_of_ten(10.0**power) if digit == 1 else f"{digit}·{power_of_ten(10.0**power)}"

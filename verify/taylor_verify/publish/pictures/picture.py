@@ -1,0 +1,72 @@
+"""A picture: its name, what it shows in words, and how it is drawn; saved for pages and for print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures.style import settings
+from taylor_verify.publish.replacement import replace_files
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MAKER: Final = "taylor-verify"
+# A date would make two files of one picture differ.
+_METADATA: Final = {
+    "svg": {"Creator": _MAKER, "Date": None},
+    "pdf": {"Creator": _MAKER, "CreationDate": None},
+}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """``stem`` is the file's name without its ending; ``alt`` says what is seen to who cannot.
+
+    ``figure`` draws it, inside `plotting` only. The alt text asks for no matplotlib.
+    """
+
+    stem: str
+    title: str
+    alt: str
+    figure: Callable[[], Figure]
+
+
+def save(pictures: Iterable[Picture], folder: Path | str) -> list[Path]:
+    """Write each picture as SVG and as PDF, in place of earlier ones; return the paths.
+
+    All are drawn before the first is written, and each is moved into its place whole. Raises
+    ImportError without matplotlib, OSError for a folder that cannot be written.
+    """
+    with plotting():
+        contents = {name: content for picture in pictures for name, content in _files(picture)}
+    return list(replace_files(Path(folder), contents))
+
+
+@contextmanager
+def plotting() -> Iterator[None]:
+    """matplotlib with the settings of `style` and its own defaults, whatever the user's file says."""
+    try:
+        from matplotlib import style
+    except ImportError as fault:
+        raise ImportError(
+            "expected matplotlib (pip install 'taylor-verify[plots]'), got none @ pictures"
+        ) from fault
+    with style.context(["default", settings()]):
+        yield
+
+
+def _files(picture: Picture) -> Iterator[tuple[str, bytes]]:
+    """Name and content for each format."""
+    figure = picture.figure()
+    for ending, own in _METADATA.items():
+        metadata = {"Title": picture.title, **own}
+        if ending == "svg":
+            metadata["Description"] = picture.alt
+        file = BytesIO()
+        figure.savefig(file, format=ending, metadata=metadata)
+        yield f"{picture.stem}.{ending}", file.getvalue()

@@ -1,0 +1,259 @@
+"""The look of every solver and rung, the same in every picture, and what all pictures share.
+
+A look is a colour, a marker and a line: each pair of colour and marker belongs to one family, the
+line tells the kind of solver, and neighbours of one kind differ in lightness, so that a family is
+told from the others in colour, in grey and with any colour vision. Colours follow Okabe and Ito
+(https://jfly.uni-koeln.de/color) and Tol (SRON/EPS/TN/09-002), darkened until a line has the
+contrast of 3 that WCAG 2.1 (1.4.11) asks for.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any, Final
+from zlib import crc32
+
+from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
+
+Dashes = tuple[float, ...]
+
+SOLID: Final[Dashes] = ()
+DASHED: Final[Dashes] = (5.0, 1.6)
+DOTTED: Final[Dashes] = (1.2, 1.4)
+DASHDOT: Final[Dashes] = (6.0, 1.4, 1.2, 1.4)
+
+# In points. The width is that of a page with margins of an inch on both A4 and letter, in inches.
+PAGE_WIDTH: Final = 6.3
+FONT_SIZE: Final = 9
+SMALL: Final = 7.5
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one family is drawn; ``dashes`` are on and off lengths in line widths, none is solid.
+
+    ``marker`` is matplotlib's name of it, or (corners, 1, angle) for a star.
+    """
+
+    colour: str
+    marker: str | tuple[int, int, int]
+    dashes: Dashes = SOLID
+    width: float = 1.1
+    size: float = 4.5
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Solvers of one sort: their heading, and a look for each by the words its name contains."""
+
+    name: str
+    heading: str
+    dashes: Dashes
+    looks: tuple[tuple[str, str, str], ...]
+
+
+TAYLOR: Final = "taylor"
+OTHERS: Final = "others"
+PROCESS: Final = "process"
+
+# Light to dark and thin to thick with the digits that a rung has: where rungs agree, as they do at
+# coarse tolerances, the lines lie in each other.
+_RUNGS: Final = {
+    "f32": Look("#3F9BD1", "o", width=0.9, size=3.0),
+    "f64": Look("#0072B2", "s", width=1.5, size=4.2),
+    "f80": Look("#5A2A9A", "^", width=2.1, size=5.4),
+    "f128": Look("#1A1040", "D", width=2.7, size=5.6),
+}
+# A star of the same width looks smaller.
+_SIZES: Final = {"*": 6.5, "d": 5.5}
+_BITS: Final = {"f32": 24, "f64": 53, "f80": 64, "f128": 113}
+_BEYOND: Final = ("p", "h", "8", "*", "P", "X")
+
+# Every kind in reading order; of two entries that fit a name the one with more words counts.
+KINDS: Final = (
+    Kind(
+        "scipy",
+        "SciPy, adaptive step",
+        SOLID,
+        (
+            ("scipy rk45", "#C48600", "o"),
+            ("scipy dop853", "#882255", "D"),
+            ("scipy radau", "#1C8578", "^"),
+            ("scipy bdf", "#0A3A1A", "v"),
+            ("scipy lsoda", "#A83C00", "p"),
+        ),
+    ),
+    Kind(
+        "geometric",
+        "geometric, fixed step",
+        DASHED,
+        (
+            ("geometric implicit midpoint", "#7E7E7E", "P"),
+            ("geometric splitting", "#3F2206", "X"),
+            ("geometric moser veselov", "#949430", "<"),
+            ("geometric preprocessed moser veselov", "#4A4A10", ">"),
+            ("geometric lie rk4", "#B13FA0", "h"),
+        ),
+    ),
+    Kind(
+        "reference",
+        "many digits, closed form",
+        DOTTED,
+        (
+            ("mpmath odefun", "#444444", "*"),
+            ("closed form", "#BB5566", "d"),
+        ),
+    ),
+    Kind(
+        OTHERS,
+        "other libraries",
+        DASHDOT,
+        (
+            ("diffrax tsit5", "#E0714F", "o"),
+            ("diffrax dopri8", "#99334D", "s"),
+            ("cvode adams", "#35A080", "^"),
+            ("cvode bdf", "#225522", "v"),
+            ("cyrk", "#A89018", "D"),
+            ("extensisq", "#663333", "p"),
+            ("rebound", "#D9758E", "h"),
+            ("numbalsoda", "#225555", "X"),
+        ),
+    ),
+)
+
+# Of names that stand nowhere above: a star, which no known family has, by a hash of the name.
+_UNKNOWN_COLOURS: Final = ("#C48600", "#882255", "#2F9E8F", "#0E5F2A", "#C04FAF", "#333333")
+_UNKNOWN_CORNERS: Final = (3, 4, 5, 6, 7)
+_UNKNOWN_ANGLES: Final = (0, 20)
+# As many as are coprime to the colours, so that the pairs repeat late.
+_LINE_MARKERS: Final = ("o", "s", "^", "D", "v", "p", "h")
+
+
+def kind_of(family: str) -> str:
+    """The name of the family's kind: ``taylor``, one of `KINDS`, or ``others`` for the unknown."""
+    words = _words(family)
+    if words[:1] == [TAYLOR]:
+        return TAYLOR
+    named = _named(words)
+    if named is not None:
+        return named[0].name
+    return next((kind.name for kind in KINDS if kind.name in words[:1]), OTHERS)
+
+
+def heading_of(kind: str) -> str:
+    """What stands above the solvers of a kind."""
+    return next((one.heading for one in KINDS if one.name == kind), "taylor, by rung")
+
+
+def look_of(family: str, rung: str) -> Look:
+    """The look of a family on a rung; a rung changes that of taylor alone."""
+    words = _words(family)
+    if words in ([TAYLOR], [TAYLOR, rung]):
+        return look_of_rung(rung)
+    named = _named(words)
+    if named is None:
+        return _unknown(" ".join(words), kind_of(family))
+    kind, (_, colour, marker) = named
+    return Look(colour, marker, kind.dashes, size=_SIZES.get(marker, 4.5))
+
+
+def look_of_rung(rung: str) -> Look:
+    """The look of taylor on a rung, which is also that of the rung where nothing else is compared."""
+    if rung in _RUNGS:
+        return _RUNGS[rung]
+    marker = _BEYOND[_digits_of(rung) % len(_BEYOND)]
+    return Look("#000000", marker, DASHED, width=1.2, size=_SIZES.get(marker, 5.0))
+
+
+def look_of_line(number: int) -> Look:
+    """The look of the n-th of some lines that are no solvers, such as scenes; neighbours differ."""
+    colour = _UNKNOWN_COLOURS[number % len(_UNKNOWN_COLOURS)]
+    return Look(colour, _LINE_MARKERS[number % len(_LINE_MARKERS)])
+
+
+def place(family: str, rung: str) -> tuple[int, int, str]:
+    """Where a family stands among others: taylor first by rung, then kinds and names as above."""
+    kind = kind_of(family)
+    if kind == TAYLOR:
+        return (0, place_of_rung(rung), family)
+    names = [name for one in KINDS for name, _, _ in one.looks]
+    named = _named(_words(family))
+    kinds = [one.name for one in KINDS]
+    return (1 + kinds.index(kind), names.index(named[1][0]) if named else len(names), family)
+
+
+def place_of_rung(rung: str) -> int:
+    """The rung's place on the ladder: float types first, then by bits."""
+    names = list(_RUNGS)
+    return names.index(rung) if rung in names else len(names) + _digits_of(rung)
+
+
+def bits_of(rung: str) -> int:
+    """The bits of a rung's significand; 0 for a name that is no rung."""
+    return _BITS.get(rung) or (_digits_of(rung) if re.fullmatch(r"mp\d+", rung) else 0)
+
+
+def settings() -> dict[str, Any]:
+    """matplotlib's rcParams of every picture; all others are at its defaults."""
+    return {
+        "font.family": ["DejaVu Sans", "sans-serif"],
+        "font.size": FONT_SIZE,
+        "axes.labelsize": FONT_SIZE,
+        "axes.titlesize": FONT_SIZE,
+        "axes.titleweight": "bold",
+        "axes.titlelocation": "left",
+        "xtick.labelsize": SMALL,
+        "ytick.labelsize": SMALL,
+        "text.color": INK,
+        "axes.labelcolor": INK,
+        "axes.edgecolor": QUIET,
+        "xtick.color": QUIET,
+        "ytick.color": QUIET,
+        "xtick.labelcolor": INK,
+        "ytick.labelcolor": INK,
+        "axes.linewidth": 0.6,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.axisbelow": True,
+        "grid.color": FAINT,
+        "grid.linewidth": 0.5,
+        # Dashes are in points, the same for a thin and a thick line.
+        "lines.scale_dashes": True,
+        # Text that can be searched and read aloud, and ids that are the same in every run.
+        "svg.fonttype": "none",
+        "svg.hashsalt": "taylor-verify",
+        # TrueType, which can be searched and which journals ask for.
+        "pdf.fonttype": 42,
+    }
+
+
+def _named(words: list[str]) -> tuple[Kind, tuple[str, str, str]] | None:
+    """The entry of `KINDS` whose words are all in the name, the most of them where several are."""
+    if words[:1] == [PROCESS]:
+        # What follows is somebody's command, and means none of ours.
+        return None
+    fitting = [
+        (kind, entry) for kind in KINDS for entry in kind.looks if {*_words(entry[0])} <= {*words}
+    ]
+    return max(fitting, key=lambda found: len(_words(found[1][0])), default=None)
+
+
+def _words(name: str) -> list[str]:
+    """The words of ``scipy:RK45?rtol=1e-3`` or ``scipy RK45``: scipy and rk45."""
+    return re.findall(r"[a-z0-9]+", name.lower().partition("?")[0])
+
+
+def _unknown(name: str, kind: str) -> Look:
+    number = crc32(name.encode())
+    number, colour = divmod(number, len(_UNKNOWN_COLOURS))
+    number, corners = divmod(number, len(_UNKNOWN_CORNERS))
+    angle = _UNKNOWN_ANGLES[number % len(_UNKNOWN_ANGLES)]
+    dashes = next((one.dashes for one in KINDS if one.name == kind), SOLID)
+    return Look(_UNKNOWN_COLOURS[colour], (_UNKNOWN_CORNERS[corners], 1, angle), dashes, size=7.0)
+
+
+def _digits_of(rung: str) -> int:
+    """The bits of mpN; 0 for a rung with no number in its name."""
+    found = re.search(r"\d+", rung)
+    return int(found.group()) if found else 0

@@ -1,0 +1,133 @@
+"""What a wider number costs in time: a line for each scene or solver, f64 being 1.
+
+The document: {"scene" (or what the lines have in common), "rungs": [{"label", "rung", "ratio",
+"low", "high"}, ...]}, where rows of one label are one line, and low and high, the range that was
+seen, may be missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
+from taylor_verify.publish.pictures.legend import draw_legend
+from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.palette import QUIET
+from taylor_verify.publish.pictures.panels import Frame
+from taylor_verify.publish.pictures.picture import Picture, save
+from taylor_verify.publish.pictures.rows import Ratio, ratios
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, bits_of, look_of_line, place_of_rung
+from taylor_verify.publish.pictures.wording import stem_of, times
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# In inches.
+_FRAME: Final = Frame(left=0.66, low=0.74, width=PAGE_WIDTH - 0.74, height=2.6)
+_HEIGHT: Final = 3.5
+# Rungs nearer than this, in parts of the axis, cannot both be named below it.
+_NEAR: Final = 0.045
+
+
+def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
+    """Write the picture to a folder; the errors are those of `picture` and of `save`."""
+    return save([picture(document)], folder)
+
+
+def picture(document: Mapping[str, Any]) -> Picture:
+    """Raises ValueError for a document that is none, or has a rung without a number of bits."""
+    lines = _lines(ratios(document, "rungs"))
+    for i, one in enumerate(one for line in lines.values() for one in line):
+        if not bits_of(one.rung) > 0:
+            raise ValueError(
+                f"expected a rung, such as f64 or mp237, got {one.rung!r} @ rungs[{i}]"
+            )
+    said = "; ".join(
+        f"{label}: {', '.join(f'{one.rung} {times(one.ratio)}' for one in line)}"
+        for label, line in lines.items()
+    )
+    alt = (
+        f"Time of a solve against the bits of the rung on {document['scene']}, both logarithmic, as "
+        f"a multiple of the time on f64. {said}."
+    )
+    title = f"Time by rung: {document['scene']}"
+    return Picture(stem_of(document, "rungs"), title, alt, partial(_figure, lines))
+
+
+def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
+    """By label, each from the shortest rung to the longest."""
+    lines: dict[str, list[Ratio]] = {}
+    for one in sorted(found, key=lambda one: (bits_of(one.rung), place_of_rung(one.rung))):
+        lines.setdefault(one.label, []).append(one)
+    return {label: lines[label] for label in dict.fromkeys(one.label for one in found)}
+
+
+def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
+    from matplotlib.figure import Figure
+
+    from taylor_verify.publish.pictures.labels import write_names
+
+    figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
+    axes = add_axes(figure, _FRAME)
+    looks = {label: look_of_line(i) for i, label in enumerate(lines)}
+    found = [one for line in lines.values() for one in line]
+    ends = [end for one in found for end in (one.low, one.high)]
+    axes.set(xscale="log", yscale="log", ylim=widened([*ends, 1.0], 0.08, 0.12))
+    axes.set(xlim=widened([float(bits_of(one.rung)) for one in found], 0.05, 0.2))
+    axes.set(xlabel="rung, by the bits of its significand", ylabel="time over that on f64")
+    axes.yaxis.set_major_formatter("{x:g}")
+    _name_rungs(axes, sorted({one.rung for one in found}, key=bits_of))
+    axes.grid(True)
+    axes.axhline(1, color=QUIET, linewidth=0.8, zorder=1)
+    for label, line in lines.items():
+        look = looks[label]
+        for one in line:
+            spread = [[one.ratio - one.low], [one.high - one.ratio]]
+            bits = bits_of(one.rung)
+            axes.errorbar(
+                [bits],
+                [one.ratio],
+                yerr=spread,
+                fmt="none",
+                ecolor=look.colour,
+                elinewidth=0.8,
+                capsize=2,
+            )
+        axes.plot(
+            [bits_of(one.rung) for one in line],
+            [one.ratio for one in line],
+            gid=label,
+            zorder=3,
+            **line_of(look),
+        )
+    named = [
+        Named(label, looks[label].colour, [[(bits_of(r.rung), r.ratio) for r in line]])
+        for label, line in lines.items()
+    ]
+    write_names(axes, named)
+    if any(one.low < one.high for one in found):
+        bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
+        draw_legend(figure, [(bar, "least to greatest seen")], "", None)
+    return figure
+
+
+def _name_rungs(axes: Axes, rungs: Sequence[str]) -> None:
+    """A tick for every rung; of two that are too near, the names stand below each other."""
+    from matplotlib.ticker import NullLocator
+
+    places = [
+        float(axes.transAxes.inverted().transform(axes.transData.transform((bits_of(r), 1)))[0])
+        for r in rungs
+    ]
+    near = [False, *(after - before < _NEAR for before, after in pairwise(places))]
+    names: list[str] = []
+    for rung, too_near in zip(rungs, near, strict=True):
+        lower = too_near and not (names and names[-1].startswith("\n"))
+        names.append(f"\n{rung}" if lower else rung)
+    axes.set_xticks([bits_of(rung) for rung in rungs], names)
+    axes.xaxis.set_minor_locator(NullLocator())

@@ -1,0 +1,133 @@
+"""A report folder: ``data`` written after a run; tables and front page made from ``data`` alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from taylor_verify.judge.record import Record
+from taylor_verify.judge.verdict import Verdict
+from taylor_verify.publish import (
+    attainable,
+    controls,
+    data,
+    extremes,
+    figures,
+    growth,
+    prices,
+    quoted,
+    reach,
+    sheets,
+    sights,
+    tables,
+    tradeoff,
+    trades,
+    traps,
+    worst,
+)
+from taylor_verify.publish.contents import others
+from taylor_verify.publish.front import front
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.replacement import first_line, replace_files
+
+TABLES = "tables"
+FRONT = "README.md"
+
+
+def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Record]) -> list[Path]:
+    """Write verdicts and records to ``folder``/data, in place of earlier ones.
+
+    Raises OSError for a folder that cannot be written; what it held then stays as it was.
+    """
+    return list(data.write(Path(folder), verdicts, records))
+
+
+def load(folder: Path | str) -> tuple[Verdict, ...]:
+    """The verdicts of ``folder``/data, in reading order."""
+    return data.load(Path(folder))
+
+
+def publish(folder: Path | str) -> list[Path]:
+    """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
+
+    Tables of an earlier version that are no longer made are removed; other files are left alone,
+    a README.md that is not ours among them. Raises OSError for files that cannot be read or
+    written, ValueError for data that are none.
+    """
+    place = Path(folder)
+    verdicts = load(place)
+    measured = (
+        *(_controls(place), tradeoff.pages(place), prices.pages(place)),
+        *(
+            growth.pages(place),
+            worst.pages(place),
+            reach.pages(place),
+            traps.pages(place),
+            extremes.pages(place),
+        ),
+    )
+    texts = {name: text for pages in measured for name, text in pages.items()}
+    besides = others(place, texts)
+    texts |= {
+        f"{TABLES}/README.md": tables.readme(verdicts, besides),
+        f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
+        f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
+        f"{TABLES}/attainable.md": attainable.attainable(verdicts),
+        f"{TABLES}/attainable.csv": sheets.attainable(verdicts),
+        f"{TABLES}/conserved.md": tables.conserved(verdicts),
+        f"{TABLES}/conserved.csv": sheets.conserved(verdicts),
+        f"{TABLES}/gates.md": tables.gates(verdicts),
+        f"{TABLES}/gates.csv": sheets.gates(verdicts),
+    }
+    if _is_ours_or_new(place / FRONT):
+        texts[FRONT] = front(verdicts, besides)
+    written = replace_files(place, texts, stale=_own_tables(place / TABLES))
+    return [*written, *replace_files(place.resolve().parent, quoted.requoted(place, verdicts))]
+
+
+def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
+    """Store the rows of a controls run in ``folder``/data and make ``folder``/tables/controls of them.
+
+    Raises OSError for a folder that cannot be written.
+    """
+    place = Path(folder)
+    stored = sights.write(place, document)
+    return [stored, *replace_files(place, _controls(place))]
+
+
+def publish_tradeoff(
+    folder: Path | str, numbers: Mapping[str, Any], times: Mapping[str, Any]
+) -> list[Path]:
+    """Store a measurement of speed and accuracy in ``folder``/data, draw it and make its page.
+
+    Raises OSError for a folder that cannot be written, ImportError without matplotlib.
+    """
+    place = Path(folder)
+    stored = list(trades.write(place, numbers, times))
+    found = trades.load(place)
+    if found is not None:
+        pictures = [one for trade in found.trades for one in figures.of_trade(trade)]
+        stored += figures.draw(place, [*pictures, *figures.of_rungs(found.trades)])
+    return [*stored, *replace_files(place, tradeoff.pages(place))]
+
+
+def _controls(place: Path) -> dict[str, str]:
+    """The table of what each gate sees, in Markdown and as a sheet; nothing without stored rows."""
+    found = sights.load(place)
+    if not found:
+        return {}
+    return {
+        f"{TABLES}/controls.md": controls.page(found),
+        f"{TABLES}/controls.csv": controls.sheet(found),
+    }
+
+
+def _is_ours_or_new(file: Path) -> bool:
+    return not file.exists() or first_line(file) == MADE_BY
+
+
+def _own_tables(target: Path) -> list[Path]:
+    """The Markdown files that name us as their maker, each with its CSV twin."""
+    own = [file for file in target.glob("*.md") if first_line(file) == MADE_BY]
+    return own + [file.with_suffix(".csv") for file in own]

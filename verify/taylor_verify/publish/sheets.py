@@ -1,0 +1,122 @@
+"""The published tables as CSV: one heading line, then every digit of what the Markdown shows."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from taylor_verify.judge.verdict import Verdict
+from taylor_verify.publish.cells import in_roundoffs, word
+from taylor_verify.publish.runs import (
+    Run,
+    conserved_quantities,
+    gravest,
+    is_scored,
+    quantities_of_scene,
+    runs,
+)
+
+# What a spreadsheet begins a formula with; a tab has gone with the line ends.
+_FORMULA: Final = ("=", "+", "-", "@")
+_RUN: Final = ("scene", "solver", "setting", "rung")
+_ACCURACY: Final = (
+    *_RUN,
+    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
+    *("bound", "steps", "verdict", "outcome"),
+)
+_ATTAINABLE: Final = (
+    *_RUN,
+    *("quantity", "max", "at", "attainable", "ratio", "ratio_at", "unit", "max_u", "attainable_u"),
+    *("roundoff", "verdict", "outcome"),
+)
+_GATES: Final = (
+    *_RUN,
+    *("quantity", "max", "mean", "final", "at", "unit", "max_u", "mean_u", "ratio", "ratio_at"),
+    *("bound", "attainable", "roundoff", "exponent", "steps", "evaluations"),
+    *("verdict", "outcome", "because", "scene_sha256"),
+)
+_CONSERVED: Final = ("max_u", "mean_u", "at", "ratio", "verdict")
+
+
+def accuracy(verdicts: Iterable[Verdict]) -> str:
+    """A row for every state quantity of every run."""
+    return sheet(_ACCURACY, (_fields(v) for run in runs(verdicts) for v in run.state))
+
+
+def attainable(verdicts: Iterable[Verdict]) -> str:
+    """A row for every state quantity of every run, with what was attainable."""
+    return sheet(_ATTAINABLE, (_fields(v) for run in runs(verdicts) for v in run.state))
+
+
+def conserved(verdicts: Iterable[Verdict]) -> str:
+    """A row for every run, with five columns for each quantity: ``T_max_u`` and so on."""
+    found = runs(verdicts)
+    quantities = conserved_quantities(found)
+    names = [f"{quantity}_{field}" for quantity in quantities for field in _CONSERVED]
+    rows = [_conserved_row(run, quantities_of_scene(run, found)) for run in found]
+    return sheet([*_RUN, "verdict", *names], rows)
+
+
+def gates(
+    verdicts: Iterable[Verdict], more: Callable[[Verdict], dict[str, Any]] | None = None
+) -> str:
+    """A row for every verdict; ``more`` has further columns of each, the same ones for all."""
+    found = [v for run in runs(verdicts) for v in run.verdicts]
+    further = [more(v) if more else {} for v in found]
+    names = [*_GATES, *(further[0] if further else ())]
+    return sheet(names, (_fields(v) | own for v, own in zip(found, further, strict=True)))
+
+
+def _conserved_row(run: Run, of_scene: Iterable[str]) -> dict[str, Any]:
+    row: dict[str, Any] = {name: getattr(run, name) for name in _RUN}
+    row["verdict"] = gravest(run.drifts).value if run.drifts else None
+    drifts = run.conserved if run.is_scored else dict.fromkeys(of_scene, run.verdicts[0])
+    for quantity, verdict in drifts.items():
+        fields = _fields(verdict)
+        row |= {f"{quantity}_{field}": fields[field] for field in _CONSERVED}
+    return row
+
+
+def _fields(verdict: Verdict) -> dict[str, Any]:
+    """The verdict's own fields, and the errors in u; a word in place of a maximum that is none."""
+    row = verdict.row() | {
+        "mean_u": in_roundoffs(verdict, verdict.mean),
+        "attainable_u": in_roundoffs(verdict, verdict.attainable),
+        "scene_sha256": verdict.provenance.get("scene"),
+    }
+    if verdict.max is None:
+        return row | {"max": word(verdict), "max_u": word(verdict)}
+    ratio = math.inf if verdict.ratio is None and is_scored(verdict) else verdict.ratio
+    return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
+
+
+def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """A line for every row: the columns of these names, empty where a row has none.
+
+    A text that a spreadsheet would take for a formula has an apostrophe before it: the name of a scene
+    is a path, and may be anybody's.
+    """
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+    return text.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    """A text without line ends, which readers take differently, and without the force of a formula."""
+    if not isinstance(value, str):
+        return value
+    text = " ".join(value.split())
+    return f"'{text}" if text.startswith(_FORMULA) and not _is_number(text) else text
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,102 @@
+"""A report folder as the site reads it: verdicts, records, portraits and measurements, no physics.
+
+portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
+           a scene without one has a page all the same, with fewer sections
+record     data/records/NAME.taylor.RUNG.json: every sample's error of one run
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.publish import data, portraits, sights, trades
+from taylor_verify.publish.file_names import of_scene, of_solver
+from taylor_verify.publish.runs import Run, place_of_rung, runs
+from taylor_verify.publish.sights import Sight
+from taylor_verify.publish.trades import Trade, Trades
+
+GROWTH: Final = "growth.json"
+REACH: Final = "reach.json"
+
+Document = Mapping[str, Any]
+
+_SOLVER: Final = "taylor"
+
+
+@dataclass(frozen=True)
+class Report:
+    """What lies in ``folder``; each part is read when it is first asked for, and kept.
+
+    Every part raises OSError for files that cannot be read and ValueError for files that hold
+    something else; a measurement that was never published is None.
+    """
+
+    folder: Path
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        return runs(data.load(self.folder))
+
+    @cached_property
+    def versions(self) -> dict[str, str]:
+        return data.versions(verdict for run in self.runs for verdict in run.verdicts)
+
+    @cached_property
+    def machines(self) -> list[Document]:
+        """Processor, Python and command of the runs, each machine once."""
+        stored = self._stored(data.TIMINGS)
+        return list(stored["machines"]) if stored else []
+
+    @cached_property
+    def scenes(self) -> tuple[str, ...]:
+        """In reading order, each once."""
+        return tuple(dict.fromkeys(run.scene for run in self.runs))
+
+    @cached_property
+    def rungs(self) -> tuple[str, ...]:
+        return tuple(sorted({run.rung for run in self.runs}, key=place_of_rung))
+
+    def runs_of(self, scene: str) -> list[Run]:
+        return [run for run in self.runs if run.scene == scene]
+
+    def portrait(self, scene: str) -> Document | None:
+        return portraits.load(self.folder, scene)
+
+    def records(self, scene: str) -> dict[str, Document]:
+        """By rung, as far as there are some."""
+        found = {rung: self._record(scene, rung) for rung in self.rungs}
+        return {rung: record for rung, record in found.items() if record is not None}
+
+    @cached_property
+    def sights(self) -> tuple[Sight, ...]:
+        """What each gate saw of the solvers that were broken on purpose."""
+        return sights.load(self.folder)
+
+    @cached_property
+    def trades(self) -> Trades | None:
+        return trades.load(self.folder)
+
+    def trade(self, scene: str) -> Trade | None:
+        """Speed against accuracy on one scene, where it was measured."""
+        found = self.trades.trades if self.trades else ()
+        return next((trade for trade in found if trade.scene == scene), None)
+
+    @cached_property
+    def growth(self) -> Document | None:
+        return self._stored(GROWTH)
+
+    @cached_property
+    def reach(self) -> Document | None:
+        return self._stored(REACH)
+
+    def _record(self, scene: str, rung: str) -> Document | None:
+        name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
+        return self._stored(f"{data.RECORDS}/{name}")
+
+    def _stored(self, name: str) -> Document | None:
+        file = self.folder / data.FOLDER / name
+        return data.read_document(file) if file.exists() else None

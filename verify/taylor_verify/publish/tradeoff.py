@@ -1,0 +1,305 @@
+"""The page of speed against accuracy, from the stored measurement alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import log10
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish import figures, sheets
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.doubles import doubles_table
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.pictures.wording import label_of
+from taylor_verify.publish.timing_method import how_it_was_timed, remake, what_is_timed
+from taylor_verify.publish.trades import Row, Trade, Trades, load
+
+DIGITS: Final = (6, 9, 12)
+_NOT_REACHED: Final = "not reached"
+_TAYLOR: Final = "taylor f64"
+_RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau", "scipy BDF")
+_OUTSIDE: Final = "outside"
+_GEOMETRIC: Final = "geometric "
+_CLOSED_FORM: Final = "closed-form ellipj"
+_ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
+
+_WHAT: Final = (
+    "Every solver on the same four scenes, each at many settings, each answer compared with the exact "
+    "motion. A time is given as a multiple of that of the *yardstick*, the Taylor integrator of "
+    "heyoka in float64 at its own tolerance, in the same minute on the same machine; the error is "
+    "the largest of everything that the scene tracks, at all its samples."
+)
+
+
+def page(found: Trades, folder: Path) -> str:
+    """The whole page, with the pictures that are in ``folder``/figures."""
+    blocks = [
+        f"{MADE_BY}\n# Speed against accuracy",
+        _WHAT,
+        "## What so many digits cost",
+        "The cheapest measured setting whose error leaves at least so many digits: its time over that "
+        f"of the yardstick, the interval for it in brackets, and the tolerance. *{_NOT_REACHED}* is "
+        "said where no measured setting leaves so many. Below 1 is faster than the yardstick, which "
+        "leaves the digits that the first line of each scene says. Where the intervals of neighbouring "
+        "tolerances overlap, which of them is the cheapest is chance.",
+        _by_digits(found),
+        "## What a wider number costs",
+        "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
+        "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
+        _by_rung(found),
+        figures.shown(folder, figures.of_rungs(found.trades)),
+        "## Asked for and achieved",
+        "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
+        "nothing of the answer. The digits that were left at each:",
+        _by_request(found),
+        "## In pictures",
+        *(figures.shown(folder, figures.of_trade(trade)) for trade in found.trades),
+        "## The front",
+        "The settings in float64 that no other beats in both time and error, the fastest first.",
+        *(_front(trade) for trade in found.trades),
+        "## Geometric integrators",
+        "Fixed steps, in the scene's unit of time. They keep what they promise, to the last bits: all of "
+        "them the momentum in space, the midpoint and Moser and Veselov's the energy too, which "
+        "splitting lets swing and lie-rk4 drift. That is no accuracy. *drift* is the largest of all "
+        "conserved quantities, with its name.",
+        _geometric(found),
+        "## What failed, and what was not run",
+        "None of these is on a front, and none has a number above.",
+        _failures(found),
+        "## The closed form in plain doubles",
+        doubles_table(found.doubles),
+        "## What is timed",
+        what_is_timed(found),
+        "## How it was timed, and where",
+        bullets(how_it_was_timed(found)),
+        "## To remake this",
+        remake(found),
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """The page and its sheet by their paths below ``folder``; none where nothing is stored."""
+    found = load(folder)
+    if found is None:
+        return {}
+    return {"tables/tradeoff.md": page(found, folder), "tables/tradeoff.csv": sheet(found.trades)}
+
+
+# What so many digits cost.
+
+
+def _by_digits(found: Trades) -> str:
+    columns = [
+        Column("scene"),
+        Column("solver"),
+        *(Column(f"{digits} digits", True) for digits in DIGITS),
+    ]
+    rows = []
+    for trade in found.trades:
+        rows.append([code(trade.scene), _yardstick(trade, found.yardstick), *[""] * len(DIGITS)])
+        for family in (_TAYLOR, *_RIVALS, _CLOSED_FORM):
+            own = [row for row in trade.sound if row["family"] == family]
+            if any(row["family"] == family and _ran(row) for row in trade.rows):
+                cells = [_cheapest(own, digits) for digits in DIGITS]
+                rows.append(["", _family(family), *cells])
+        rows.append(["", *_outside(trade)])
+    return table(columns, rows)
+
+
+def _yardstick(trade: Trade, name: str) -> str:
+    """What the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
+    for row in trade.sound:
+        if label_of(row) == name:
+            inner, seconds = row["inner_seconds"], row["seconds"]
+            part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
+            digits = f"{row['achieved_digits']:.1f} digits" if row["achieved_digits"] else "exact"
+            return f"*{prose(name)} = 1*: {digits}{part}"
+    return f"*{prose(name)}*: no sound answer"
+
+
+def _cheapest(rows: Iterable[Row], digits: int, named: bool = False) -> str:
+    """Ratio, interval and tolerance of the fastest that leaves so many digits."""
+    reached = [row for row in rows if _leaves(row, digits)]
+    if not reached:
+        return _NOT_REACHED
+    best = min(reached, key=lambda row: row["ratio"])
+    who = f"{_family(best['family'])}, " if named else ""
+    return f"{who}{_ratio(best)}{_at(best)}"
+
+
+def _leaves(row: Row, digits: int) -> bool:
+    error = row["error"]
+    return error is not None and error <= 10.0**-digits
+
+
+def _ratio(row: Row) -> str:
+    interval = f" [{figure(row['low'])}, {figure(row['high'])}]" if row["low"] is not None else ""
+    return f"{bold(figure(row['ratio']))}{interval}"
+
+
+def _at(row: Row) -> str:
+    asked = row["requested"]
+    return f" @ {asked:.0e}" if row["asked"] == "tolerance" and asked else ""
+
+
+def _outside(trade: Trade) -> list[str]:
+    own = [row for row in trade.sound if str(row["family"]).startswith(_OUTSIDE)]
+    if not own:
+        return ["fastest compiled other library", *["not measured"] * len(DIGITS)]
+    return [
+        "fastest compiled other library",
+        *(_cheapest(own, digits, named=True) for digits in DIGITS),
+    ]
+
+
+# Rungs and requests.
+
+
+def _by_rung(found: Trades) -> str:
+    rungs = dict.fromkeys(
+        row["rung"] for trade in found.trades for row in trade.rows if _is_own_tolerance(row)
+    )
+    ladder = sorted(rungs, key=lambda rung: (rung.startswith("mp"), int(rung.lstrip("fmp"))))
+    columns = [Column("scene"), *(Column(rung, True) for rung in ladder)]
+    rows = []
+    for trade in found.trades:
+        own = {row["rung"]: row for row in trade.sound if _is_own_tolerance(row)}
+        cells = [_rung_cell(own[rung]) if rung in own else NOTHING for rung in ladder]
+        rows.append([code(trade.scene), *cells])
+        if trade.attainable:
+            rows.append(["*attainable*", *(_floor_cell(trade.attainable.get(r)) for r in ladder)])
+    return table(columns, rows)
+
+
+def _floor_cell(least: float | None) -> str:
+    """The digits that one rounding a sample leaves."""
+    return f"{-log10(least):.1f} digits" if least and least < 1 else NOTHING
+
+
+def _is_own_tolerance(row: Row) -> bool:
+    return bool(row["solver"] == "taylor" and not row["setting"])
+
+
+def _rung_cell(row: Row) -> str:
+    digits = row["achieved_digits"]
+    return f"{_ratio(row)}, {'exact' if digits is None else f'{digits:.1f} digits'}"
+
+
+def _by_request(found: Trades) -> str:
+    columns = [
+        Column("scene"),
+        Column("solver"),
+        *(Column(f"{-log10(asked):.0f} asked for", True) for asked in _ASKED),
+    ]
+    rows = []
+    for trade in found.trades:
+        families = dict.fromkeys(row["family"] for row in trade.rows if row["asked"] == "tolerance")
+        for family in families:
+            own = [row for row in trade.rows if row["family"] == family]
+            cells = [_achieved(own, asked) for asked in _ASKED]
+            if any(cell != NOTHING for cell in cells):
+                rows.append([code(trade.scene), _family(family), *cells])
+    return table(columns, rows)
+
+
+def _achieved(rows: Iterable[Row], asked: float) -> str:
+    """The digits that were left; a word where the answer is not sound."""
+    for row in rows:
+        if row["requested"] is not None and abs(row["requested"] / asked - 1) <= 1e-9:
+            if row["standing"] != "sound":
+                return str(row["standing"])
+            return NOTHING if row["achieved_digits"] is None else f"{row['achieved_digits']:.1f}"
+    return NOTHING
+
+
+# The front, the geometric integrators, the failures.
+
+
+def front(rows: Iterable[Row]) -> list[Row]:
+    """What no other beats in both ratio and error, the fastest first."""
+    found: list[Row] = []
+    for row in sorted(rows, key=lambda row: (row["ratio"], row["error"])):
+        if not found or row["error"] < found[-1]["error"]:
+            found.append(row)
+    return found
+
+
+def _front(trade: Trade) -> str:
+    doubles = [row for row in trade.sound if row["rung"] == "f64"]
+    integrators = [row for row in doubles if row["family"] != _CLOSED_FORM]
+    said = [_front_line(row) for row in front(doubles)]
+    parts = [f"{code(trade.scene)}:", bullets(said)]
+    if len(integrators) != len(doubles):
+        parts += ["And of the integrators alone:", bullets(map(_front_line, front(integrators)))]
+    return "\n\n".join(parts)
+
+
+def _front_line(row: Row) -> str:
+    digits = row["achieved_digits"]
+    left = "every digit" if digits is None else f"{digits:.1f} digits"
+    name = code(label_of(row).removesuffix(f" {row['rung']}"))
+    return f"{left}: {name}, {_ratio(row)} times the yardstick"
+
+
+def _geometric(found: Trades) -> str:
+    columns = [
+        *(Column("scene"), Column("integrator"), Column("step", True)),
+        *(Column("time", True), Column("largest error", True), Column("drift", True)),
+        Column("of"),
+    ]
+    rows = [
+        [
+            code(trade.scene),
+            row["family"].removeprefix(_GEOMETRIC),
+            figure(row["requested"]),
+            _ratio(row),
+            figure(row["error"]),
+            figure(row["drift"]),
+            code(row["drifting"]),
+        ]
+        for trade in found.trades
+        for row in trade.sound
+        if row["family"].startswith(_GEOMETRIC)
+    ]
+    return table(columns, rows)
+
+
+def _failures(found: Trades) -> str:
+    columns = [Column("scene"), Column("setting"), Column("what it is"), Column("because")]
+    rows = [
+        [code(trade.scene), code(label_of(row)), prose(_standing(row)), prose(row["because"])]
+        for trade in found.trades
+        for row in trade.rows
+        if row["standing"] != "sound" or row["ratio"] is None
+    ]
+    return table(columns, rows) if rows else "Nothing."
+
+
+def _standing(row: Row) -> str:
+    return str(row["standing"]) if row["standing"] != "sound" else "sound, and not timed"
+
+
+def _ran(row: Row) -> bool:
+    return bool(row["standing"] != "not run")
+
+
+def _family(family: str) -> str:
+    return prose(family.removesuffix(" f64").replace("scipy ", "SciPy "))
+
+
+# The sheet.
+
+
+_FIELDS: Final = (
+    *("scene", "solver", "setting", "rung", "family", "asked", "requested", "achieved_digits"),
+    *("error", "drift", "drifting", "steps", "evaluations", "seconds", "inner_seconds"),
+    *("ratio", "low", "high", "processes", "standing", "outcome", "because"),
+)
+
+
+def sheet(trades: Sequence[Trade]) -> str:
+    """A row for every scene and setting, with every digit."""
+    return sheets.sheet(_FIELDS, (row for trade in trades for row in trade.rows))

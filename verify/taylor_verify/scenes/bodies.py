@@ -1,0 +1,159 @@
+"""The bodies of both equation sets, in exact rationals and body axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Final
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.ellipsoid import inverse_inertias
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
+
+# Irrational coefficients become rationals of so many bits: 120 digits.
+COEFFICIENT_BITS: Final = 400
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """A rigid body about a fixed point or its centre of mass.
+
+    ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
+    components, I_12 = -int xy dm); ``moment`` is constant in body axes. Where there is a
+    ``manufactured`` omega, the moment is the one that makes it a motion of this body.
+    """
+
+    inertia: Matrix
+    moment: Vector = ZERO_VECTOR
+    manufactured: Manufactured | None = None
+
+    @cached_property
+    def inverse_inertia(self) -> Matrix:
+        """K = I^-1, so that omega = K H."""
+        return tensors.inverse(self.inertia)
+
+    @property
+    def is_free(self) -> bool:
+        return not any(self.moment) and self.manufactured is None
+
+
+@dataclass(frozen=True)
+class ImmersedBody:
+    """A solid in an ideal fluid: T = x.A x/2 + x.B y + y.C y/2, 21 coefficients.
+
+    A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
+    and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
+    constant in body axes. ``ellipsoid`` is the shape of which the coefficients are the rounded ones,
+    for a body that was given so. Where there is a ``manufactured`` motion of (x, y), the loads are those
+    that make it a motion of this body.
+    """
+
+    linear: Matrix
+    coupling: Matrix
+    angular: Matrix
+    force: Vector = ZERO_VECTOR
+    couple: Vector = ZERO_VECTOR
+    ellipsoid: Ellipsoid | None = None
+    manufactured: Manufactured | None = None
+
+    @property
+    def is_free(self) -> bool:
+        return not any(self.force + self.couple) and self.manufactured is None
+
+    @cached_property
+    def energy_matrix(self) -> Matrix:
+        """The 6x6 matrix [[A, B], [B^T, C]]: (U, Omega) = energy_matrix (x, y)."""
+        return tensors.blocks(self.linear, self.coupling, self.angular)
+
+    @cached_property
+    def axis_of_symmetry(self) -> int | None:
+        """The body axis about which every turn leaves T as it is; 3 where there is a choice.
+
+        T is of Clebsch's form about some point of that axis, which need not be the origin.
+        """
+        return next((axis for axis in (3, 1, 2) if self._is_of_revolution(axis)), None)
+
+    def _is_of_revolution(self, axis: int) -> bool:
+        """Whether A, B and C commute with the turns about the axis."""
+        i, j, k = axis % 3, (axis + 1) % 3, axis - 1
+        return all(
+            block[i][i] == block[j][j]
+            and block[i][j] == -block[j][i]
+            and not any((block[i][k], block[k][i], block[j][k], block[k][j]))
+            for block in (self.linear, self.coupling, self.angular)
+        )
+
+    @cached_property
+    def clebsch(self) -> Clebsch | None:
+        """The six coefficients of Clebsch's form about axis 3, or None if T is not of that form."""
+        a, b, c = self.linear, self.coupling, self.angular
+        six = Clebsch(
+            p=a[0][0], p_prime=a[2][2], q=b[0][0], q_prime=b[2][2], r=c[0][0], r_prime=c[2][2]
+        )
+        form = six.body()
+        is_clebsch = (a, b, c) == (form.linear, form.coupling, form.angular)
+        return six if is_clebsch else None
+
+
+@dataclass(frozen=True)
+class Clebsch:
+    """T = p/2 (x1^2 + x2^2) + p'/2 x3^2 + q (x1 y1 + x2 y2) + q' x3 y3 + r/2 (y1^2 + y2^2) + r'/2 y3^2.
+
+    Hydromechanics 49 (1); the axis of symmetry is body axis 3.
+    """
+
+    p: Fraction
+    p_prime: Fraction
+    q: Fraction
+    q_prime: Fraction
+    r: Fraction
+    r_prime: Fraction
+
+    def body(self, force: Vector = ZERO_VECTOR, couple: Vector = ZERO_VECTOR) -> ImmersedBody:
+        """The same energy as 21 coefficients, with the loads given."""
+        return ImmersedBody(
+            linear=tensors.diagonal((self.p, self.p, self.p_prime)),
+            coupling=tensors.diagonal((self.q, self.q, self.q_prime)),
+            angular=tensors.diagonal((self.r, self.r, self.r_prime)),
+            force=force,
+            couple=couple,
+        )
+
+
+@dataclass(frozen=True)
+class Ellipsoid:
+    """A homogeneous ellipsoid, its semi-axes along body axes 1, 2, 3, in a fluid; origin the centre.
+
+    The semi-axes are positive. A density of zero asks for a fluid and three different semi-axes: else
+    nothing resists a motion, and there is no T of the impulses.
+    """
+
+    semi_axes: Vector
+    density: Fraction
+    fluid_density: Fraction
+
+    def body(self, bits: int = COEFFICIENT_BITS) -> ImmersedBody:
+        """The body of the coefficients 1/(M + m_i) and 1/(I_i + j_i), rounded once to so many bits."""
+        linear, angular = inverse_inertias(self.semi_axes, self.density, self.fluid_density, bits)
+        return ImmersedBody(
+            linear=tensors.diagonal(linear),
+            coupling=ZERO_MATRIX,
+            angular=tensors.diagonal(angular),
+            ellipsoid=self,
+        )
+
+
+Body = RigidBody | ImmersedBody
+
+__all__ = [
+    "COEFFICIENT_BITS",
+    "ZERO_MATRIX",
+    "ZERO_VECTOR",
+    "Body",
+    "Clebsch",
+    "Ellipsoid",
+    "ImmersedBody",
+    "RigidBody",
+]

@@ -1,0 +1,105 @@
+"""What is wrong with a scene: every fault in one line, all of them in one exception."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+
+from taylor_verify.scenes.precision import float_text
+
+_LONGEST_SHOWN = 60
+# Who has mended as many asks again; a million would be read by nobody, and take minutes to write.
+_MOST_TOLD = 100
+
+
+class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
+    """A scene that cannot be asked of any solver.
+
+    ``faults`` holds one line each, ``expected ..., got ... @ body.inertia[1]``, with the mend in
+    brackets where there is an obvious one; indices count from 0. The text is those lines.
+    """
+
+    def __init__(self, faults: Sequence[str]) -> None:
+        # A name in it may hold line breaks; a fault is one line.
+        self.faults = tuple(fault.replace("\n", "\\n") for fault in faults)
+        super().__init__("\n".join(self.faults))
+
+    def __reduce__(self) -> tuple[type[Refused], tuple[tuple[str, ...]]]:
+        # An exception is rebuilt from its text by default, and the text is not its argument.
+        return Refused, (self.faults,)
+
+
+class Faults:
+    """The faults of one scene or file in the order of the reading, no more than a hundred."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no further fault will be told."""
+        return len(self.lines) > _MOST_TOLD
+
+    def add(self, expected: str, got: str, path: str, mend: str = "") -> None:
+        if self.is_full:
+            return
+        if len(self.lines) == _MOST_TOLD:
+            self.lines.append("and more faults beyond these hundred")
+            return
+        line = f"expected {expected}, got {got} @ {path}"
+        self.lines.append(f"{line} ({mend})" if mend else line)
+
+
+def shown(value: object) -> str:
+    """A value as its scene would write it, cut short where it is long."""
+    return cut(_toml(value))
+
+
+def cut(text: str) -> str:
+    """The text, cut short where it is long."""
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
+
+
+def brief(value: object) -> str:
+    """What a Python caller handed over, on one line and cut short."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python prints no integer of more than 4300 digits
+        text = f"a number of the type {type(value).__name__}"
+    return cut(" ".join(text.split()))
+
+
+def _toml(value: object, depth: int = 0) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Decimal):
+        return str(value).lower()
+    if isinstance(value, int | Fraction):
+        return _rational(Fraction(value))
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, list):
+        # What tomllib could just nest would overflow the stack here.
+        inner = ", ".join(_toml(entry, depth + 1) for entry in value) if depth < 3 else ".."
+        return f"[{inner}]"
+    if isinstance(value, Mapping):
+        return "a table"
+    return f"the {type(value).__name__} {value}"
+
+
+def _rational(value: Fraction) -> str:
+    try:
+        return str(value)
+    except ValueError:  # Python prints no integer of more than 4300 digits
+        return float_text(value)
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """A mend that names the known word most like this one, else all of them."""
+    words = sorted(known)
+    close = difflib.get_close_matches(word, words, n=1)
+    if close:
+        return f"did you mean `{close[0]}`?"
+    return f"known: {', '.join(words)}" if words else ""

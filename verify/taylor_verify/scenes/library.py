@@ -1,0 +1,89 @@
+"""The shipped scenes: where they lie, what they are called, and how one is found."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.scenes.faults import Refused, brief
+
+STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
+EXTREMES: Final = "extremes"
+# What a hunt has found; it runs with the extremes.
+WORST: Final = "extremes/worst"
+
+_MOST_SUGGESTED = 3
+
+
+def cases_directory() -> Path:
+    """The folder of the shipped scenes: inside an installed package, beside `verify` in a checkout.
+
+    Raises FileNotFoundError where there is neither, so that no run passes for want of scenes.
+    """
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package / "cases", package.parents[1] / "cases"):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(
+        f"expected the shipped scenes in a folder `cases` in {package} or {package.parents[1]}"
+    )
+
+
+def names(*folders: str) -> tuple[str, ...]:
+    """The scenes of these folders by name (``euler/generic``), in alphabetical order.
+
+    Those of the standard set unless a folder is given.
+    """
+    cases = cases_directory()
+    found = (cases / folder for folder in folders or STANDARD_SET)
+    return tuple(_name(file) for folder in found for file in _scenes(folder))
+
+
+def named(scene: str) -> tuple[str, ...]:
+    """What a word of the command line stands for: all scenes of a folder (``extremes``), or one."""
+    folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
+    is_folder = scene in (*STANDARD_SET, EXTREMES, WORST)
+    return (names(*folders) if is_folder else ()) or (scene,)
+
+
+def find(scene: str | os.PathLike[str]) -> Path:
+    """The file of a scene given by path or by the name of a shipped scene.
+
+    A text that ends in ``.toml`` or names what is there is a path. Raises Refused for an unknown name,
+    and for what is neither text nor a path.
+    """
+    expected = "a path or the name of a shipped scene"
+    if not isinstance(scene, str | os.PathLike):
+        raise Refused([f"expected {expected}, got the {type(scene).__name__} {brief(scene)}"])
+    path = Path(scene)
+    name = str(scene)
+    try:
+        if path.suffix == ".toml" or path.is_file():
+            return path
+        shipped = cases_directory() / f"{name}.toml"
+        if name and shipped.is_file():
+            return shipped
+    except OSError as error:  # a name longer than any file's
+        raise Refused([f"expected {expected}, got {name:.60} ({error.strerror})"]) from None
+    raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
+
+
+def _scenes(folder: Path) -> list[Path]:
+    """In alphabetical order; a file in capitals is about the scenes and no scene itself."""
+    return sorted(file for file in folder.glob("*.toml") if not file.stem.isupper())
+
+
+def _name(file: Path) -> str:
+    return file.relative_to(cases_directory()).with_suffix("").as_posix()
+
+
+def _near(scene: str) -> str:
+    known = names(*STANDARD_SET, EXTREMES, WORST)
+    close = difflib.get_close_matches(scene, known, n=_MOST_SUGGESTED, cutoff=0.5)
+    # The part after the slash is often all that somebody remembers.
+    close += [name for name in known if scene and scene in name and name not in close]
+    if not close:
+        return "`list` names them all"
+    return f"did you mean {', '.join(close[:_MOST_SUGGESTED])}?"

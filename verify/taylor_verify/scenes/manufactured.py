@@ -1,0 +1,79 @@
+"""A manufactured motion: chosen first, as a trigonometric polynomial, and the loads made to fit it.
+
+z*(t)  omega (a rigid body) or x and y as one vector of six (a solid in a fluid), body axes
+t      time since the start
+nu     angular frequency of a wave, 1/time
+
+z* solves the equations of motion of any body at all, provided that the loads are what is left over when
+z* is put into them: M = I omega*' + omega* x I omega*, or X = x*' - x* x Omega* and
+L = y*' - y* x Omega* - x* x U*. So a motion under loads that change with time has an exact answer, for
+every tensor and every T.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+
+@dataclass(frozen=True)
+class Wave:
+    """cosine cos(nu t) + sine sin(nu t), of the vector z*; ``frequency`` nu is positive."""
+
+    frequency: Fraction
+    cosine: Vector
+    sine: Vector
+
+
+@dataclass(frozen=True)
+class Manufactured:
+    """z*(t) = constant + the sum of the waves, all coefficients exact."""
+
+    constant: Vector
+    waves: tuple[Wave, ...]
+
+    @property
+    def start(self) -> Vector:
+        """z*(0), where every cosine is 1 and every sine 0: rational as its coefficients are."""
+        total = self.constant
+        for wave in self.waves:
+            total = tensors.plus(total, wave.cosine)
+        return total
+
+    @property
+    def reach(self) -> Vector:
+        """What no component exceeds at any time: the sum of the sizes of its coefficients."""
+        vectors = [self.constant, *(v for w in self.waves for v in (w.cosine, w.sine))]
+        return tuple(sum(map(abs, column), Fraction(0)) for column in zip(*vectors, strict=True))
+
+    @property
+    def highest(self) -> Fraction:
+        """The highest frequency; 0 of a constant."""
+        return max((wave.frequency for wave in self.waves), default=Fraction(0))
+
+    def mapped(self, matrix: Matrix) -> Manufactured:
+        """The same motion of another vector, matrix z*: of H = I omega, for one."""
+        return Manufactured(
+            tensors.apply(matrix, self.constant),
+            tuple(
+                Wave(w.frequency, tensors.apply(matrix, w.cosine), tensors.apply(matrix, w.sine))
+                for w in self.waves
+            ),
+        )
+
+    def in_units(self, sizes: Vector, time: Fraction) -> Manufactured:
+        """Component i times sizes[i], and times to ``time`` times what they were."""
+        return Manufactured(
+            _times(self.constant, sizes),
+            tuple(
+                Wave(w.frequency / time, _times(w.cosine, sizes), _times(w.sine, sizes))
+                for w in self.waves
+            ),
+        )
+
+
+def _times(vector: Vector, sizes: Vector) -> Vector:
+    return tuple(z * size for z, size in zip(vector, sizes, strict=True))

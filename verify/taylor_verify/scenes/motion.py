@@ -1,0 +1,91 @@
+"""How a body moves: its exact initial state, the instants it is asked at, and its sampled motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
+IDENTITY: Quaternion = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
+
+
+@dataclass(frozen=True)
+class Spin:
+    """The initial state of a rigid body.
+
+    ``omega`` is in body axes. ``attitude`` is a quaternion, scalar first, body to space, any norm but
+    zero: whoever uses it divides by the norm, because the quotient is rarely rational.
+    """
+
+    omega: Vector
+    attitude: Quaternion = IDENTITY
+
+
+@dataclass(frozen=True)
+class Impulse:
+    """The initial state of a solid in a fluid.
+
+    ``linear`` x and ``angular`` y, about the body's origin, are the impulses of body and fluid together,
+    in body axes; ``attitude`` is a quaternion as in Spin; ``centre`` is the body's origin, in space axes.
+    """
+
+    linear: Vector
+    angular: Vector
+    attitude: Quaternion = IDENTITY
+    centre: Vector = ZERO_VECTOR
+
+
+State = Spin | Impulse
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The time of the initial state and the instants asked for, strictly monotonic.
+
+    The instants do not change; a tuple, or one of scenes.instants.
+    """
+
+    start: Fraction
+    instants: Sequence[Fraction]
+
+    @cached_property
+    def elapsed(self) -> tuple[Fraction, ...]:
+        """Time since the initial state. The equations are autonomous: this alone enters them."""
+        return tuple(instant - self.start for instant in self.instants)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion sampled at n instants, as NumPy object arrays of mpmath numbers.
+
+    ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
+    ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
+    ``radius`` (n,) bounds the error of every vector and matrix of a row in the Frobenius norm,
+    relative to its norm (absolute where that is zero); zeros where the numbers are held exactly.
+    ``radii`` bounds the error of single quantities likewise, as far as it is known apart.
+    """
+
+    quantities: Mapping[str, np.ndarray[Any, Any]]
+    radius: np.ndarray[Any, Any]
+    radii: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        return self.quantities[quantity]
+
+    def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
+        """The radius of this quantity alone; that of the whole row where no other is known."""
+        return self.radii.get(quantity, self.radius)
+
+    def at(self, rows: Sequence[int]) -> Motion:
+        """The motion at some of its instants."""
+        quantities = {name: values[rows] for name, values in self.quantities.items()}
+        radii = {name: radius[rows] for name, radius in self.radii.items()}
+        return Motion(quantities, self.radius[rows], radii)

@@ -1,0 +1,199 @@
+"""The closed form as most of its users write it, in plain doubles: `closed-form:ellipj`.
+
+k_i  principal values of K, the inverse inertia tensor      h    momentum in principal axes
+a    the axis that the orbit encircles                      b    the middle axis, c the third
+w_a = s a_a dn u,   w_b = -+ s a_b sn u,   w_c = a_c cn u,   u = lam t + u0,  parameter m
+
+The formulas are right and SciPy's `ellipj` and `ellipkinc` are given what they ask for, each quantity
+as a sum without cancellation where there is one. It is an entrant like any other, and its failures are
+those of the doubles:
+
+long times      u is rounded to 2^-53 of itself before it is reduced by the period: a phase error of
+                some 2^-53 lam |t|, in proportion to time, where no step was ever taken
+near m = 1      1 - m is known to 2^-53 and no better, and the period to 2^-53/(1 - m) of itself;
+                where 1 - m is below 10^-10, `ellipj` falls back on series about m = 1 that hold for
+                less than a quarter of a period
+the separatrix  whatever the last bit of h makes of it: m = 1, or a period of some 80/lam
+middle axis     a body that turns about it has u0 infinite, and the answer is no number
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from importlib import import_module
+from math import atan2, copysign, sqrt
+from time import perf_counter
+from typing import Any, Final, final
+
+import numpy as np
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.solvers.geometric.fixed_step import Body
+from taylor_verify.solvers.options import options
+from taylor_verify.solvers.scipy import unavailable
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+
+PREFIX: Final = "closed-form:"
+METHODS: Final = ("ellipj",)
+
+Floats = np.ndarray[Any, Any]
+
+
+@final
+@dataclass(frozen=True)
+class ClosedForm(Solver):
+    """Omega of a free body with three distinct principal moments, by Jacobi's functions in float64."""
+
+    name: str
+    setting: str = ""
+
+    def unavailable(self, rung: Rung) -> str:
+        return unavailable(self.name, rung)
+
+    def unsuited(self, problem: Problem) -> str:
+        body = problem.given.body
+        if not isinstance(body, RigidBody):
+            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+        if not body.is_free:
+            return f"{self.name} is made for a body without a moment"
+        if "attitude" in problem.scene.track:
+            return f"{self.name} gives omega and no attitude"
+        if not any(problem.initial_momenta):
+            return f"{self.name} is made for a body that turns"
+        if not _has_distinct_moments(body.inverse_inertia):
+            return f"{self.name} is made for three distinct principal moments"
+        return ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem) or self.unavailable(problem.rung):
+            return Trajectory(Outcome.NOT_STARTED, detail=reason)
+        asked = perf_counter()
+        import_module("scipy.special")
+        began = perf_counter()
+        try:
+            with np.errstate(all="ignore"):
+                momenta = _momenta(problem)
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
+        seconds = perf_counter() - began
+        if not np.isfinite(momenta).all():
+            return Trajectory(Outcome.NON_FINITE, seconds=seconds)
+        rows = momenta.tolist()
+        return Trajectory(
+            Outcome.FINISHED,
+            Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows]),
+            # Each sample is found for itself: no step is taken, and nothing adds up.
+            steps=len(rows),
+            seconds=seconds,
+            compile_seconds=began - asked,
+        )
+
+
+def _momenta(problem: Problem) -> Floats:
+    """The momentum in body axes at each of the problem's times, in its units."""
+    from scipy.special import ellipj, ellipkinc
+
+    k, axes = _principal(np.array(Body.of(problem).K))
+    h = axes.T @ [float(value) for value in problem.initial_momenta]
+    if _encircles_last(k, h):
+        k, h, axes = k[::-1], h[::-1], axes[:, ::-1]
+    if np.linalg.det(axes) < 0:
+        h, axes = h * [1, -1, 1], axes * [1, -1, 1]
+    orbit = _Orbit(*(float(value) for value in (*k, *h)))
+    times = np.array([float(t) for t in problem.times])
+    phase = ellipkinc(orbit.angle, orbit.m)
+    sn, cn, dn, _ = ellipj(orbit.rate * times + phase, orbit.m)
+    along = np.array(orbit.amplitudes)[:, None] * np.array([dn, sn, cn])
+    momenta: Floats = (axes @ along).T
+    return momenta
+
+
+def _principal(K: Floats) -> tuple[Floats, Floats]:
+    """The principal values in rising order and the axes as columns; exact where K is diagonal."""
+    if np.count_nonzero(K - np.diag(np.diag(K))):
+        values, vectors = np.linalg.eigh(K)
+        return values, vectors
+    order = np.argsort(np.diag(K))
+    return np.diag(K)[order], np.eye(3)[:, order]
+
+
+def _encircles_last(k: Floats, h: Floats) -> bool:
+    """Whether the orbit is about the axis of the largest k, the least moment: 2T > k_b |H|^2."""
+    return bool((k[2] - k[1]) * h[2] ** 2 > (k[1] - k[0]) * h[0] ** 2)
+
+
+@dataclass(frozen=True)
+class _Orbit:
+    """The constants of an orbit about axis a, which is the axis of the least or of the largest k."""
+
+    k_a: float
+    k_b: float
+    k_c: float
+    h_a: float
+    h_b: float
+    h_c: float
+
+    @property
+    def _A(self) -> float:
+        """| |H|^2 k_c - 2T |, a sum of positive terms."""
+        return abs(self.k_c - self.k_a) * self.h_a**2 + abs(self.k_c - self.k_b) * self.h_b**2
+
+    @property
+    def _C(self) -> float:
+        """| 2T - |H|^2 k_a |, likewise."""
+        return abs(self.k_b - self.k_a) * self.h_b**2 + abs(self.k_c - self.k_a) * self.h_c**2
+
+    @property
+    def rate(self) -> float:
+        return sqrt(abs(self.k_b - self.k_a) * self._A)
+
+    @property
+    def m(self) -> float:
+        # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
+        ratio = abs(self.k_c - self.k_b) * self._C / (abs(self.k_b - self.k_a) * self._A)
+        return min(ratio, 1.0)
+
+    @property
+    def amplitudes(self) -> tuple[float, float, float]:
+        """Of h_a, h_b, h_c: what stands before dn, sn and cn."""
+        side = copysign(1.0, self.h_a)
+        turn = copysign(1.0, self.k_a - self.k_c)
+        across = abs(self.k_c - self.k_a)
+        return (
+            side * sqrt(self._A / across),
+            side * turn * sqrt(self._C / abs(self.k_b - self.k_a)),
+            sqrt(self._C / across),
+        )
+
+    @property
+    def angle(self) -> float:
+        """The amplitude of u0: its sine and cosine are sn and cn at the start."""
+        _, b, c = self.amplitudes
+        return atan2(self.h_b * c * copysign(1.0, b), self.h_c * abs(b))
+
+
+def _has_distinct_moments(K: tensors.Matrix) -> bool:
+    """Whether the characteristic polynomial has no double root: its discriminant, in rationals."""
+    trace = K[0][0] + K[1][1] + K[2][2]
+    square = tensors.product(K, K)
+    minors = (trace**2 - sum((square[i][i] for i in range(3)), Fraction(0))) / 2
+    a, b, c = K
+    determinant = tensors.dot(a, tensors.cross(b, c))
+    return (
+        trace**2 * minors**2
+        - 4 * minors**3
+        - 4 * trace**3 * determinant
+        + 18 * trace * minors * determinant
+        - 27 * determinant**2
+    ) != 0
+
+
+def named(name: str) -> ClosedForm:
+    """The closed form of that name; ValueError for one that there is not, and for any setting."""
+    options(name, METHODS, [])
+    return ClosedForm(name)

@@ -1,0 +1,59 @@
+"""A column of a trajectory file as it is written, and how much of a file is read.
+
+Every format holds a file to these limits before it makes anything of its content.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Final, NamedTuple
+
+from taylor_verify.scenes.clock_reader import MOST_SAMPLES
+from taylor_verify.scenes.faults import Faults
+from taylor_verify.scenes.limit import Limit
+
+ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
+VALUES: Final = Limit(
+    22 * MOST_SAMPLES,
+    "values",
+    "t, w, x, y, R and c in as many rows as a scene has samples at most",
+)
+BYTES: Final = Limit(
+    2**29, "bytes", "a million rows of t, x, y, q and c in hexadecimal floats take 350 MB"
+)
+COLUMNS: Final = Limit(
+    1000, "columns", "a trajectory has 22, and a logger some hundreds beside them"
+)
+CHARACTERS: Final = Limit(4000, "characters in a number", "beyond them none is read")
+
+MOST_ALIKE: Final = 3
+_MOST_SHOWN: Final = 40
+
+
+class Column(NamedTuple):
+    name: str
+    values: Sequence[object]
+
+
+def check_size(columns: int, rows: int, place: object) -> None:
+    """Raise Refused for a file of more columns, rows or values than are read."""
+    COLUMNS.check(columns, place)
+    ROWS.check(rows, place)
+    VALUES.check(columns * rows, place)
+
+
+def check_lengths(columns: Iterable[Column], place: object) -> None:
+    """Raise Refused for columns that are longer than any scene."""
+    ROWS.check(max((len(column.values) for column in columns), default=0), place)
+
+
+def add_more_alike(faults: Faults, wrong: int, place: str) -> None:
+    """Say how many more faults of a kind there are than are told one by one."""
+    if wrong > MOST_ALIKE:
+        faults.lines.append(f"and {wrong - MOST_ALIKE} more of this kind @ {place}")
+
+
+def shown(value: object) -> str:
+    """A value as its file writes it, cut short where it is long."""
+    text = repr(value) if isinstance(value, str) or value is None else str(value)
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."

@@ -1,0 +1,235 @@
+"""What the geometric integrators have in common: a body in float64, and equal steps to each sample.
+
+H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
+M  constant moment, body axes         q  attitude quaternion, body to space
+h  step
+
+All is in the problem's own units, powers of two in which K, H and the rates are of size one. The
+equations are autonomous, so no time is ever summed up.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, isfinite
+from time import perf_counter
+from typing import Any, ClassVar, Final, NamedTuple, Self
+
+import numpy as np
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+
+# At some ten microseconds a step these take a quarter of an hour: more is not begun.
+_MOST_STEPS: Final = 10**8
+
+
+class Unsolved(Exception):
+    """The equation of an implicit step has no solution that can be found; the text says so."""
+
+
+class Stepped(NamedTuple):
+    """The momentum after a step, what the frame's turn is made from, and what the step took.
+
+    ``evaluations`` counts the angular velocities formed, each a derivative of the whole state.
+    """
+
+    H: Vector
+    trace: Any
+    evaluations: int
+
+
+Step = Callable[[Vector], Stepped]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A problem's body in float64."""
+
+    K: Matrix
+    M: Vector
+
+    @classmethod
+    def of(cls, problem: Problem) -> Self:
+        named = problem.parameter
+
+        def entry(i: int, j: int) -> float:
+            return float(named.get(f"K{min(i, j)}{max(i, j)}", 0))
+
+        K1, K2, K3 = ((entry(i, 1), entry(i, 2), entry(i, 3)) for i in (1, 2, 3))
+        M1, M2, M3 = (float(named.get(f"M{i}", 0)) for i in (1, 2, 3))
+        return cls((K1, K2, K3), (M1, M2, M3))
+
+    @property
+    def is_diagonal(self) -> bool:
+        (_, a, b), (_, _, c), _ = self.K
+        return a == b == c == 0
+
+
+@dataclass(frozen=True)
+class FixedStep(Solver):
+    """A method for Euler's equations: equal steps, not longer than ``step``, from sample to sample.
+
+    ``step`` is in the scene's unit of time. The attitude is followed only where it is tracked.
+    """
+
+    step: Fraction
+    name: str
+    setting: str = ""
+    counts_steps = True
+
+    takes_moment: ClassVar[bool] = False
+    in_principal_axes: ClassVar[bool] = False
+
+    @abstractmethod
+    def stepping(self, body: Body, H: Vector, h: float) -> Step:
+        """The map of one step h of a motion that has the momentum H."""
+
+    @abstractmethod
+    def turn(self, trace: Any) -> Quaternion:
+        """The turn of the frame in one step, as seen from the frame."""
+
+    def unavailable(self, rung: Rung) -> str:
+        return "" if rung.name == "f64" else f"{self.name} is made in float64: f64 alone"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem) or self.unavailable(problem.rung):
+            return Trajectory(Outcome.NOT_STARTED, detail=reason)
+        course = _Course(self, problem)
+        if not course.steps <= _MOST_STEPS:
+            detail = f"{float(course.steps):.3g} steps, more than {float(_MOST_STEPS):.3g}"
+            return Trajectory(Outcome.STEP_LIMIT, detail=detail)
+        began = perf_counter()
+        outcome, detail = course.run()
+        seconds = perf_counter() - began
+        quantities = {}
+        if outcome is Outcome.FINISHED:
+            exact = [[exact_value(value) for value in row] for row in course.rows]
+            quantities = from_scaled(problem, exact)
+        return Trajectory(
+            outcome,
+            quantities,
+            detail,
+            steps=course.taken,
+            evaluations=course.evaluations,
+            seconds=seconds,
+        )
+
+    def unsuited(self, problem: Problem) -> str:
+        if problem.scene.model != "euler":
+            return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
+        if problem.given.body.manufactured is not None:
+            return f"{self.name} is made for a body without a moment that changes with time"
+        if any(Body.of(problem).M) and not self.takes_moment:
+            return f"{self.name} is made for a body without a moment"
+        return ""
+
+
+class _Course:
+    """One run: the steps that lead to each sample, what they took, and H with q at the samples."""
+
+    def __init__(self, solver: FixedStep, problem: Problem) -> None:
+        self.solver, self.problem = solver, problem
+        self.spans = _spans(problem.times)
+        # Of the scene's own times: rounded ones may be a whisker longer than a multiple of the step.
+        self.counts = [ceil(abs(t) / solver.step) for t in _spans(problem.scene.clock.elapsed)]
+        self.taken = self.evaluations = 0
+        self.rows: list[list[float]] = []
+
+    @property
+    def steps(self) -> int:
+        return sum(self.counts)
+
+    def run(self) -> tuple[Outcome, str]:
+        """Take all the steps; how that ended, and what there is to say about it."""
+        try:
+            self._follow()
+        except Unsolved as error:
+            return Outcome.INTERRUPTED, str(error)
+        except (ArithmeticError, ValueError):
+            # Python's floats raise where those of NumPy are no number: sin(inf), 1/0.
+            return Outcome.NON_FINITE, ""
+        if not all(isfinite(value) for row in self.rows for value in row):
+            return Outcome.NON_FINITE, ""
+        return Outcome.FINISHED, ""
+
+    def _follow(self) -> None:
+        body = Body.of(self.problem)
+        start = [float(value) for value in self.problem.initial_momenta]
+        H: Vector = (start[0], start[1], start[2])
+        q: Quaternion | None = (start[3], start[4], start[5], start[6]) if start[3:] else None
+        axes = None
+        if self.solver.in_principal_axes and not body.is_diagonal:
+            body, axes = principal(body)
+            H, q = _into(axes, H), q and product(q, axes)
+        for span, count in zip(self.spans, self.counts, strict=True):
+            H, q = self._to_sample(body, H, q, span, count)
+            self.rows.append([*H, *(q or ())] if axes is None else _out_of(axes, H, q))
+
+    def _to_sample(
+        self, body: Body, H: Vector, q: Quaternion | None, span: Fraction, count: int
+    ) -> tuple[Vector, Quaternion | None]:
+        if not count:
+            return H, q
+        step = self.solver.stepping(body, H, float(span / count))
+        for _ in range(count):
+            H, trace, evaluations = step(H)
+            if q is not None:
+                q = product(q, self.solver.turn(trace))
+            self.taken += 1
+            self.evaluations += evaluations
+        return H, q
+
+
+def _spans(times: Sequence[Fraction]) -> list[Fraction]:
+    """From the start, which is not always a sample, to the first, and on from sample to sample."""
+    return [after - before for before, after in pairwise((Fraction(0), *times))]
+
+
+def principal(body: Body) -> tuple[Body, Quaternion]:
+    """The body in its principal axes, and the turn that takes those to the body's own.
+
+    They come from an eigenvalue problem in float64: the body that is then followed differs from the
+    problem's by some units of roundoff of its largest entry.
+    """
+    values, vectors = np.linalg.eigh(np.array(body.K))
+    if np.linalg.det(vectors) < 0:
+        vectors[:, 0] = -vectors[:, 0]
+    k1, k2, k3 = (float(value) for value in values)
+    K = ((k1, 0.0, 0.0), (0.0, k2, 0.0), (0.0, 0.0, k3))
+    return Body(K, (0.0, 0.0, 0.0)), _quaternion(vectors)
+
+
+def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:
+    """The unit quaternion of a rotation: q q^T is linear in R, and its longest column is q."""
+    (a, b, c), (d, e, f), (g, h, i) = R
+    columns = 0.25 * np.array(
+        [
+            [1 + a + e + i, h - f, c - g, d - b],
+            [h - f, 1 + a - e - i, b + d, c + g],
+            [c - g, b + d, 1 - a + e - i, f + h],
+            [d - b, c + g, f + h, 1 - a - e + i],
+        ]
+    )
+    longest = columns[:, int(np.argmax(np.diag(columns)))]
+    q0, q1, q2, q3 = (float(value) for value in longest / np.linalg.norm(longest))
+    return (q0, q1, q2, q3)
+
+
+def _into(axes: Quaternion, a: Vector) -> Vector:
+    """A vector of body axes, in principal ones."""
+    _, *rest = product(product(conjugate(axes), (0.0, *a)), axes)
+    return (rest[0], rest[1], rest[2])
+
+
+def _out_of(axes: Quaternion, H: Vector, q: Quaternion | None) -> list[float]:
+    """Momentum and attitude of principal axes, in those of the body."""
+    back = conjugate(axes)
+    return [*_into(back, H), *(product(q, back) if q else ())]

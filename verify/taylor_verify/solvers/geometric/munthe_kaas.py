@@ -1,0 +1,62 @@
+"""The Runge-Kutta-Munthe-Kaas method of fourth order, on the rotation group and on so(3)*.
+
+    H(t) = exp(-[theta]x) H0,   R(t) = R0 exp([theta]x),   theta' = dexp^-1 (K H),  theta(0) = 0
+    dexp^-1 w = w + theta x w/2 + theta x (theta x w)/12 + O(theta^4 w)
+
+The classical Runge-Kutta method for theta, from step to step: H moves by rotations, so that |H|^2 and
+R H are conserved whatever the step. T drifts.
+
+H. Munthe-Kaas, Runge-Kutta methods on Lie groups, BIT 38 (1998) 92-111.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
+from taylor_verify.solvers.geometric.vectors import (
+    Quaternion,
+    Vector,
+    ahead,
+    apply,
+    cross,
+    exponential,
+    scaled,
+    turned_back,
+)
+
+
+@final
+@dataclass(frozen=True)
+class MuntheKaas(FixedStep):
+    """Any tensor; the series of dexp^-1 ends where what is left out is of fifth order in a step."""
+
+    name: str = "geometric:lie-rk4"
+
+    def stepping(self, body: Body, H: Vector, h: float) -> Step:
+        del H
+        K = body.K
+
+        def step(H: Vector) -> Stepped:
+            def rate(theta: Vector) -> Vector:
+                return _inverse_dexp(theta, apply(K, turned_back(theta, H)))
+
+            first = apply(K, H)
+            second = rate(scaled(h / 2, first))
+            third = rate(scaled(h / 2, second))
+            fourth = rate(scaled(h, third))
+            ends, middle = ahead(first, 1.0, fourth), ahead(second, 1.0, third)
+            theta = scaled(h / 6, ahead(ends, 2.0, middle))
+            return Stepped(turned_back(theta, H), theta, 4)
+
+        return step
+
+    def turn(self, trace: Vector) -> Quaternion:
+        return exponential(trace)
+
+
+def _inverse_dexp(theta: Vector, omega: Vector) -> Vector:
+    """The rate of theta at which R0 exp([theta]x) turns with omega, seen from the body."""
+    once = cross(theta, omega)
+    return ahead(ahead(omega, 0.5, once), 1 / 12, cross(theta, once))

@@ -1,0 +1,189 @@
+"""What every entrant is asked, and how it answers: the protocol's JSON, read and written once.
+
+A script has a function ``solve(question, setting)`` and ends with ``answer(solve)``. Its arguments are
+the method, the relative and the absolute tolerance:
+
+    python with_cvode.py bdf 1e-9 1e-12 < question.json > answer.json
+
+The keys of the JSON are explained in solvers/protocol.py of taylor-verify. Numbers are the
+doubles that the protocol hands over as ``hex``. An integration backwards in time is asked with
+``sign`` -1: the rates are to be multiplied by it, and the clock runs forwards for every library.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from equations import rates  # type: ignore[import-not-found]
+
+Row = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Question:
+    """One problem; see equations.py for the order of ``state`` and ``parameters``.
+
+    ``instants`` are the absolute times since the start that are asked for, from 0 on and strictly
+    rising; ``columns`` the names that the answer needs besides t, and ``times`` is its column t.
+    ``bits`` is the significand of the rung, 53 for float64.
+    """
+
+    bits: int
+    columns: list[str]
+    parameters: list[float]
+    state: list[float]
+    sign: float
+    instants: list[float]
+    asks_start: bool
+    times: list[str]
+
+    @property
+    def end(self) -> float:
+        return self.instants[-1]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How it is to be solved: the library's own name of the tolerances is the script's affair."""
+
+    method: str
+    rtol: float
+    atol: float
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The states at the instants of the question, and the work they took; times in seconds."""
+
+    states: Sequence[Row]
+    steps: int
+    evaluations: int
+    seconds: float
+    compile_seconds: float
+
+
+def answer(solve: Callable[[Question, Setting], Solved]) -> None:
+    """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
+    method, rtol, atol = sys.argv[1:]
+    question = read(json.load(sys.stdin))
+    solved = solve(question, Setting(method, float(rtol), float(atol)))
+    json.dump(_written(question, solved), sys.stdout)
+
+
+def twice(propagate: Callable[[], Any]) -> tuple[Any, float, float]:
+    """What a propagation finds, its seconds, and how many more the first one took to compile.
+
+    It is done twice: the first may compile, load and allocate, the second one propagates alone.
+    """
+    _, first = _timed(propagate)
+    found, second = _timed(propagate)
+    return found, second, max(0.0, first - second)
+
+
+def _timed(propagate: Callable[[], Any]) -> tuple[Any, float]:
+    began = time.perf_counter()
+    found = propagate()
+    return found, time.perf_counter() - began
+
+
+def compiled_rates(question: Question) -> Any:
+    """``fill(state, out)``, the rates compiled by numba; the body's numbers are constants of it."""
+    import numpy
+    from numba import njit  # type: ignore[import-not-found]
+
+    found = rates(question.columns, njit)
+    parameters = numpy.array(question.parameters)
+    sign, n = question.sign, len(question.state)
+
+    def fill(state: Any, out: Any) -> None:
+        f = found(state, parameters)
+        for i in range(n):
+            out[i] = sign * f[i]
+
+    return njit(fill)
+
+
+# Reading.
+
+
+def floats(number: Any) -> Any:
+    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    if isinstance(number, dict):
+        return floats(number["hex"])
+    if isinstance(number, list):
+        return [floats(entry) for entry in number]
+    return float.fromhex(number)
+
+
+def read(scene: Any) -> Question:
+    body, initial, clock = scene["body"], scene["initial"], scene["time"]
+    columns = scene["columns"][1:]
+    if scene["model"] == "euler":
+        parameters = _flat(body["inverse_inertia"]) + floats(body["moment"])
+        state = floats(initial["angular_momentum"])
+    else:
+        parameters = [v for key in ("linear", "coupling", "angular") for v in _flat(body[key])]
+        parameters += floats(body["force"]) + floats(body["couple"])
+        state = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
+    if "q0" in columns:
+        state += _unit(floats(initial["attitude"]))
+    if "c1" in columns:
+        state += floats(initial["centre"])
+    elapsed = floats(clock["elapsed"])
+    asks_start = elapsed[0] == 0
+    return Question(
+        bits=scene["bits"],
+        columns=columns,
+        parameters=parameters,
+        state=state,
+        sign=math.copysign(1.0, elapsed[-1]),
+        instants=[0.0] * (not asks_start) + [abs(t) for t in elapsed],
+        asks_start=asks_start,
+        times=clock["times"]["hex"],
+    )
+
+
+def _flat(matrix: Any) -> list[float]:
+    return [entry for row in floats(matrix) for entry in row]
+
+
+def _unit(q: list[float]) -> list[float]:
+    """The protocol gives a quaternion of any length."""
+    length = math.sqrt(sum(entry * entry for entry in q))
+    return [entry / length for entry in q]
+
+
+# Writing.
+
+
+def _written(question: Question, solved: Solved) -> dict[str, Any]:
+    states = [[float(value) for value in row] for row in solved.states]
+    if not question.asks_start:
+        states = states[1:]
+    if "w1" in question.columns:
+        states = [_with_omega(question.parameters, state) for state in states]
+    found = zip(*states, strict=True)
+    return {
+        "t": question.times,
+        "steps": int(solved.steps),
+        "evaluations": int(solved.evaluations),
+        "seconds": solved.seconds,
+        "compile_seconds": solved.compile_seconds,
+        # Hexadecimal floats are exact.
+        **{
+            name: [value.hex() for value in column]
+            for name, column in zip(question.columns, found, strict=True)
+        },
+    }
+
+
+def _with_omega(p: Row, state: list[float]) -> list[float]:
+    """omega = K H in place of H."""
+    H = state[:3]
+    return [sum(p[3 * i + j] * H[j] for j in range(3)) for i in range(3)] + state[3:]

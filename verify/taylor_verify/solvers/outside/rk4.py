@@ -1,0 +1,204 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = []
+# ///
+"""A worked example: the classical Runge-Kutta method as a program that can be judged.
+
+    taylor-verify run euler/generic --solver "process:python rk4.py 0.01"
+
+It reads a scene as JSON on stdin and writes a trajectory as JSON on stdout; nothing but the standard
+library is needed. The argument is the longest step, in the scene's own time. The keys are explained
+in solvers/protocol.py of taylor-verify; rk4.c beside it is the same program in C.
+
+H  angular momentum   K  inverse inertia    M     moment            omega = K H
+x  linear impulse     y  angular impulse    A B C  T = x.A x/2 + x.B y + y.C y/2
+U = A x + B y         Omega = B^T x + C y   X L   force and couple  all in body axes
+q  attitude, scalar first, body to space    c     centre, in space axes
+z* the motion H*, or x* and y*, that loads which change with time are made for (rk4.c knows none)
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable
+from typing import Any
+
+Vector = list[float]
+Rates = Callable[[float, Vector], Vector]
+
+
+def floats(number: Any) -> Any:
+    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    if isinstance(number, dict):
+        return floats(number["hex"])
+    return (
+        [floats(entry) for entry in number] if isinstance(number, list) else float.fromhex(number)
+    )
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def apply(matrix: list[Vector], v: Vector) -> Vector:
+    return [row[0] * v[0] + row[1] * v[1] + row[2] * v[2] for row in matrix]
+
+
+def transpose(matrix: list[Vector]) -> list[Vector]:
+    return [list(row) for row in zip(*matrix, strict=True)]
+
+
+def add(*vectors: Vector) -> Vector:
+    return [sum(entries) for entries in zip(*vectors, strict=True)]
+
+
+def attitude_rate(q: Vector, w: Vector) -> Vector:
+    """q' = q (0, omega) / 2."""
+    return [
+        (-q[1] * w[0] - q[2] * w[1] - q[3] * w[2]) / 2,
+        (q[0] * w[0] + q[2] * w[2] - q[3] * w[1]) / 2,
+        (q[0] * w[1] + q[3] * w[0] - q[1] * w[2]) / 2,
+        (q[0] * w[2] + q[1] * w[1] - q[2] * w[0]) / 2,
+    ]
+
+
+def to_space(q: Vector, v: Vector) -> Vector:
+    """v + 2 r x (r x v + q0 v), r = (q1, q2, q3): the vector in space axes."""
+    r = q[1:]
+    inner = cross(r, v)
+    turned = cross(r, [inner[i] + q[0] * v[i] for i in range(3)])
+    return [v[i] + 2 * turned[i] for i in range(3)]
+
+
+def free_euler(body: Any) -> Callable[[Vector], Vector]:
+    """H x K H."""
+    K = floats(body["inverse_inertia"])
+    return lambda H: cross(H, apply(K, H))
+
+
+def euler(body: Any, load: Callable[[float], Vector]) -> Rates:
+    """H' = H x K H + M; the state is H, q."""
+    K, M, free = floats(body["inverse_inertia"]), floats(body["moment"]), free_euler(body)
+
+    def rates(t: float, state: Vector) -> Vector:
+        H, q = state[:3], state[3:7]
+        return add(free(H), M, load(t)) + attitude_rate(q, apply(K, H))
+
+    return rates
+
+
+def velocities(body: Any) -> Callable[[Vector], tuple[Vector, Vector]]:
+    """U and Omega of x and y."""
+    A, B, C = floats(body["linear"]), floats(body["coupling"]), floats(body["angular"])
+    B_transposed = transpose(B)
+
+    def found(impulses: Vector) -> tuple[Vector, Vector]:
+        x, y = impulses[:3], impulses[3:]
+        return add(apply(A, x), apply(B, y)), add(apply(B_transposed, x), apply(C, y))
+
+    return found
+
+
+def free_kirchhoff(body: Any) -> Callable[[Vector], Vector]:
+    """x x Omega, and y x Omega + x x U."""
+    velocity = velocities(body)
+
+    def free(impulses: Vector) -> Vector:
+        x, y = impulses[:3], impulses[3:]
+        U, w = velocity(impulses)
+        return cross(x, w) + add(cross(y, w), cross(x, U))
+
+    return free
+
+
+def kirchhoff(body: Any, load: Callable[[float], Vector]) -> Rates:
+    """x' = x x Omega + X, y' = y x Omega + x x U + L, c' = R U; the state is x, y, q, c."""
+    loads = floats(body["force"]) + floats(body["couple"])
+    free, velocity = free_kirchhoff(body), velocities(body)
+
+    def rates(t: float, state: Vector) -> Vector:
+        q = state[6:10]
+        U, w = velocity(state[:6])
+        return add(free(state[:6]), loads, load(t)) + attitude_rate(q, w) + to_space(q, U)
+
+    return rates
+
+
+def loads_of(
+    motion: Any, start: Vector, free: Callable[[Vector], Vector]
+) -> Callable[[float], Vector]:
+    """z*' less the free rates at z*: M, or X and L; zero of a scene whose loads are constant."""
+    if motion is None:
+        return lambda t: [0.0] * len(start)
+    waves = [floats(motion[key]) for key in ("frequencies", "cosines", "sines")]
+
+    def load(t: float) -> Vector:
+        z, rate = start, [0.0] * len(start)
+        for nu, a, b in zip(*waves, strict=True):
+            c, s = math.cos(nu * t), math.sin(nu * t)
+            z = [v + p * (c - 1) + r * s for v, p, r in zip(z, a, b, strict=True)]
+            rate = [v + nu * (r * c - p * s) for v, p, r in zip(rate, a, b, strict=True)]
+        return [v - f for v, f in zip(rate, free(z), strict=True)]
+
+    return load
+
+
+def step(rates: Rates, t: float, state: Vector, h: float) -> Vector:
+    """One step of the classical Runge-Kutta method."""
+
+    def moved(k: Vector, by: float) -> Vector:
+        return [s + by * r for s, r in zip(state, k, strict=True)]
+
+    k1 = rates(t, state)
+    k2 = rates(t + h / 2, moved(k1, h / 2))
+    k3 = rates(t + h / 2, moved(k2, h / 2))
+    k4 = rates(t + h, moved(k3, h))
+    slopes = zip(state, k1, k2, k3, k4, strict=True)
+    return [s + h / 6 * (a + 2 * b + 2 * c + d) for s, a, b, c, d in slopes]
+
+
+def main() -> None:
+    longest = float(sys.argv[1]) if len(sys.argv) > 1 else 0.01
+    scene = json.load(sys.stdin)
+    body, initial, time = scene["body"], scene["initial"], scene["time"]
+
+    # The quaternion is given with any length.
+    q = floats(initial["attitude"])
+    length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    q = [entry / length for entry in q]
+    if scene["model"] == "euler":
+        names = ["w1", "w2", "w3", "q0", "q1", "q2", "q3"]
+        start = floats(initial["angular_momentum"])
+        rates = euler(body, loads_of(scene.get("manufactured"), start, free_euler(body)))
+        state = start + q
+    else:
+        names = ["x1", "x2", "x3", "y1", "y2", "y3", "q0", "q1", "q2", "q3", "c1", "c2", "c3"]
+        start = floats(initial["linear_impulse"]) + floats(initial["angular_impulse"])
+        rates = kirchhoff(body, loads_of(scene.get("manufactured"), start, free_kirchhoff(body)))
+        state = start + q + floats(initial["centre"])
+
+    rows, steps, now = [], 0, 0.0
+    for instant in floats(time["elapsed"]):
+        # Whole steps of equal length from sample to sample, so that none is interpolated.
+        count = math.ceil(abs(instant - now) / longest)
+        h = (instant - now) / count if count else 0.0
+        for k in range(count):
+            state = step(rates, now + k * h, state, h)
+        steps, now = steps + count, instant
+        if scene["model"] == "euler":
+            rows.append(apply(floats(body["inverse_inertia"]), state[:3]) + state[3:])
+        else:
+            rows.append(state)
+
+    # Hexadecimal floats are exact; plain numbers would do on f32 and f64.
+    found = dict(zip(names, zip(*rows, strict=True), strict=True))
+    answer: dict[str, Any] = {"t": time["times"]["hex"], "steps": steps, "evaluations": 4 * steps}
+    for name in scene["columns"][1:]:
+        answer[name] = [value.hex() for value in found[name]]
+    json.dump(answer, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,176 @@
+"""SciPy's `solve_ivp`, an optional extra: `scipy:METHOD?rtol=NUMBER&atol=NUMBER`.
+
+It integrates the problem's own equations, in units of size one, and answers at the samples with the
+method's own interpolation, as `t_eval` does for any user of it.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from importlib import import_module
+from importlib.util import find_spec
+from math import isfinite
+from time import perf_counter
+from typing import Any, Final, final
+
+import numpy as np
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.solvers.options import options
+from taylor_verify.solvers.solver import Lack, Solver
+from taylor_verify.solvers.straight_line import straight_line
+from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+
+PREFIX: Final = "scipy:"
+METHODS: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
+
+_INSTALL: Final = "pip install 'taylor-verify[scipy]'"
+# What solve_ivp takes where nothing is said.
+_RTOL, _ATOL = "1e-3", "1e-6"
+# solve_ivp replaces a smaller one by this, and says so in a warning.
+_LEAST_RTOL: Final = 100 * Fraction(1, 2**52)
+# At some tens of microseconds an evaluation these take a quarter of an hour.
+_MOST_EVALUATIONS: Final = 10**7
+
+
+def unavailable(name: str, rung: Rung) -> str:
+    """Why a solver made of SciPy cannot run on that rung here; empty where it can."""
+    if rung.name != "f64":
+        return f"{name} is made in float64: f64 alone"
+    if find_spec("scipy") is None:
+        return Lack(f"SciPy is not installed: {_INSTALL}", Outcome.NO_PACKAGE)
+    try:
+        import_module("scipy.integrate")
+    except ImportError as error:
+        return Lack(f"SciPy cannot be imported ({error}): {_INSTALL}", Outcome.NO_PACKAGE)
+    return ""
+
+
+@final
+@dataclass(frozen=True)
+class SciPy(Solver):
+    """One method of `solve_ivp` at one pair of tolerances; atol counts in the problem's units."""
+
+    method: str
+    name: str
+    rtol: float = float(_RTOL)
+    atol: float = float(_ATOL)
+    setting: str = ""
+    counts_steps = True
+
+    def unavailable(self, rung: Rung) -> str:
+        return unavailable(self.name, rung)
+
+    def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unavailable(problem.rung):
+            return Trajectory(Outcome.NOT_STARTED, detail=reason)
+        asked = perf_counter()
+        run = _Run(problem)
+        began = perf_counter()
+        try:
+            found = run.solve(self)
+        except _Endless:
+            detail = f"{run.evaluations} evaluations"
+            return Trajectory(Outcome.STEP_LIMIT, detail=detail, seconds=perf_counter() - began)
+        except _NotFinite:
+            return Trajectory(Outcome.NON_FINITE, seconds=perf_counter() - began)
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
+        seconds = perf_counter() - began
+        rows = found.y.T.tolist()
+        outcome, detail = Outcome.FINISHED, ""
+        if found.status != 0 or len(rows) != len(problem.times):
+            outcome, detail = Outcome.INTERRUPTED, f"solve_ivp: {found.message}"
+        elif not all(isfinite(value) for row in rows for value in row):
+            outcome = Outcome.NON_FINITE
+        quantities = Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows])
+        return Trajectory(
+            outcome,
+            quantities if outcome is Outcome.FINISHED else {},
+            detail,
+            steps=run.steps,
+            evaluations=run.evaluations,
+            seconds=seconds,
+            compile_seconds=began - asked,
+        )
+
+
+class _Endless(Exception):
+    """More evaluations than a run may take."""
+
+
+class _NotFinite(Exception):
+    """A rate that is no number."""
+
+
+class _Run:
+    """One call of solve_ivp, its steps and evaluations counted; SciPy is loaded before it."""
+
+    def __init__(self, problem: Problem) -> None:
+        import_module("scipy.integrate")
+        self.problem = problem
+        self.steps = self.evaluations = 0
+
+    def solve(self, asked: SciPy) -> Any:
+        from scipy import integrate
+
+        times = [float(t) for t in self.problem.times]
+        start = [float(value) for value in self.problem.initial_momenta]
+        with warnings.catch_warnings():
+            # LSODA tells of a failure in a warning too; the outcome has it.
+            warnings.simplefilter("ignore")
+            return integrate.solve_ivp(
+                self._rates(),
+                (0.0, times[-1]),
+                start,
+                method=self._counted(getattr(integrate, asked.method)),
+                t_eval=times,
+                rtol=asked.rtol,
+                atol=asked.atol,
+            )
+
+    def _rates(self) -> Callable[[float, Any], list[float]]:
+        form, parameters = self.problem.form, self.problem.parameters
+        # On Python's own floats: those of a NumPy array take five times as long each.
+        plain = straight_line(form, [float(value) for value in parameters])
+
+        def rates(t: float, state: Any) -> list[float]:
+            self.evaluations += 1
+            if not self.evaluations <= _MOST_EVALUATIONS:
+                raise _Endless
+            found = plain(t, state.tolist())
+            if not all(map(isfinite, found)):
+                # With a step of NaN the explicit methods would try for ever.
+                raise _NotFinite
+            return found
+
+        return rates
+
+    def _counted(self, method: Any) -> Any:
+        """The same method; solve_ivp says how often it evaluated, not how many steps it took."""
+
+        def step(solver: Any) -> Any:
+            self.steps += 1
+            return method.step(solver)
+
+        return type(method.__name__, (method,), {"step": step})
+
+
+def named(name: str) -> SciPy:
+    """The method of that name at its tolerances.
+
+    Raises ValueError for a method that there is not, and for tolerances that are not positive or
+    smaller than SciPy can take.
+    """
+    asked = options(name, METHODS, ["rtol", "atol"])
+    rtol, atol = asked.positive("rtol", _RTOL), asked.positive("atol", _ATOL)
+    if not rtol >= _LEAST_RTOL:
+        raise ValueError(
+            f"expected at least {float(_LEAST_RTOL):.3g}, SciPy's own bound, got "
+            f"{asked.values['rtol']!r} @ rtol"
+        )
+    return SciPy(asked.method, name, float(rtol), float(atol))

@@ -1,0 +1,187 @@
+"""The contract of a solver, and the solver that is a callable of one's own."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import accumulate, pairwise
+from numbers import Rational
+from time import perf_counter
+from typing import Any, ClassVar, final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+_RATIONAL_BITS = 4000
+
+
+class Lack(str):
+    """The reason why a solver cannot run, as a sentence, with its kind as an ``outcome``.
+
+    NO_PACKAGE: the sentence ends with the command that installs it. NO_FORMAT: the machine has no such
+    numbers. UNSUITED: the solver is not made for the question.
+    """
+
+    outcome: Outcome
+
+    def __new__(cls, sentence: str, outcome: Outcome) -> Lack:
+        lack = super().__new__(cls, sentence)
+        lack.outcome = outcome
+        return lack
+
+
+class Solver(ABC):
+    """Something that answers a problem with a trajectory and never raises for a failed run.
+
+    ``name`` is the word of the command line; ``setting`` tells two uses of one solver apart.
+    ``counts_steps`` tells the solvers whose steps are counted by code of this project. The steps that
+    anybody else claims are counted as far as the judge finds them plausible.
+    """
+
+    name: str
+    setting: str = ""
+    counts_steps: ClassVar[bool] = False
+
+    @abstractmethod
+    def solve(self, problem: Problem) -> Trajectory:
+        """The states at the problem's times, or the outcome that prevented them."""
+
+    def unavailable(self, rung: Rung) -> str:
+        """Why this machine cannot run the solver on that rung; empty where it can.
+
+        A sentence that is no Lack says that the solver is not made for the rung.
+        """
+        del rung
+        return ""
+
+    def unsuited(self, problem: Problem) -> str:
+        """Why the solver is not made for such a problem, known before it runs; empty where it is."""
+        del problem
+        return ""
+
+
+@final
+@dataclass(frozen=True)
+class Absent(Solver):
+    """A solver that cannot be loaded, because a package is missing."""
+
+    name: str
+    lack: Lack
+
+    def unavailable(self, rung: Rung) -> str:
+        del rung
+        return self.lack
+
+    def solve(self, problem: Problem) -> Trajectory:
+        del problem
+        return Trajectory(self.lack.outcome, detail=str(self.lack))
+
+
+@final
+@dataclass(frozen=True)
+class Callback(Solver):
+    """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
+
+    Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
+    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. A masked number and a table with
+    named columns are refused. An exception is a failed run, and so is `sys.exit` with any code; an
+    interrupt stays an interrupt.
+    """
+
+    answer: Callable[[Problem], Any]
+    name: str = "callback"
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        began = perf_counter()
+        try:
+            answered = self.answer(problem)
+            if fault := _no_array(answered):
+                return Trajectory(Outcome.MISSHAPEN, detail=fault)
+            states = np.asarray(answered)
+        except (Exception, SystemExit) as error:  # a stranger's code: what it raises is its outcome
+            return raised(error)
+        seconds = perf_counter() - began
+        layout = columns(problem)
+        expected = (len(problem.times), sum(width for _, width in layout))
+        if states.shape != expected:
+            detail = f"expected states of shape {expected}, got {states.shape}"
+            return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
+        try:
+            held = np.array([[_held(v) for v in row] for row in states], dtype=object)
+        except TypeError as error:
+            return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
+        ends = list(accumulate((width for _, width in layout), initial=0))
+        quantities = {
+            name: held[:, left:right]
+            for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
+        }
+        return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
+
+
+def raised(error: BaseException) -> Trajectory:
+    """The trajectory of a solver that ended with an error, a `sys.exit` included."""
+    detail = f"{type(error).__name__}: {error}".removesuffix(": ")
+    return Trajectory(Outcome.RAISED, detail=detail)
+
+
+def _no_array(answered: Any) -> str:
+    """Why what would become an array of numbers is none; empty where it is one.
+
+    NumPy drops a mask, and a table's columns have names that say more than their order.
+    """
+    if hasattr(answered, "columns"):
+        kind = type(answered).__name__
+        return (
+            f"expected an array of states, got a {kind} (hand over its columns in the order of a "
+            "state, as an array)"
+        )
+    rows = answered if isinstance(answered, list | tuple) else [answered]
+    masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
+    masked = sum(int(np.sum(mask)) for mask in masks)
+    return f"expected states without a mask, got {masked} masked numbers" if masked else ""
+
+
+def columns(problem: Problem) -> list[tuple[str, int]]:
+    """The quantities of a state row in their order, each with its number of columns.
+
+    ``omega`` 3, or ``linear_impulse`` 3 and ``angular_impulse`` 3 (body axes); then ``quaternion`` 4
+    (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked.
+    """
+    if problem.scene.model == "euler":
+        layout = [("omega", 3)]
+    else:
+        layout = [("linear_impulse", 3), ("angular_impulse", 3)]
+    if "attitude" in problem.scene.track:
+        layout.append(("quaternion", 4))
+    if "centre" in problem.scene.track:
+        layout.append(("centre", 3))
+    return layout
+
+
+def _held(value: Any) -> Any:
+    """The mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
+
+    A rational that is no binary fraction is rounded to 4000 bits. Raises TypeError for what is no
+    real number.
+    """
+    if isinstance(value, mp.mpf):
+        return value
+    if isinstance(value, np.floating | float) and not np.isfinite(value):
+        return mp.mpf(float(value))
+    if isinstance(value, Rational) and not isinstance(value, bool):
+        numerator, denominator = int(value.numerator), int(value.denominator)
+    elif isinstance(value, np.floating | float):
+        numerator, denominator = value.as_integer_ratio()
+    else:
+        raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
+    if denominator & (denominator - 1):
+        with mp.workprec(_RATIONAL_BITS):
+            return mp.mpf(numerator) / denominator
+    return held_exactly(Fraction(numerator, denominator))

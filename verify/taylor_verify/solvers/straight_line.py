@@ -1,0 +1,69 @@
+"""The equations of a form as one Python function: straight-line code, each operation done once.
+
+`Form.rates` looks every symbol up by its name, anew at each evaluation: it serves every arithmetic, and
+takes ten times as long as the operations themselves. A solver that calls the equations from Python
+would be timed for that. What stands here does the same operations in the same order, so that in
+floating point the rates are the same to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from taylor_verify.models.form import Form
+from taylor_verify.models.symbol import Symbol
+
+Rates = Callable[[Any, Sequence[Any]], list[Any]]
+
+
+def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
+    """``rates(t, state)``, in the arithmetic of the parameters and the state; t is not looked at."""
+    code = _Code()
+    states = [Symbol(f"s{k}") for k in range(len(form.states))]
+    names = [Symbol(f"p{k}") for k in range(len(form.parameters))]
+    results = [code.word(rate) for rate in form.rates(states, names)]
+    lines = [
+        f"def bound({_listed([*names, *map(Symbol, code.constants)])}):",
+        " def rates(t, state):",
+        f"  {_listed(states)} = state",
+        *(f"  {line}" for line in code.lines),
+        f"  return [{', '.join(results)}]",
+        " return rates",
+    ]
+    made: dict[str, Any] = {}
+    # The text is made of the names s0, p0, c0, t0, ... and of + - * / alone.
+    exec("\n".join(lines), made)
+    rates: Rates = made["bound"](*parameters, *code.constants.values())
+    return rates
+
+
+def _listed(symbols: Sequence[Symbol]) -> str:
+    return "".join(f"{symbol.name}, " for symbol in symbols)
+
+
+class _Code:
+    """The lines that compute some expressions, an operation a line, none of them twice."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.constants: dict[str, Any] = {}
+        self._words: dict[Symbol, str] = {}
+
+    def word(self, expression: Any) -> str:
+        """The name under which the value of an expression is to be had."""
+        if not isinstance(expression, Symbol):
+            name = f"c{len(self.constants)}"
+            self.constants[name] = expression
+            return name
+        if not expression.operation:
+            return expression.name
+        if expression not in self._words:
+            operands = [self.word(operand) for operand in expression.operands]
+            text = f" {expression.operation} ".join(operands)
+            if len(operands) == 1:
+                text = f"{expression.operation}{operands[0]}"
+            name = f"t{len(self.lines)}"
+            self.lines.append(f"{name} = {text}")
+            self._words[expression] = name
+        return self._words[expression]

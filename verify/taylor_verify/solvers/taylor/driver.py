@@ -1,0 +1,279 @@
+"""heyoka's Taylor integrator as a solver: typed, scaled, step-capped, bounded and checked.
+
+What heyoka does silently by itself and why it cannot happen here:
+a coefficient rounded to a double      all coefficients are parameters of the rung's own type
+a state far from size one              the problem is posed in units of its own size
+a small component lost beside a large  no step is longer than half the fastest linear time scale
+impulses lost beside a long path       each stretch of the path is counted from where it begins
+an interrupt held until the end        no stretch takes longer than about half a second
+an endless or a broken run             the number of steps is bounded and the outcome is read
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache, partial
+from itertools import pairwise
+from math import ceil, isfinite
+from time import perf_counter
+from typing import Any, final
+
+import heyoka as hy
+import numpy as np
+
+from taylor_verify.models.algebra import is_absent
+from taylor_verify.models.form import Form
+from taylor_verify.models.problem import Problem
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.cache import heyoka_cache_off, stored
+from taylor_verify.solvers.taylor.name import named_at, tolerance
+from taylor_verify.solvers.taylor.numbers import Arithmetic, arithmetic, unavailable
+from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+
+# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of this size;
+# a start close to an unstable axis, where the step would grow with the logarithm of the distance,
+# is what the cap is for.
+LONGEST_STEP = 0.5
+# The rate is looked at again after so many radians, but no more and no less often than this along the
+# way, and the fastest seen so far counts. Each look costs heyoka a series and a step cut short.
+_RADIANS_APART = 4
+_FEWEST_LOOKS, _MOST_LOOKS = 4, 24
+# A regular orbit takes three to five steps in the time of one radian, a close passage some more.
+_STEPS_PER_RADIAN = 64
+# What would take longer than days is not begun.
+_MOST_RADIANS = 1e10
+# That takes about half a second where the processor has the arithmetic. A wide rung calls back after
+# each step instead, which costs a tenth of a microsecond: nothing beside its steps, but much here.
+_RADIANS_AT_ONCE = {"f32": 5e5, "f64": 5e5, "f80": 5e4}
+# Beyond this many states straight-line code compiles longer than it runs.
+_LARGEST_STRAIGHT_LINE = 5
+# Code that is compiled in every process anew is optimised for ways longer than this, in the units of
+# time: it runs a quarter faster then, and saves in a hundred steps what optimising takes.
+_LONG_WAY = 50
+
+# The samples of one stretch after the other, each a row of the states.
+Rows = list[np.ndarray[Any, Any]]
+
+_OUTCOMES = {
+    hy.taylor_outcome.time_limit: Outcome.FINISHED,
+    hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
+    hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
+}
+
+
+@final
+@dataclass(frozen=True)
+class Taylor(Solver):
+    """heyoka at a tolerance, which bounds the error of a step: the rung's machine epsilon if None.
+
+    heyoka takes the order from it.
+    """
+
+    name: str = "taylor"
+    setting: str = ""
+    tolerance: Fraction | None = None
+    counts_steps = True
+
+    def unavailable(self, rung: Rung) -> str:
+        if self.tolerance is not None and not rung.round(self.tolerance) > 0:
+            # heyoka would take it for its own default.
+            return f"{rung.name} has no number for a tolerance so small"
+        return unavailable(rung)
+
+    def solve(self, problem: Problem) -> Trajectory:
+        began = perf_counter()
+        numbers = arithmetic(problem.rung)
+        times = numbers.times(problem.times)
+        # Where code is found again it is one and the same for every way.
+        is_long = numbers.is_found_again or abs(float(times[-1])) > _LONG_WAY
+        compiling = perf_counter()
+        integrator = compiled(problem.form, problem.rung, self.tolerance, is_long=is_long)
+        compile_seconds = perf_counter() - compiling
+        outcome, steps, rows, inner = _propagate(integrator, problem, times)
+        seconds = perf_counter() - began - compile_seconds
+        quantities: Mapping[str, Any] = {}
+        if outcome is Outcome.FINISHED:
+            # Exact numbers of many samples take longer than the samples: the judge asks for them.
+            quantities = Postponed(problem, partial(_exact, rows, problem.rung))
+        return Trajectory(
+            outcome=outcome,
+            quantities=quantities,
+            steps=steps,
+            evaluations=steps * int(integrator.order),
+            seconds=seconds,
+            compile_seconds=compile_seconds,
+            inner_seconds=inner,
+        )
+
+
+def at_tolerance(text: str) -> Taylor:
+    """The driver at a tolerance that is a decimal or a/b; ValueError for one that is not positive."""
+    return named(named_at(text))
+
+
+def named(name: str) -> Taylor:
+    """The driver that `taylor` or `taylor?tol=NUMBER` names; ValueError for any other name."""
+    return Taylor(name, tolerance=tolerance(name))
+
+
+def _exact(rows: Rows, rung: Rung) -> list[list[Fraction]]:
+    exact = arithmetic(rung).exact
+    return [[exact(value) for value in row] for stretch in rows for row in stretch]
+
+
+@lru_cache(maxsize=64)
+def compiled(
+    form: Form,
+    rung: Rung,
+    tolerance: Fraction | None,
+    literals: tuple[Fraction, ...] | None = None,
+    is_long: bool = True,
+) -> Any:
+    """One compiled integrator per form, rung and tolerance; the rest is filled in per problem.
+
+    Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
+    computes does not depend on ``is_long``, which tells what pays.
+    """
+    numbers = arithmetic(rung)
+    zero = numbers.number(Fraction(0))
+    states = hy.make_vars(*form.states)
+    if literals is None:
+        coefficients = [hy.par[i] for i in range(len(form.parameters))]
+    else:
+        coefficients = [hy.expression(numbers.number(value)) for value in literals]
+    rates = form.rates(states, coefficients)
+    system = [
+        (state, hy.expression(0.0) if is_absent(rate) else rate)
+        for state, rate in zip(states, rates, strict=True)
+    ]
+    passed = len(form.parameters) if literals is None else 0
+    options = {
+        "state": np.array([zero] * len(states), dtype=numbers.fp_type),
+        "time": zero,
+        "pars": np.array([zero] * passed, dtype=numbers.fp_type),
+        "fp_type": numbers.fp_type,
+        "compact_mode": numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
+        "opt_level": 3 if is_long else 0,
+        # heyoka takes 0 for the machine epsilon of the type.
+        "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
+    }
+    if numbers.is_found_again:
+        return stored(hy.taylor_adaptive, system, **options)
+    heyoka_cache_off()
+    return hy.taylor_adaptive(system, **options)
+
+
+def _propagate(
+    integrator: Any, problem: Problem, times: np.ndarray[Any, Any]
+) -> tuple[Outcome, int, Rows, float]:
+    """Sample the problem's times; the outcome is FINISHED only if every row is there and finite.
+
+    Also the number of steps, the rows, and the seconds that heyoka's own code took.
+    """
+    numbers = arithmetic(problem.rung)
+    zero = numbers.array([Fraction(0)])
+    integrator.time = zero[0]
+    integrator.state[:] = numbers.array(problem.initial_momenta)
+    integrator.pars[:] = numbers.array(problem.parameters)
+    linearised = Linearised(problem)
+    rate = linearised.fastest([float(value) for value in problem.initial_momenta])
+    if not isfinite(rate):
+        return Outcome.NON_FINITE, 0, [], 0.0
+    # In these units the motion is of size one, also one that is at rest when it begins.
+    pieces = _pieces(max(rate, 1.0) * abs(float(times[-1])), problem.rung)
+    grid, samples = _grid(problem, times, numbers, pieces)
+    # heyoka's tolerance is a part of the largest state, and the path has no bound: nothing depends on
+    # the centre, so that it may be counted from anywhere.
+    path = [i for i, name in enumerate(problem.form.states) if name.startswith("c")]
+    began_at = integrator.state[path]
+    rows, total_steps, inner = [integrator.state.copy()[None]], 0, 0.0
+    for first, last in _segments(len(grid), pieces):
+        if first:
+            rate = max(rate, linearised.fastest([float(value) for value in integrator.state]))
+            if not isfinite(rate):
+                return Outcome.NON_FINITE, total_steps, [], inner
+        radians = rate * abs(float(grid[last] - grid[first]))
+        if not radians <= _MOST_RADIANS:
+            return Outcome.STEP_LIMIT, total_steps, [], inner
+        longest = numbers.double(LONGEST_STEP / rate)
+        instants = grid[first : last + 1]
+        integrator.state[path] = zero[0]
+        began = perf_counter()
+        status, _, _, steps, _, reached = integrator.propagate_grid(
+            instants,
+            max_delta_t=longest,
+            max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
+            callback=None if problem.rung.name in _RADIANS_AT_ONCE else _go_on,
+        )
+        inner += perf_counter() - began
+        if path:
+            reached[:, path] += began_at
+            began_at = reached[-1, path]
+        rows.append(reached[1:])
+        total_steps += int(steps)
+        outcome = _OUTCOMES.get(status, Outcome.INTERRUPTED)
+        if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
+            outcome = Outcome.NON_FINITE
+        if outcome is not Outcome.FINISHED:
+            return outcome, total_steps, [], inner
+    if sum(map(len, rows)) != len(grid):
+        return Outcome.INTERRUPTED, total_steps, [], inner
+    return Outcome.FINISHED, total_steps, [np.concatenate(rows)[samples]], inner
+
+
+def _pieces(radians: float, rung: Rung) -> int:
+    """How many times the rate is looked at on a way so long, and an interrupt heard."""
+    if not radians <= _MOST_RADIANS:
+        return _MOST_LOOKS
+    looks = min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
+    at_once = _RADIANS_AT_ONCE.get(rung.name)
+    return looks if at_once is None else max(looks, ceil(radians / at_once))
+
+
+def _grid(
+    problem: Problem, times: np.ndarray[Any, Any], numbers: Arithmetic, pieces: int
+) -> tuple[np.ndarray[Any, Any], slice | list[int]]:
+    """The instants that heyoka is asked for, and where the samples are among them.
+
+    They begin at its own time, asked for or not. Between few samples there are more, so that the
+    rate and the path are looked at as often there as between many.
+    """
+    zero = numbers.array([Fraction(0)])
+    grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+    if len(grid) > pieces:
+        return grid, slice(len(grid) - len(times), None)
+    exact = list(problem.times) if len(grid) == len(times) else [Fraction(0), *problem.times]
+    instants, samples = exact[:1], [0]
+    for after, before in pairwise(exact):
+        instants += _waypoints(after, before, abs(exact[-1]) / pieces, problem.rung)
+        samples.append(len(instants))
+        instants.append(before)
+    return numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> list[Fraction]:
+    """Numbers of the rung between two others, in order and no farther apart than about ``gap``."""
+    pieces = ceil(abs(before - after) / gap)
+    found = [after]
+    for k in range(1, pieces):
+        instant = rung.round(after + (before - after) * Fraction(k, pieces))
+        if min(found[-1], before) < instant < max(found[-1], before):
+            found.append(instant)
+    return found[1:]
+
+
+def _go_on(integrator: Any) -> bool:
+    """heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
+    del integrator
+    return True
+
+
+def _segments(instants: int, pieces: int) -> list[tuple[int, int]]:
+    """Stretches of the grid, as first and last index, with one step cap each."""
+    pieces = min(instants - 1, pieces)
+    ends = sorted({round(k * (instants - 1) / pieces) for k in range(pieces + 1)}) if pieces else []
+    return list(pairwise(ends))

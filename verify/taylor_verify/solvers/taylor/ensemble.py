@@ -1,0 +1,311 @@
+"""Many starts at once: heyoka's batch where it has one, a lane for each start, none at another's cost.
+
+On f32 and f64 a processor steps several lanes in one instruction. heyoka then stops all lanes as soon as
+one of them is not finite: here that lane is taken out, another's numbers step in its place unseen, and
+the others go on as if it had never been there. On the other rungs every lane is a batch of its own.
+
+Nothing is kept between two calls of `advance` but what a `Lane` holds, in exact numbers: a run that
+is taken up again from its lanes is the same to the last bit as one that was never left.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from math import inf, isfinite
+from typing import Any, Final, final
+
+import heyoka as hy
+import numpy as np
+
+from taylor_verify.models.algebra import is_absent
+from taylor_verify.models.form import Form
+from taylor_verify.models.problem import Problem
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.taylor.cache import stored
+from taylor_verify.solvers.taylor.driver import LONGEST_STEP, compiled
+from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
+from taylor_verify.solvers.trajectory import Outcome
+
+Array = np.ndarray[Any, Any]
+
+# The rungs that heyoka has batches for, as NumPy calls them.
+_BATCHED: Final = {"f32": np.float32, "f64": float}
+# As the driver has them: a regular orbit takes three to five steps in the time of one radian.
+_STEPS_PER_RADIAN: Final = 64
+_LEAST_STEPS: Final = 1000
+# What would take longer than days is not begun.
+_MOST_RADIANS: Final = 1e10
+# A long run is worth half a second of compiling; beyond this many states it would be many.
+_LARGEST_STRAIGHT_LINE: Final = 6
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Where one start has come to: its state at ``time``, both in the units of its problem.
+
+    ``fastest`` is the fastest linear rate that it has met, on which its longest step rests. FINISHED
+    means that it has come as far as it was asked to; any other ``outcome`` is where it ended, and
+    its state is then the last that is known.
+    """
+
+    time: Fraction
+    state: tuple[Fraction, ...]
+    fastest: float = 0.0
+    steps: int = 0
+    outcome: Outcome = Outcome.FINISHED
+
+    @property
+    def goes_on(self) -> bool:
+        return self.outcome is Outcome.FINISHED
+
+
+@final
+class Ensemble:
+    """Problems of one form on one rung, integrated beside each other by the Taylor method.
+
+    ``tolerance`` is as in Taylor. Raises ValueError for problems that differ in form or rung, and
+    where the rung is not available.
+    """
+
+    def __init__(self, problems: Sequence[Problem], tolerance: Fraction | None = None) -> None:
+        _check(problems, tolerance)
+        self.problems = tuple(problems)
+        form, rung = problems[0].form, problems[0].rung
+        self._numbers = arithmetic(rung)
+        self._linearised = [Linearised(problem) for problem in problems]
+        width = batch_width(rung)
+        first = _stepper(form, rung, tolerance, width)
+        lanes = range(len(problems))
+        self._groups = [lanes[i : i + width] for i in lanes[::width]]
+        # They share their code; each has a state of its own, for they run at the same time.
+        self._steppers = [deepcopy(first) for _ in self._groups]
+        self._is_batch = width > 1
+
+    def start(self) -> tuple[Lane, ...]:
+        """Every lane at its initial state."""
+        return tuple(Lane(Fraction(0), problem.initial_momenta) for problem in self.problems)
+
+    def advance(self, lanes: Sequence[Lane], until: Sequence[Fraction]) -> tuple[Lane, ...]:
+        """Every lane that goes on, at its time in ``until``: numbers of the rung, in its own units.
+
+        A lane that does not get there is left where it was, with an outcome that says why.
+        """
+        pairs = [
+            self._prepared(i, lane, t) for i, (lane, t) in enumerate(zip(lanes, until, strict=True))
+        ]
+        # heyoka steps without the interpreter: threads are as good as processes.
+        with ThreadPoolExecutor(_processors()) as pool:
+            work = zip(self._groups, self._steppers, strict=True)
+            jobs = [
+                pool.submit(self._run, stepper, group, [pairs[i] for i in group], until)
+                for group, stepper in work
+            ]
+            return tuple(lane for job in jobs for lane in job.result())
+
+    def _prepared(self, i: int, lane: Lane, until: Fraction) -> Lane:
+        """The lane with the rate that it steps by, or taken out where that is not finite."""
+        if not lane.goes_on:
+            return lane
+        rate = max(lane.fastest, self._linearised[i].fastest([_double(v) for v in lane.state]))
+        if not isfinite(rate):
+            return replace(lane, outcome=Outcome.NON_FINITE)
+        if not rate * abs(float(until - lane.time)) <= _MOST_RADIANS:
+            return replace(lane, outcome=Outcome.STEP_LIMIT)
+        return replace(lane, fastest=rate)
+
+    def _run(
+        self, stepper: Any, group: Sequence[int], lanes: list[Lane], until: Sequence[Fraction]
+    ) -> list[Lane]:
+        targets = [until[i] for i in group]
+        if not any(lane.goes_on for lane in lanes):
+            return lanes
+        if not self._is_batch:
+            return [self._run_alone(stepper, group[0], lanes[0], targets[0])]
+        stretch = _Stretch(self, stepper, group, lanes, targets)
+        while stretch.step():
+            pass
+        return stretch.lanes
+
+    def _run_alone(self, integrator: Any, i: int, lane: Lane, target: Fraction) -> Lane:
+        numbers = self._numbers
+        time, end = numbers.array([lane.time, target])
+        integrator.time = time
+        integrator.state[:] = numbers.array(lane.state)
+        integrator.pars[:] = numbers.array(self.problems[i].parameters)
+        status, _, _, steps, *_ = integrator.propagate_until(
+            end,
+            max_delta_t=numbers.double(LONGEST_STEP / lane.fastest),
+            max_steps=most_steps(lane, target),
+        )
+        return self._reached(lane, target, status, int(steps), integrator.state)
+
+    def _reached(self, lane: Lane, target: Fraction, status: Any, steps: int, state: Array) -> Lane:
+        outcome = _outcome(status)
+        if outcome is Outcome.FINISHED and not np.isfinite(state).all():
+            outcome = Outcome.NON_FINITE
+        if outcome is not Outcome.FINISHED:
+            return replace(lane, outcome=outcome, steps=lane.steps + steps)
+        exact = tuple(self._numbers.exact(value) for value in state)
+        return replace(lane, time=target, state=exact, steps=lane.steps + steps)
+
+
+class _Stretch:
+    """One batch on its way to the targets of its lanes."""
+
+    def __init__(
+        self,
+        ensemble: Ensemble,
+        integrator: Any,
+        group: Sequence[int],
+        lanes: list[Lane],
+        targets: Sequence[Fraction],
+    ) -> None:
+        self._ensemble, self._integrator = ensemble, integrator
+        self.lanes, self._targets = list(lanes), targets
+        numbers = ensemble._numbers
+        width, problems = integrator.batch_size, ensemble.problems
+        # The last group may have fewer lanes than the batch: the places left over stay empty.
+        self._end = _padded(numbers.array(targets), width)
+        self._time = _padded(numbers.array([lane.time for lane in lanes]), width)
+        self._state = _padded(
+            np.array([numbers.array(lane.state) for lane in lanes], dtype=numbers.fp_type).T, width
+        )
+        parameters = [numbers.array(problems[i].parameters) for i in group]
+        self._parameters = _padded(np.array(parameters, dtype=numbers.fp_type).T, width)
+        rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
+        self._longest = _padded(numbers.array([]), width)
+        self._longest[: len(lanes)] = [numbers.double(LONGEST_STEP / rate) for rate in rates]
+        self._longest[len(lanes) :] = self._longest[0]
+        self._steps = np.zeros(width, dtype=int)
+
+    def step(self) -> bool:
+        """As far as the batch goes; whether there are lanes that still have to go on."""
+        going = [k for k, lane in enumerate(self.lanes) if lane.goes_on]
+        if not going:
+            return False
+        self._fill_empty_places(going)
+        integrator = self._integrator
+        integrator.set_time(self._time)
+        integrator.state[:], integrator.pars[:] = self._state, self._parameters
+        most = max(most_steps(self.lanes[k], self._targets[k]) for k in going)
+        integrator.propagate_until(self._end, max_delta_t=self._longest, max_steps=most)
+        found = integrator.propagate_res
+        self._steps += [int(result[3]) for result in found]
+        finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
+        lost = [k for k in going if not finite[k]]
+        if not lost:
+            for k in going:
+                self._settle(k, found[k][0], integrator.state[:, k])
+            return False
+        # The others have been stopped where they are, not at their targets: they go on from there.
+        for k in lost:
+            self._settle(k, hy.taylor_outcome.err_nf_state, integrator.state[:, k])
+        self._time, self._state = integrator.time.copy(), integrator.state.copy()
+        return True
+
+    def _fill_empty_places(self, going: Sequence[int]) -> None:
+        """A place without a lane that goes on holds another's numbers, and is where it should be."""
+        for k in set(range(len(self._end))) - set(going):
+            self._state[:, k] = self._state[:, going[0]]
+            self._parameters[:, k] = self._parameters[:, going[0]]
+            self._time[k] = self._end[k] = self._end[going[0]]
+
+    def _settle(self, k: int, status: Any, state: Array) -> None:
+        self.lanes[k] = self._ensemble._reached(
+            self.lanes[k], self._targets[k], status, int(self._steps[k]), state
+        )
+
+
+def batch_width(rung: Rung) -> int:
+    """How many lanes this processor steps at once; 1 where heyoka has no batch for the rung."""
+    kind = _BATCHED.get(rung.name)
+    return 1 if kind is None else int(hy.recommended_simd_size(kind))
+
+
+def most_steps(lane: Lane, target: Fraction) -> int:
+    """A bound that no regular orbit comes near: what needs more has gone astray."""
+    return _LEAST_STEPS + int(_STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
+
+
+def _processors() -> int:
+    """How many this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
+    if not problems:
+        raise ValueError("expected at least one start, got none @ ensemble")
+    form, rung = problems[0].form, problems[0].rung
+    for i, problem in enumerate(problems):
+        if problem.rung != rung:
+            raise ValueError(f"expected starts on {rung.name}, got {problem.rung.name} @ lane {i}")
+        if problem.form != form:
+            raise ValueError(
+                f"expected the states {', '.join(form.states)} and the parameters "
+                f"{', '.join(form.parameters)} of lane 0, got other equations @ lane {i}"
+            )
+    if missing := unavailable(rung):
+        raise ValueError(f"expected a rung that is available, got {rung.name}: {missing}")
+    if tolerance is not None and not rung.round(tolerance) > 0:
+        raise ValueError(f"expected a positive tolerance on {rung.name}, got one too small for it")
+
+
+@lru_cache(maxsize=32)
+def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
+    """One compiled integrator of so many lanes."""
+    if width == 1:
+        return compiled(form, rung, tolerance)
+    numbers = arithmetic(rung)
+    states = hy.make_vars(*form.states)
+    rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
+    system = [
+        (state, hy.expression(0.0) if is_absent(rate) else rate)
+        for state, rate in zip(states, rates, strict=True)
+    ]
+
+    def empty(*shape: int) -> Array:
+        return np.zeros((*shape, width), dtype=numbers.fp_type)
+
+    return stored(
+        hy.taylor_adaptive_batch,
+        system,
+        state=empty(len(states)),
+        time=empty(),
+        pars=empty(len(form.parameters)),
+        fp_type=numbers.fp_type,
+        compact_mode=len(states) > _LARGEST_STRAIGHT_LINE,
+        # heyoka takes 0 for the machine epsilon of the type.
+        tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
+    )
+
+
+def _double(value: Fraction) -> float:
+    """Infinite beyond a double: nothing that is to be stepped is so large in units of its own size."""
+    try:
+        return float(value)
+    except OverflowError:
+        return inf
+
+
+def _padded(values: Array, width: int) -> Array:
+    """The last axis with zeros up to so many places."""
+    missing = width - values.shape[-1]
+    return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, missing)])
+
+
+def _outcome(status: Any) -> Outcome:
+    known = {
+        hy.taylor_outcome.time_limit: Outcome.FINISHED,
+        hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
+        hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
+    }
+    return known.get(status, Outcome.INTERRUPTED)

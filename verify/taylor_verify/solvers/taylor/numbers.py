@@ -1,0 +1,161 @@
+"""Exact passage between rationals and the number types that heyoka demands on each rung.
+
+Every argument of an integrator must be of its own type. A Python float given to a float128 or MPFR
+run would be a double first, so numbers pass as integers and powers of two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import ldexp
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+from mpmath import libmp
+
+from taylor_verify.models.times import BinaryTimes, TypedTimes
+from taylor_verify.scenes.precision import Rung, exact_value, power_of_two
+from taylor_verify.solvers.solver import Lack
+from taylor_verify.solvers.trajectory import Outcome
+
+# hy.real(int) passes through a decimal string, which Python limits to 4300 digits.
+_LARGEST_INTEGER_BITS = 14000
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """One rung's numbers in heyoka: its fp_type, and conversions that round nothing.
+
+    ``number`` makes one of a rational, ``scaled`` of a significand and an exponent of two; ``double``
+    rounds a double to nearest where the rung is the narrower. ``exact`` leads back. Code for it
+    that is stored on disk is found again by another process if ``is_found_again``.
+    """
+
+    fp_type: Any
+    number: Callable[[Fraction], Any]
+    exact: Callable[[Any], Fraction]
+    compact: bool
+    scaled: Callable[[int, int], Any]
+    double: Callable[[float], Any]
+    is_found_again: bool = True
+
+    def array(self, values: Iterable[Fraction]) -> np.ndarray[Any, Any]:
+        return np.array([self.number(value) for value in values], dtype=self.fp_type)
+
+    def times(self, times: Sequence[Fraction]) -> np.ndarray[Any, Any]:
+        """The same of sample times, by the form in which they were rounded."""
+        if isinstance(times, TypedTimes):
+            return times.typed
+        if isinstance(times, BinaryTimes):
+            return np.array([self.scaled(m, e) for m, e in times.pairs], dtype=self.fp_type)
+        return self.array(times)
+
+
+def arithmetic(rung: Rung) -> Arithmetic:
+    """The number type of a rung that is available here; ``unavailable`` tells which are not."""
+    if rung.name == "f32":
+        return Arithmetic(
+            np.float32,
+            lambda v: np.float32(float(v)),
+            exact_value,
+            compact=False,
+            scaled=lambda m, e: np.float32(ldexp(m, e)),
+            double=np.float32,
+        )
+    if rung.name == "f64":
+        return Arithmetic(float, float, exact_value, compact=False, scaled=ldexp, double=float)
+    if rung.name == "f80":
+        return Arithmetic(
+            np.longdouble,
+            _longdouble,
+            exact_value,
+            compact=False,
+            scaled=lambda m, e: np.ldexp(np.longdouble(m), e),
+            double=np.longdouble,
+        )
+    # Without compact mode these compile for seconds to minutes and then run no faster.
+    if rung.name == "f128":
+        return Arithmetic(
+            hy.real128,
+            _real128,
+            _from_real128,
+            compact=True,
+            scaled=lambda m, e: hy.real128(_scaled(m, e, 113)),
+            double=hy.real128,
+        )
+    bits = rung.bits
+    return Arithmetic(
+        hy.real,
+        lambda v: _real(v, bits),
+        _from_real,
+        compact=True,
+        scaled=lambda m, e: _scaled(m, e, bits),
+        double=lambda v: hy.real(v, bits),
+        is_found_again=False,
+    )
+
+
+def unavailable(rung: Rung) -> str:
+    """Why heyoka has no such number type on this machine; empty where it has."""
+    reason = ""
+    if rung.name == "f80" and np.finfo(np.longdouble).nmant != 63:
+        reason = "the long double of this processor is not the 80-bit x87 format"
+    if rung.name == "f128" and not hasattr(hy, "real128"):
+        reason = "this build of heyoka has no float128"
+    if rung.name.startswith("mp") and not hasattr(hy, "real"):
+        reason = "this build of heyoka has no MPFR numbers"
+    return Lack(reason, Outcome.NO_FORMAT) if reason else ""
+
+
+def _longdouble(value: Fraction) -> Any:
+    return np.ldexp(np.longdouble(value.numerator), 1 - value.denominator.bit_length())
+
+
+def _real128(value: Fraction) -> Any:
+    return hy.real128(_real(value, 113))
+
+
+def _real(value: Fraction, bits: int) -> Any:
+    """The significand as an integer, then exact products with powers of two."""
+    exponent = _trailing_zeros(value.numerator) - (value.denominator.bit_length() - 1)
+    return _scaled(int(value / power_of_two(exponent)), exponent, bits)
+
+
+def _scaled(significand: int, exponent: int, bits: int) -> Any:
+    """significand times 2^exponent, for a significand of no more than so many bits."""
+    result = hy.real(significand, bits)
+    while exponent:
+        step = max(-_LARGEST_INTEGER_BITS, min(_LARGEST_INTEGER_BITS, exponent))
+        power = _power(abs(step), bits)
+        result = result * power if step > 0 else result / power
+        exponent -= step
+    return result
+
+
+@lru_cache(maxsize=256)
+def _power(exponent: int, bits: int) -> Any:
+    return hy.real(2**exponent, bits)
+
+
+def _trailing_zeros(value: int) -> int:
+    return (value & -value).bit_length() - 1 if value else 0
+
+
+def _from_real128(value: Any) -> Fraction:
+    """IEEE binary128: sign, 15 bits of exponent, 112 of fraction, little-endian."""
+    raw = int.from_bytes(np.array([value], dtype=hy.real128).tobytes(), "little")
+    fraction, biased = raw & (2**112 - 1), raw >> 112 & 0x7FFF
+    significand = fraction + (2**112 if biased else 0)
+    magnitude = significand * power_of_two(max(biased, 1) - 16383 - 112)
+    return -magnitude if raw >> 127 else magnitude
+
+
+def _from_real(value: Any) -> Fraction:
+    """Printed digits always read back to the same number at the number's own precision."""
+    sign, man, exponent, _ = libmp.from_str(str(value), value.prec, libmp.round_nearest)
+    magnitude = Fraction(int(man)) * power_of_two(exponent)
+    return -magnitude if sign else magnitude

@@ -1,0 +1,162 @@
+"""What a solver answers: how it ended, and where it put the body, in exactly held numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.models.frame import rotation
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+from taylor_verify.scenes.precision import held_exactly
+
+_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
+
+
+class Outcome(Enum):
+    """How a solver ended; the value is the sentence that is shown."""
+
+    FINISHED = "reached the last sample"
+    NON_FINITE = "stopped: a state or derivative was not finite"
+    STEP_LIMIT = "stopped: the bound on the number of steps was reached"
+    INTERRUPTED = "stopped before the last sample"
+    NOT_REPRESENTABLE = "not started: the rung cannot hold the scene"
+    MISSHAPEN = "answered with an array of the wrong shape"
+    RAISED = "ended with an error"
+    NOT_STARTED = "could not be started"
+    NO_PACKAGE = "not started: a package is missing"
+    NO_FORMAT = "not started: this machine lacks the number format"
+    UNSUITED = "not started: the solver does not run on it here"
+    TIMED_OUT = "was stopped: the time limit was reached"
+    CRASHED = "ended by a signal or with an exit status other than 0"
+    MISANSWERED = "claimed success, but its answer is not what was asked for"
+
+    @property
+    def is_unavailable(self) -> bool:
+        """Whether nothing was run, by no fault of the solver."""
+        return self in (Outcome.NO_PACKAGE, Outcome.NO_FORMAT, Outcome.UNSUITED)
+
+
+class Postponed(Mapping[str, np.ndarray[Any, Any]]):
+    """The quantities of a trajectory, made of a solver's rows when the first of them is looked at."""
+
+    def __init__(self, problem: Problem, rows: Callable[[], Sequence[Sequence[Fraction]]]) -> None:
+        self._problem, self._rows = problem, rows
+
+    @cached_property
+    def _formed(self) -> dict[str, Any]:
+        return from_scaled(self._problem, self._rows())
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        found: np.ndarray[Any, Any] = self._formed[quantity]
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names(self._problem))
+
+    def __len__(self) -> int:
+        return len(_names(self._problem))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (self._formed,)
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The answer of one solver to one problem.
+
+    ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse``, ``centre`` (n, 3) and
+    ``quaternion`` (n, 4; body to space, any sign, nearly unit) to object arrays of mpf that hold the
+    solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED.
+    ``evaluations`` counts derivatives of the whole state, ``seconds`` the propagation alone and
+    ``compile_seconds`` what came before it. ``inner_seconds`` is the part of ``seconds`` that was
+    spent in somebody else's compiled integrator, where that is told apart.
+    """
+
+    outcome: Outcome
+    quantities: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+    detail: str = ""
+    steps: int = 0
+    evaluations: int = 0
+    seconds: float = 0.0
+    compile_seconds: float = 0.0
+    inner_seconds: float | None = None
+
+    def motion(self, bits: int) -> Motion:
+        """The same as a Motion: attitude matrices are formed with ``bits`` of precision."""
+        quantities = {k: v for k, v in self.quantities.items() if k != "quaternion"}
+        if "quaternion" in self.quantities:
+            with mp.workprec(bits):
+                quantities["attitude"] = _rotations(self.quantities["quaternion"])
+        samples = len(next(iter(quantities.values())))
+        return Motion(quantities, np.array([mp.zero] * samples, dtype=object))
+
+
+def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """The rotation matrices (n, 3, 3) of quaternions (n, 4) of any length, in the ambient precision.
+
+    One of length zero is no attitude at all: 0/0, and NaN fails every gate that looks at it.
+    """
+    columns = to_mpfr(quaternions).T
+    with precision():
+        matrices = np.array(rotation(list(columns)), dtype=object) / np.sum(columns**2, axis=0)
+    return to_mpf(np.moveaxis(matrices, -1, 0))
+
+
+def _names(problem: Problem) -> tuple[str, ...]:
+    """The quantities that the states of a problem hold."""
+    is_rigid = isinstance(problem.given.body, RigidBody)
+    names = ("omega",) if is_rigid else ("linear_impulse", "angular_impulse")
+    frame = (("e0", "quaternion"), ("c1", "centre"))
+    return (*names, *(name for state, name in frame if state in problem.form.states))
+
+
+def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
+    """The quantities of states in the problem's own form and units, formed exactly.
+
+    ``rows`` (n, states) stand in the order of ``problem.form.states``, a row for each sample.
+
+    omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
+    """
+    columns = dict(zip(problem.form.states, zip(*rows, strict=True), strict=True))
+    units, given = problem.units, problem.given
+    quantities = {}
+    if isinstance(given.body, RigidBody):
+        K = tensors.inverse(given.body.inertia)
+        momenta = _vectors(columns, "H", units.momentum)
+        quantities["omega"] = [tensors.apply(K, H) for H in momenta]
+    else:
+        for name in _IMPULSES:
+            if name not in columns:
+                columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
+        quantities["linear_impulse"] = _vectors(columns, "x", units.impulse)
+        quantities["angular_impulse"] = _vectors(columns, "y", units.momentum)
+    if "e0" in columns:
+        quantities["quaternion"] = list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
+    if "c1" in columns:
+        assert isinstance(given.initial, Impulse)
+        start = given.initial.centre
+        quantities["centre"] = [
+            tensors.plus(start, c) for c in _vectors(columns, "c", units.length)
+        ]
+    return {
+        name: np.array([[held_exactly(entry) for entry in row] for row in vectors], dtype=object)
+        for name, vectors in quantities.items()
+    }
+
+
+def _vectors(
+    columns: Mapping[str, Sequence[Fraction]], letter: str, unit: Fraction
+) -> list[tensors.Vector]:
+    triple = zip(*(columns[f"{letter}{i}"] for i in (1, 2, 3)), strict=True)
+    return [tensors.scaled(unit, vector) for vector in triple]

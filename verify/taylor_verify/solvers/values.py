@@ -1,0 +1,84 @@
+"""The exact value of a number in somebody's file, as text or in binary.
+
+Decimals, ``a/b`` and hexadecimal floats become rationals; a binary number is the rational it is.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.scenes.precision import held_exactly
+from taylor_verify.scenes.table import LARGEST_EXPONENT, exact_number
+
+# A rational, or the NaN or infinity that the file has in its place.
+Value = Fraction | float
+
+_HEXADECIMAL = re.compile(
+    r"([+-]?)0x(?=[0-9a-f.])([0-9a-f]*)\.?([0-9a-f]*)(?:p([+-]?[0-9]{1,6}))?", re.IGNORECASE
+)
+_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
+_EXPONENT_BITS: Final = int(LARGEST_EXPONENT * math.log2(10))
+
+
+def exact(raw: object) -> Value:
+    """The rational that a text or a number is; NaN and infinity as they are.
+
+    Raises ValueError, whose text is what was expected.
+    """
+    if isinstance(raw, str):
+        return _from_text(raw.strip())
+    if isinstance(raw, bool | np.bool_):
+        raise ValueError("a number")
+    if isinstance(raw, float | np.floating):
+        if not np.isfinite(raw):
+            return float(raw)
+        numerator, denominator = raw.as_integer_ratio()
+        return Fraction(int(numerator), int(denominator))
+    if isinstance(raw, int | np.integer):
+        return Fraction(int(raw))
+    if isinstance(raw, Decimal):
+        return exact_number(raw) if raw.is_finite() else float(raw)
+    raise ValueError("a number")
+
+
+def _from_text(text: str) -> Value:
+    if _NOT_FINITE.fullmatch(text):
+        return float(text)
+    if match := _HEXADECIMAL.fullmatch(text):
+        sign, whole, part, power = match.groups()
+        exponent = int(power or 0) - 4 * len(part)
+        if abs(exponent) > _EXPONENT_BITS:
+            raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
+        value = int(whole + part, 16) * Fraction(2) ** exponent
+        return -value if sign == "-" else value
+    return exact_number(text)
+
+
+def is_number(text: str) -> bool:
+    try:
+        _from_text(text)
+    except ValueError:
+        return False
+    return True
+
+
+def held(rows: Sequence[Sequence[Value]], bits: int) -> np.ndarray[Any, Any]:
+    """Rows of values as an array of mpf: exact where a number has at most so many bits."""
+    with mp.workprec(bits):
+        return np.array([[_held(value) for value in row] for row in rows], dtype=object)
+
+
+def _held(value: Value) -> Any:
+    if not isinstance(value, Fraction):
+        return mp.mpf(value)
+    if value.denominator & (value.denominator - 1):
+        return mp.mpf(value.numerator) / value.denominator
+    return held_exactly(value)

@@ -1,0 +1,239 @@
+"""How far each precision carries: digits left of families of extremes, over their number and periods.
+
+Every member of a family is solved once on a rung, at the quarters of its 1st, 3rd, 10th ... period. The
+digits left after N periods are -log10 of the largest error at any instant up to then, against the
+exact motion of the data that the solver was given; the attainable error beside it is the judge's own, of
+the same orbit, instants and steps. An error of 1 is the size of the motion: from there on none are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, inf, isfinite, log10
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.attainable import floor
+from taylor_verify.judge.errors import largest, state_errors
+from taylor_verify.judge.provenance import provenance
+from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.parallel import available_cores, on_all_cores
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.trade.families import QUARTERS, Family, at_quarters, families, family, period_of
+
+# As the judge has them.
+_MORE_DIGITS: Final = 3
+_SPARE_BITS: Final = 96
+# Of a truth that says only how large the motion is.
+_DIGITS_OF_SCALES: Final = 15
+# From here on nothing is left, and a longer run would tell nothing new.
+_LOST: Final = 1.0
+# Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
+_SAME_PERIOD: Final = Fraction(1, 10)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """One member of a family on one rung, after each number of ``periods``.
+
+    ``errors`` and ``floors`` are the largest up to then; inf, of a run that was lost, from there on.
+    There are no floors for periods that no rung was followed for. Both are empty where nothing was
+    run, and ``why`` says why.
+    """
+
+    family: str
+    value: str
+    rung: str
+    periods: tuple[int, ...]
+    errors: tuple[float, ...] = ()
+    floors: tuple[float, ...] = ()
+    steps: int = 0
+    why: str = ""
+
+    def row(self) -> dict[str, Any]:
+        """As JSON holds it: an error that is not finite is None, and stands for a lost motion."""
+        return {
+            "family": self.family,
+            "value": self.value,
+            "rung": self.rung,
+            "periods": list(self.periods),
+            "errors": [_finite(error) for error in self.errors],
+            "floors": [_finite(error) for error in self.floors],
+            "steps": self.steps,
+            "why": self.why,
+        }
+
+
+def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
+    """Every row of what is published; ``finished`` is told each member of a family as it ends."""
+    found = families()
+    asked = [Member(one.name, value) for one in found for value in one.values]
+
+    def tell(member: Member) -> None:
+        if finished is not None:
+            finished(member.label)
+
+    reaches = on_all_cores(_measured, asked, _expense, tell, available_cores())
+    return {
+        "families": [_described(one) for one in found],
+        "rows": [one.row() for member in reaches for one in member],
+        "lost": _LOST,
+        "provenance": provenance(""),
+    }
+
+
+@dataclass(frozen=True)
+class Member:
+    """One value of one family, by name: what a process is sent."""
+
+    family: str
+    value: str
+
+    @property
+    def label(self) -> str:
+        return family(self.family).label(self.value)
+
+
+def members() -> int:
+    """How many members all families have together."""
+    return sum(len(one.values) for one in families())
+
+
+def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[Reach]:
+    """What is left of one member on each of the rungs."""
+    scene = one.scene(value)
+    found = [
+        _followed(Reach(one.name, value, rung.name, one.periods(rung.name)), scene, rung)
+        for rung in rungs
+    ]
+    return _with_floors(found, scene)
+
+
+class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
+    """Rounding the data makes another orbit of them; the text says which."""
+
+
+def _followed(nothing: Reach, scene: Scene, rung: Rung) -> Reach:
+    """With the errors of as many periods as were run, or the reason why there are none."""
+    if reason := Taylor().unavailable(rung):
+        return replace(nothing, why=reason)
+    try:
+        # A member that is lost within its first period is not followed for a thousand.
+        first = _solved(nothing, nothing.periods[:1], scene, rung)
+        return _solved(nothing, nothing.periods, scene, rung) if first.errors[-1] < _LOST else first
+    except (NotRepresentable, Unsettled, _Another) as fault:
+        return replace(nothing, why=str(fault))
+
+
+def _solved(nothing: Reach, periods: Sequence[int], scene: Scene, rung: Rung) -> Reach:
+    """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
+    problem = pose(at_quarters(scene, periods), rung)
+    _check_orbit(scene, problem)
+    trajectory = Taylor().solve(problem)
+    errors = _up_to(_errors(problem, trajectory))
+    return replace(nothing, errors=errors, steps=trajectory.steps, why=_unfinished(trajectory))
+
+
+def _unfinished(trajectory: Trajectory) -> str:
+    finished = trajectory.outcome is Outcome.FINISHED
+    return "" if finished else f"the run {trajectory.outcome.value}"
+
+
+def _check_orbit(scene: Scene, problem: Problem) -> None:
+    asked, found = period_of(scene), elements(problem.given)
+    if "period" not in found:
+        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {found.regime} one")
+    period = found["period"].value
+    if not abs(period - mp.convert(asked)) <= mp.convert(_SAME_PERIOD * asked):
+        ratio = float(period / mp.convert(asked))
+        raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
+
+
+def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
+    """At every instant the largest of all tracked quantities; NaN where an answer is no number."""
+    rung, given = problem.rung, problem.given
+    if trajectory.outcome is not Outcome.FINISHED:
+        return [inf] * len(given.clock.instants)
+    truth = _truth(problem)
+    with mp.workprec(rung.bits + _SPARE_BITS):
+        states = state_errors(given, truth, trajectory.motion(rung.bits + _SPARE_BITS))
+        bounds = [one.values + one.truth_radius for one in states]
+        return [float(largest(row)) for row in zip(*bounds, strict=True)]
+
+
+def _with_floors(found: Sequence[Reach], scene: Scene) -> list[Reach]:
+    """The same with their floors, and to the end of their periods.
+
+    One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
+    Raises Unsettled where its condition cannot be had.
+    """
+    followed = max((one.periods[: len(one.errors)] for one in found), key=len)
+    if not followed:
+        return list(found)
+    asked = at_quarters(scene, followed)
+    truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
+    return [_with_floor(one, asked, truth) if one.errors else one for one in found]
+
+
+def _with_floor(one: Reach, asked: Scene, truth: Motion) -> Reach:
+    elapsed, count = asked.clock.elapsed, len(one.errors)
+    # On another rung the orbit may be followed further: this one takes steps in proportion.
+    steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
+    base = floor(asked, asked, rung_named(one.rung).unit_roundoff, steps)
+    # Only the parts and their scales are asked for: the truth is compared with itself.
+    states = state_errors(asked, truth, truth)
+    worst = np.max([base.of_state(errors) for errors in states], axis=0)
+    floors = _up_to([float(value) for value in worst])[: len(one.periods)]
+    lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
+    beyond = (inf,) * (len(one.periods) - count)
+    return replace(one, errors=one.errors + beyond, floors=floors + lost)
+
+
+def _truth(problem: Problem) -> Motion:
+    digits = ceil(problem.rung.bits * log10(2)) + _MORE_DIGITS
+    return solution(problem.given).motion(problem.given.clock.elapsed, digits)
+
+
+def _up_to(values: Sequence[float]) -> tuple[float, ...]:
+    """The largest up to the end of each group of quarters."""
+    return tuple(
+        float(largest(values[: end + QUARTERS])) for end in range(0, len(values), QUARTERS)
+    )
+
+
+def _measured(member: Member) -> list[Reach]:
+    one = family(member.family)
+    return reaches(one, member.value, [rung_named(name) for name in one.far])
+
+
+def _expense(member: Member) -> float:
+    """The longest first: the wide rungs of a family, whose periods are long where it is extreme."""
+    far = family(member.family).far
+    return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
+
+
+def _described(one: Family) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "title": one.title,
+        "symbol": one.symbol,
+        "extreme": one.extreme,
+        "values": list(one.values),
+        "rungs": dict(one.far),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(f"{value:.4g}") if isfinite(value) else None

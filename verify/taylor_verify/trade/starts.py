@@ -1,0 +1,43 @@
+"""An ensemble of starts: the scene's own, and some nearby, drawn from a stated seed."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
+
+STARTS: Final = 4
+# Each component is moved by up to so much of itself, in steps of a hundredth of that.
+_REACH: Final = Fraction(1, 100)
+_GRAIN: Final = 100
+
+
+def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
+    """Scenes whose angular velocity or impulses differ by up to one per cent in each component.
+
+    A component that is zero stays so; attitude and centre only say from where the motion is seen.
+    """
+    draw = random.Random(seed)
+
+    def factor() -> Fraction:
+        return 1 + _REACH * Fraction(draw.randint(-_GRAIN, _GRAIN), _GRAIN)
+
+    return [_moved(scene, factor) for _ in range(count)]
+
+
+def _moved(scene: Scene, factor: Callable[[], Fraction]) -> Scene:
+    def moved(vector: Vector) -> Vector:
+        a, b, c = vector
+        return (a * factor(), b * factor(), c * factor())
+
+    start = scene.initial
+    if isinstance(start, Spin):
+        return replace(scene, initial=replace(start, omega=moved(start.omega)))
+    linear, angular = moved(start.linear), moved(start.angular)
+    return replace(scene, initial=replace(start, linear=linear, angular=angular))

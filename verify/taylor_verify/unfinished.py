@@ -1,0 +1,176 @@
+"""The finished jobs of a run of many scenes, stored so that the run can go on after an interrupt.
+
+A run, its folder of reports included, has a folder of its own in the user's cache, which no other run
+reads or writes: a lock says who is in it. Each job's judgements are a file, written whole or not at
+all: the digest of the rest, then JSON, which runs nothing when it is read. The name of a file is made of
+all that its judgements depend on: scene, solver, rungs, versions and the text of this package.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import shlex
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from platformdirs import user_cache_path
+
+from taylor_verify.folder_lock import Occupied, alone_in
+
+if TYPE_CHECKING:
+    from taylor_verify.job import Job
+    from taylor_verify.judge.judgement import Judgement
+
+_SUFFIX: Final = ".judged"
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Unfinished:
+    """The store of one run."""
+
+    folder: Path
+
+    def recall(self, job: Job) -> list[Judgement] | None:
+        """The judgements of a job that was finished before; None if it is to be run.
+
+        A file that was damaged since is removed, with a warning.
+        """
+        file = self._file(job)
+        try:
+            return _read(file.read_bytes())
+        except OSError:
+            return None
+        except (LookupError, TypeError, ValueError):
+            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.scene, file)
+            with suppress(OSError):
+                file.unlink()
+            return None
+
+    def keep(self, job: Job, judgements: Sequence[Judgement]) -> None:
+        """Store the judgements of a job; where nothing can be written, nothing is stored."""
+        with suppress(OSError):
+            handle, name = tempfile.mkstemp(dir=self.folder)
+            with open(handle, "wb") as file:
+                file.write(_written(judgements))
+            os.replace(name, self._file(job))
+
+    def forget(self) -> None:
+        """Remove everything."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _file(self, job: Job) -> Path:
+        from taylor_verify.judge.provenance import versions
+        from taylor_verify.scenes.reader import load
+
+        depends = (load(job.scene).digest, job, _programs(job.solver), versions(), _package())
+        return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
+
+
+@contextmanager
+def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator[Unfinished | None]:
+    """The store of a run, empty unless it is to be resumed.
+
+    None where the user's cache cannot be written, and where the same run is going on elsewhere.
+    """
+    place = os.path.abspath(out) if out is not None else None
+    run = _digest(repr((list(asked), os.getcwd(), place)).encode())
+    store = Unfinished(user_cache_path("taylor-verify") / "unfinished" / run[:32])
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(alone_in(store.folder))
+            if not resume:
+                for file in store.folder.glob(f"*{_SUFFIX}"):
+                    file.unlink()
+        except (Occupied, OSError):
+            yield None
+            return
+        yield store
+
+
+# The files.
+
+
+def _written(judgements: Sequence[Judgement]) -> bytes:
+    rows = [
+        {
+            "verdicts": [vars(verdict) for verdict in judgement.verdicts],
+            "record": judgement.record and judgement.record.document(),
+            "costs": dict(judgement.costs),
+        }
+        for judgement in judgements
+    ]
+    # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
+    text = json.dumps(rows).encode()
+    return _digest(text).encode() + b"\n" + text
+
+
+def _read(content: bytes) -> list[Judgement]:
+    """The judgements as they were; LookupError, TypeError or ValueError for any other content."""
+    from taylor_verify.judge.judgement import Judgement
+
+    digest, _, text = content.partition(b"\n")
+    if digest != _digest(text).encode():
+        raise ValueError("expected the digest of the content")
+    return [
+        Judgement(
+            tuple(_verdict(row) for row in judgement["verdicts"]),
+            None if judgement["record"] is None else _record(judgement["record"]),
+            costs=judgement["costs"],
+        )
+        for judgement in json.loads(text)
+    ]
+
+
+def _verdict(row: dict[str, Any]) -> Any:
+    from taylor_verify.judge.verdict import Status, Verdict
+
+    return Verdict(**{**row, "verdict": Status(row["verdict"])})
+
+
+def _record(document: dict[str, Any]) -> Any:
+    from taylor_verify.judge.record import GateRecord, Record
+
+    gates = tuple(GateRecord(**_with_tuples(gate)) for gate in document["gates"])
+    return Record(**{**_with_tuples(document), "gates": gates})
+
+
+def _with_tuples(document: dict[str, Any]) -> dict[str, Any]:
+    return {k: tuple(v) if isinstance(v, list) else v for k, v in document.items()}
+
+
+# What a judgement depends on.
+
+
+def _programs(solver: str) -> list[str]:
+    """The digests of the files that a command names: a program that has changed is another solver."""
+    from taylor_verify.solvers.registry import PROCESS
+
+    if not solver.startswith(PROCESS):
+        return []
+    words = shlex.split(solver.removeprefix(PROCESS))
+    files = [Path(place) for word in words if (place := shutil.which(word) or word)]
+    return [_digest(file.read_bytes()) for file in files if file.is_file()]
+
+
+@cache
+def _package() -> str:
+    """A digest of this package's own text: a judgement of other code is no judgement of this one."""
+    digest = hashlib.sha256()
+    package = Path(__file__).parent
+    for file in sorted(package.rglob("*.py")):
+        digest.update(str(file.relative_to(package)).encode() + file.read_bytes())
+    return digest.hexdigest()
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
