@@ -9,11 +9,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
-from importlib import import_module
 from importlib.metadata import version as version_of
-from inspect import signature
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
@@ -74,30 +71,8 @@ def plain(lines: Iterable[str]) -> Iterator[str]:
         before = line
 
 
-def function_of(name: str, thing: Any) -> Any:
-    """The function that a callable module, such as taylor_verify.exact, is called as; any other as it is."""
-    if isinstance(thing, ModuleType) and callable(thing):
-        return getattr(thing, name.rpartition(".")[2])
-    return thing
-
-
-def told(_app: Any, _what: str, name: str, thing: Any, _options: Any, lines: list[str]) -> None:
-    function = function_of(name, thing)
-    if function is not thing:
-        first, *others = (function.__doc__ or "").splitlines()
-        lines[:] = [first, *(line.removeprefix("    ") for line in others)]
+def told(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: list[str]) -> None:
     lines[:] = plain(lines)
-
-
-def signed(
-    _app: Any, _what: str, name: str, thing: Any, _options: Any, _text: str, _returns: str
-) -> tuple[str, str] | None:
-    function = function_of(name, thing)
-    if function is thing:
-        return None
-    found = signature(function)
-    arguments = found.replace(return_annotation=found.empty)
-    return re.sub(r": '([^']*)'", r": \1", str(arguments)), str(found.return_annotation)
 
 
 def linked(text: str, written_in: Path, shown_in: Path) -> str:
@@ -124,9 +99,6 @@ def linked_from_included(_app: Any, path: Path, _page: str, content: list[str]) 
 
 
 def setup(app: Any) -> None:
-    for name in ("taylor_verify.check", "taylor_verify.exact", "taylor_verify.run"):
-        import_module(name)
     app.connect("autodoc-process-docstring", told)
-    app.connect("autodoc-process-signature", signed)
     app.connect("source-read", linked_from_page)
     app.connect("include-read", linked_from_included)

@@ -15,7 +15,7 @@ from mpmath import mp
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.demand import demands
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.judge.convergence import sweep
 from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.judge.verdict import Status
@@ -298,12 +298,12 @@ def test_the_machines_faults_are_not_called_ours(
     def break_down(*_: Any) -> None:
         raise error
 
-    monkeypatch.setattr("taylor_verify.run.pose", break_down)
+    monkeypatch.setattr("taylor_verify.models.problem.pose", break_down)
     assert main(["run", SCENE]) == 2
     told = capsys.readouterr().err
     assert expected in told
     assert "a fault of taylor-verify" not in told
-    monkeypatch.setattr("taylor_verify.run.pose", lambda *_: 1 / 0)
+    monkeypatch.setattr("taylor_verify.models.problem.pose", lambda *_: 1 / 0)
     assert main(["run", SCENE]) == 2
     assert "a fault of taylor-verify" in capsys.readouterr().err
 

@@ -690,7 +690,11 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     def step(**given: str) -> int:
         files = {"GITHUB_OUTPUT": "output", "GITHUB_STEP_SUMMARY": "summary.md"}
         empty = dict.fromkeys(("SCENES", "RUNG", "SOLVER", "BASELINE"), "")
-        environment = {**os.environ, "PYTHONPATH": str(ROOT), "RUNNER_TEMP": str(Path.cwd())}
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(ROOT / "verify"),
+            "RUNNER_TEMP": str(Path.cwd()),
+        }
         return subprocess.run(
             ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script("run taylor-verify")],
             env={**environment, **files, **empty, **given},

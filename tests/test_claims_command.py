@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from taylor_verify.claims import ledger
 from taylor_verify.claims.claim import Claim, Residual, Verdict
 from taylor_verify.claims.ledger import claims, examined
 from taylor_verify.claims.numbers import CITED
@@ -82,7 +83,7 @@ def test_an_entry_that_lost_its_verdict_fails(
 ) -> None:
     """Exit status 1, and which verdict was expected; the row is told all the same."""
     changed = tuple(replace(c, verdict=Verdict.HOLDS) if c.id == QUICK else c for c in claims())
-    monkeypatch.setattr("taylor_verify.claims.ledger.claims", lambda: changed)
+    monkeypatch.setattr(ledger, "claims", lambda: changed)
     assert main(["claims", QUICK, "--json"]) == 1
     captured = capsys.readouterr()
     assert json.loads(captured.out)[0]["recorded"] == "holds"
@@ -115,9 +116,7 @@ def test_a_ledger_that_lost_a_verdict_is_not_published(
 ) -> None:
     """Exit status 1, and no page."""
     (quick,) = (c for c in claims() if c.id == QUICK)
-    monkeypatch.setattr(
-        "taylor_verify.claims.ledger.claims", lambda: (replace(quick, verdict=Verdict.HOLDS),)
-    )
+    monkeypatch.setattr(ledger, "claims", lambda: (replace(quick, verdict=Verdict.HOLDS),))
     assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
     assert f"@ {QUICK}" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

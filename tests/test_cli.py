@@ -469,7 +469,7 @@ def test_an_error_nobody_foresaw_is_one_line_with_its_place(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
 ) -> None:
     """It names the scene, the rung, the error and the file it rose in."""
-    monkeypatch.setattr("taylor_verify.run.pose", lambda *_: 1 // 0)
+    monkeypatch.setattr("taylor_verify.models.problem.pose", lambda *_: 1 // 0)
     assert main(["run", str(short)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
@@ -599,48 +599,6 @@ def is_running(pid: int) -> bool:
 
 
 # From Python.
-
-
-def test_importing_verify_imports_nothing_else() -> None:
-    """`import taylor_verify` alone brings in neither numpy nor heyoka, nor any room."""
-    script = (
-        "import sys, taylor_verify; print([m for m in sys.modules if m.startswith("
-        "('taylor_verify.', 'numpy', 'heyoka', 'mpmath'))])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == "[]"
-
-
-@pytest.mark.parametrize(
-    "first",
-    [
-        "taylor_verify.exact.route",
-        "taylor_verify.judge.judgement",
-        "taylor_verify.run",
-        "taylor_verify.check",
-        "taylor_verify.cli",
-    ],
-)
-def test_the_four_functions_work_whatever_was_imported_first(first: str) -> None:
-    """load, exact, run and check are callable after any room has been imported."""
-    script = (
-        f"import {first}\nimport taylor_verify, taylor_verify.check, taylor_verify.exact.solution\n"
-        f"scene = taylor_verify.load({str(GENERIC)!r})\n"
-        "motion = taylor_verify.exact(scene, [0, '1/2'], 20)\n"
-        "assert motion['omega'].shape == (2, 3)\n"
-        "assert callable(taylor_verify.run) and callable(taylor_verify.check)\n"
-        "from taylor_verify import check, exact, load, run\n"
-        "assert exact is taylor_verify.exact and run is taylor_verify.run\n"
-    )
-    done = subprocess.run([sys.executable, "-c", script], env=environment(), capture_output=True)
-    assert done.stderr == b""
-    assert done.returncode == 0
 
 
 def by_mpmath(problem: Problem) -> list[list[Any]]:

@@ -20,7 +20,6 @@ import pytest
 from worked import DOCS, ROOT, blocks, work
 
 import taylor_verify
-from taylor_verify import exact
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
 from taylor_verify.exact.solution import NO_CLOSED_FORM
@@ -147,7 +146,8 @@ def test_the_table_of_results_has_both_models_and_every_state() -> None:
 def regimes() -> set[str]:
     """Every word that a module of taylor_verify.exact has for a regime: in an enumeration, or alone."""
     found: set[str] = set()
-    for module in pkgutil.walk_packages(exact.__path__, "taylor_verify.exact."):
+    room = importlib.import_module("taylor_verify.exact")
+    for module in pkgutil.walk_packages(room.__path__, "taylor_verify.exact."):
         for name, value in vars(importlib.import_module(module.name)).items():
             if inspect.isclass(value) and issubclass(value, StrEnum) and name.endswith("Regime"):
                 found |= {regime.value for regime in value}
@@ -247,8 +247,7 @@ def test_every_option_is_documented(verb: str, capsys: pytest.CaptureFixture[str
 
 def named(name: str) -> Any:
     module, _, last = name.rpartition(".")
-    found = getattr(importlib.import_module(module), last)
-    return getattr(found, last) if inspect.ismodule(found) else found
+    return getattr(importlib.import_module(module), last)
 
 
 @pytest.mark.parametrize(("kind", "name"), PUBLIC)
@@ -277,9 +276,8 @@ def test_a_docstring_tells_of_every_argument(name: str) -> None:
 
 def test_every_call_is_in_the_reference() -> None:
     """The names of `import taylor_verify` are documented under those names."""
-    assert {f"taylor_verify.{name}" for name in taylor_verify.__all__} <= {
-        name for _, name in PUBLIC
-    }
+    calls = {f"taylor_verify.{name}" for name in taylor_verify.__all__ if name != "__version__"}
+    assert calls <= {name for _, name in PUBLIC}
 
 
 # Docstrings are plain text.
@@ -297,15 +295,3 @@ def test_an_indented_block_of_a_docstring_is_verbatim() -> None:
     """A formula on lines of its own stays on them, and the text goes on behind it."""
     told = list(configuration().plain(["With", "", "    |x|  y", "", "    z", "", "and |x|."]))
     assert told == ["With", "", "::", "", "    |x|  y", "", "    z", "", r"and \|x\|."]
-
-
-def test_a_callable_module_is_told_of_as_its_function() -> None:
-    """`taylor_verify.exact` has the arguments and the docstring of the function that it is called as."""
-    module = configuration()
-    found = module.signed(
-        None, "function", "taylor_verify.exact", taylor_verify.exact, None, "", ""
-    )
-    assert found[0].startswith("(scene: Scene | str | os.PathLike[str], times:")
-    lines = ["something else"]
-    module.told(None, "function", "taylor_verify.exact", taylor_verify.exact, None, lines)
-    assert lines[0].startswith("The exact motion at absolute times")

@@ -18,7 +18,7 @@ from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff.elements import discriminant, stability
 from taylor_verify.exact.kirchhoff.quartic import Nutation, value
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.judge.carrying import Carrying, carrying
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody

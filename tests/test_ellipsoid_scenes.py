@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 import taylor_verify
 from taylor_verify.exact.ellipsoid import deviation, formed_to, told
 from taylor_verify.exact.route import solution
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody

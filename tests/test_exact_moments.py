@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.euler.moments import erf
+from taylor_verify.exact.euler.moments import erf, regime
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import LoadedSpin
 from taylor_verify.exact.euler.quaternion import Quaternion
@@ -290,7 +290,7 @@ def test_a_chirp_that_bends_the_wrong_way_is_caught(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The equations of motion see the sign of the quadratic term of phi."""
-    monkeypatch.setattr("taylor_verify.exact.euler.moments.regime.LoadedSpin", WrongSign)
+    monkeypatch.setattr(regime, "LoadedSpin", WrongSign)
     assert not equation_residual(load(f"euler/{name}"), "arb", Fraction(2)) <= mpf("1e-3")
 
 

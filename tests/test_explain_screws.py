@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reader import load

@@ -18,7 +18,7 @@ from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.portrait import (
     DIGITS,
     FIGURES,

@@ -420,7 +420,8 @@ def test_a_terminated_run_takes_its_program_along(tmp_path: Path) -> None:
     waits = (
         f"import os, time; open({str(marker)!r}, 'w').write(f'{{os.getpid()}}.'); time.sleep(600)"
     )
-    script = f"import sys\nfrom taylor_verify.run import run\nrun('euler/rest', {program(tmp_path, waits)!r})\n"
+    solver = program(tmp_path, waits)
+    script = f"from taylor_verify.run import run\nrun('euler/rest', {solver!r})\n"
     ours = subprocess.Popen([sys.executable, "-c", script])
     try:
         deadline = time.monotonic() + 60

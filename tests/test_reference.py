@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 
+import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
@@ -460,12 +461,12 @@ def test_a_solver_of_ones_own_meets_the_reference(
 
 
 def test_the_citation_is_of_this_version() -> None:
-    """CITATION.cff has the version, the name and the licence of pyproject.toml."""
+    """CITATION.cff has the version of the package, and the name and the licence of pyproject.toml."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
     for key, value in {
         "cff-version": "1.2.0",
-        "version": project["version"],
+        "version": taylor_verify.__version__,
         "title": f'"{project["name"]}"',
         "license": project["license"],
     }.items():

@@ -1,34 +1,43 @@
 """The reference that rigid-body and ideal-fluid simulations are measured against.
 
-    load(scene)                  a scene file or shipped scene, in exact numbers
-    exact(scene, times, digits)  the exact motion
-    run(scene, solver, rung)     solve, compare with the exact motion, judge
-    check(scene, solve_or_file)  judge a solver, or a trajectory, of one's own
-    recommend(scene, error)      the fastest setting that reaches an error, ready to run
+    load(scene)                     a scene file or shipped scene, in exact numbers
+    exact(scene, times, digits)     the exact motion
+    solve(scene, solver, rung)      the trajectory of a solver, not yet judged
+    run(scene, solver, rung)        solve, compare with the exact motion, judge
+    run_many(scenes, solver, rungs) the same for many scenes on all cores
+    check(scene, solve_or_file)     judge a solver, or a trajectory, of one's own
+    explain(scene, rung)            the equations, the orbit and the terms of each bound
+    tradeoff(scene)                 time against error for every setting
+    recommend(scene, error)         the fastest setting that reaches an error, ready to run
+    claims(*ids)                    the ledger of both source texts, examined
 
-Every name is imported when it is first used, so that `import taylor_verify` costs nothing.
+These are plain functions. The modules that they are imported from here import what they need when a
+function is called, so that `import taylor_verify` is quick. Some of those modules share the name of their
+function: write `from taylor_verify.exact.route import solution`, never `taylor_verify.exact.route`.
 """
 
-from __future__ import annotations
+# A module is imported before its function takes the name: Python sets a submodule as an attribute of
+# its package only once, when it is first imported.
+from taylor_verify.check import check
+from taylor_verify.claims import claims
+from taylor_verify.exact import exact
+from taylor_verify.explain import explain
+from taylor_verify.run import run, solve
+from taylor_verify.run_many import run_many
+from taylor_verify.scenes import load
+from taylor_verify.tradeoff import recommend, tradeoff
+from taylor_verify.version import __version__
 
-from importlib import import_module
-from typing import Any
-
-# These modules are callable, because a room and the function it is for share a name.
-_CALLABLE = ("check", "exact", "run")
-
-__all__ = ["check", "exact", "load", "recommend", "run"]
-
-
-def __getattr__(name: str) -> Any:
-    if name == "load":
-        return import_module("taylor_verify.scenes.reader").load
-    if name == "recommend":
-        return import_module("taylor_verify.trade.recommend").recommend
-    if name in _CALLABLE:
-        return import_module(f"taylor_verify.{name}")
-    raise AttributeError(f"module 'taylor_verify' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return [*globals(), *__all__]
+__all__ = [
+    "__version__",
+    "check",
+    "claims",
+    "exact",
+    "explain",
+    "load",
+    "recommend",
+    "run",
+    "run_many",
+    "solve",
+    "tradeoff",
+]

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from taylor_verify.callable_module import make_callable
-from taylor_verify.judge.judgement import Judgement
-from taylor_verify.models.problem import Problem
-from taylor_verify.run import run
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.scenes.reader import as_scene
-from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.models.problem import Problem
+    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.scenes.scene import Scene
 
 
 def check(
@@ -38,6 +35,9 @@ def check(
     cannot be judged, with every fault of it, and ValueError for what is neither a callable nor a file.
     """
     if callable(solve_or_file):
+        from taylor_verify.run import run
+        from taylor_verify.solvers.solver import Callback
+
         return run(scene, Callback(solve_or_file), rung)
     if not isinstance(solve_or_file, str | PathLike):
         kind = type(solve_or_file).__name__
@@ -46,10 +46,9 @@ def check(
             "(write it to a file, or return it from a callable)"
         )
     from taylor_verify.judge.answer import judge_file
+    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.scenes.reader import as_scene
     from taylor_verify.solvers.file import read
 
     file = read(solve_or_file)
     return judge_file(file, as_scene(scene), rung_named(rung), accept_conventions, partial)
-
-
-make_callable(__name__, check)

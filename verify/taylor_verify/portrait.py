@@ -26,7 +26,7 @@ from taylor_verify.exact.kirchhoff.turned import upright
 from taylor_verify.exact.printed import decimal_text, document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.explain import explanation
+from taylor_verify.explanation import explanation
 from taylor_verify.parallel import documents
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

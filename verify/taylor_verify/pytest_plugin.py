@@ -7,8 +7,8 @@
     def test_my_simulator_on(verify_scene):
         verify_scene(solve)
 
-``solve`` is a callable ``solve(problem) -> states`` as `taylor_verify.check` takes it, the name of a solver,
-``"process:./my_simulator"`` among them, or a Solver. Both fixtures and the marker take
+``solve`` is a callable ``solve(problem) -> states`` as `taylor_verify.check` takes it, the name of a
+solver, ``"process:./my_simulator"`` among them, or a Solver. Both fixtures and the marker take
 
     rung       the precision of the arithmetic, "f64"; the marker also several
     tolerance  what a coarse method is allowed, in place of what rounding leaves: one number for all
@@ -20,8 +20,8 @@ too, and so does a test that asks for a fixture and judges nothing with it. A so
 calls `sys.exit` with any code, has failed. `os._exit`, or a crash in compiled code, ends the whole
 session, and nothing inside it can help: such a solver is judged as a program, ``process:COMMAND``.
 
-Nothing of taylor_verify but this module is imported before a scene is named, and nothing heavy before one is
-run: the plugin is loaded in every session of an environment that has it.
+Only this module and the light ones of `import taylor_verify` are imported before a scene is named, and
+no library of numbers before a scene is run: the plugin is loaded in every session of an environment that has it.
 """
 
 from __future__ import annotations

@@ -1,27 +1,19 @@
-"""The chain for one scene: scene, problem, trajectory, truth and judgement.
-
-The module is callable, so that `taylor_verify.run(scene, solver, rung)` is this chain.
-"""
+"""The chain for one scene: scene, problem, trajectory, truth and judgement."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from os import PathLike
 from time import perf_counter
+from typing import TYPE_CHECKING
 
-from taylor_verify.callable_module import make_callable
-from taylor_verify.judge.costs import SOLVING, Costs, total
-from taylor_verify.judge.initial import with_initial
-from taylor_verify.judge.judgement import Judgement, judgement, unjudged
-from taylor_verify.judge.verdict import Status
-from taylor_verify.models.problem import NotRepresentable, pose
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.scenes.reader import as_scene
-from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import as_solver
-from taylor_verify.solvers.solver import Lack, Solver, raised
-from taylor_verify.solvers.trajectory import Outcome
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.models.problem import Problem
+    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.solver import Solver
+    from taylor_verify.solvers.trajectory import Trajectory
 
 
 def run(
@@ -37,28 +29,75 @@ def run(
     Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
     no solver or no rung. What the rung cannot hold is a verdict, not an error.
     """
+    from dataclasses import replace
+
+    from taylor_verify.judge.costs import SOLVING, Costs, total
+    from taylor_verify.judge.initial import with_initial
+    from taylor_verify.judge.judgement import judgement, unjudged
+    from taylor_verify.judge.verdict import Status
+    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.solvers.registry import as_solver
+    from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
     scene, solver, rung = as_scene(scene), as_solver(solver), rung_named(rung)
-    if missing := solver.unavailable(rung):
-        lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
-        return unjudged(scene, solver, rung, Status.UNAVAILABLE, missing, lack)
-    try:
-        problem = pose(scene, rung)
-    except NotRepresentable as reason:
-        return unjudged(scene, solver, rung, Status.REFUSED, str(reason))
-    if unsuited := solver.unsuited(problem):
-        return unjudged(scene, solver, rung, Status.UNAVAILABLE, unsuited, Outcome.UNSUITED)
+    problem = _posed(scene, solver, rung)
+    if isinstance(problem, Trajectory):
+        is_refused = problem.outcome is Outcome.NOT_REPRESENTABLE
+        status = Status.REFUSED if is_refused else Status.UNAVAILABLE
+        return unjudged(scene, solver, rung, status, problem.detail, problem.outcome)
     costs = Costs()
     began = perf_counter()
     with costs.of(SOLVING):
-        try:
-            trajectory = solver.solve(problem)
-        except SystemExit as end:
-            # A solver of one's own: its end is a failed run, and not the end of the caller.
-            trajectory = raised(end)
+        trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
     found = judgement(problem, solver, trajectory, seconds)
     found = with_initial(found, float(problem.given.clock.start))
     return replace(found, costs=total([costs.seconds, found.costs]))
 
 
-make_callable(__name__, run)
+def solve(
+    scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
+) -> Trajectory:
+    """Solve one scene on one rung and return the trajectory, which nothing has judged.
+
+    The arguments, and what is raised for them, are those of `run`. The Trajectory has the states at the
+    scene's times, and an ``outcome``. A run that fails or cannot begin has no states, and says why in
+    ``outcome`` and ``detail``.
+    """
+    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.solvers.registry import as_solver
+    from taylor_verify.solvers.trajectory import Trajectory
+
+    solver = as_solver(solver)
+    problem = _posed(as_scene(scene), solver, rung_named(rung))
+    return problem if isinstance(problem, Trajectory) else _answer(solver, problem)
+
+
+def _posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
+    """Return the problem, or a trajectory whose outcome is the reason why there is none."""
+    from taylor_verify.models.problem import NotRepresentable, pose
+    from taylor_verify.solvers.solver import Lack
+    from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+    if missing := solver.unavailable(rung):
+        lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
+        return Trajectory(lack, detail=str(missing))
+    try:
+        problem = pose(scene, rung)
+    except NotRepresentable as reason:
+        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
+    if unsuited := solver.unsuited(problem):
+        return Trajectory(Outcome.UNSUITED, detail=str(unsuited))
+    return problem
+
+
+def _answer(solver: Solver, problem: Problem) -> Trajectory:
+    """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on."""
+    from taylor_verify.solvers.solver import raised
+
+    try:
+        return solver.solve(problem)
+    except SystemExit as end:
+        return raised(end)

@@ -71,12 +71,13 @@ def _told(error: Exception) -> str:
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
-    if (
-        isinstance(error, ModuleNotFoundError)
-        and error.name
-        and error.name.partition(".")[0] != "taylor_verify"
-    ):
+    if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name or __name__):
         return f"expected the package {error.name} (`make verify` sets all up), got none"
     from taylor_verify.parallel import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)
+
+
+def _is_ours(module: str) -> bool:
+    """Return True for a module of this package."""
+    return module.partition(".")[0] == __name__.partition(".")[0]

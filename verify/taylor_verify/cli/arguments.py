@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 from taylor_verify.cli import ci, claims, publishing, question, tradeoff, verbs
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.streams import escaped
+from taylor_verify.version import __version__
 
 _DEFAULT_DIGITS = 30
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.
@@ -74,6 +75,7 @@ def _parser() -> argparse.ArgumentParser:
         "`taylor-verify VERB --help` has an example.",
         allow_abbrev=False,
     )
+    parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
     found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     _add_list(found)
     _add_question(found)

@@ -247,7 +247,7 @@ def explain(options: argparse.Namespace) -> Answer:
     """The arithmetic of one run."""
     from taylor_verify.cli.progress import working
     from taylor_verify.cli.terminal import explanation_text
-    from taylor_verify.explain import explanation
+    from taylor_verify.explanation import explanation
 
     (rung,) = known_rungs([options.rung])
     (scene,) = read_scenes([options.scene], warn=False)

@@ -1,16 +1,13 @@
 """The truth: exact motions, conserved quantities and the condition of an orbit.
 
-The room is callable: `taylor_verify.exact(scene, times, digits)`. How a motion changes with its start and its
-body: `taylor_verify.exact.sensitivity.sensitivity(scene, times_elapsed, digits)`. The room imports nothing of
-models, solvers or judge, because what it is compared with must not be part of it.
+How a motion changes with its start and its body: exact.sensitivity.sensitivity. The room imports
+nothing of models, solvers or judge, because what it is compared with must not be part of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
-
-from taylor_verify.callable_module import make_callable
 
 if TYPE_CHECKING:
     import os
@@ -25,7 +22,7 @@ def exact(
     digits: int = 30,
     route: str | None = None,
 ) -> Motion:
-    """The exact motion at absolute times, to ``digits`` significant digits of every vector.
+    """Return the exact motion at absolute times, to ``digits`` significant digits of every vector.
 
     Times are numbers in the scene's unit: Fractions, integers, decimal text, or binary numbers, NumPy's
     among them, which are taken exactly. The initial state is at the scene's start.
@@ -47,6 +44,3 @@ def exact(
     scene, digits = as_scene(scene), check_digits(digits)
     elapsed = [time - scene.clock.start for time in exact_times(times)]
     return solution(formed_to(scene, digits), route).motion(elapsed, digits)
-
-
-make_callable(__name__, exact)

@@ -1,0 +1,21 @@
+"""Scenes: a question in exact numbers, and the precisions that it is rounded to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import os
+
+    from taylor_verify.scenes.scene import Scene
+
+
+def load(scene: str | os.PathLike[str]) -> Scene:
+    """Read the scene at a path, or the shipped scene of that name (``euler/generic``).
+
+    Every number becomes the rational that its text writes. Raises scenes.faults.Refused with every fault
+    of the file at once, each as ``expected ..., got ... @ body.inertia[1]``.
+    """
+    from taylor_verify.scenes import reader
+
+    return reader.load(scene)
