@@ -21,7 +21,7 @@ calls `sys.exit` with any code, has failed. `os._exit`, or a crash in compiled c
 session, and nothing inside it can help: such a solver is judged as a program, ``process:COMMAND``.
 
 Only this module and the light ones of `import taylor_verify` are imported before a scene is named, and
-no library of numbers before a scene is run: the plugin is loaded in every session of an environment that has it.
+no library of numbers before a scene is run: every session of the environment loads the plugin.
 """
 
 from __future__ import annotations
