@@ -263,7 +263,9 @@ class Flushed(Solver):
         momenta = [n for n in problem.form.states if n[0] in "Hxy"]
         least = max(abs(problem.state[n]) for n in momenta) / 1000
         start = {n: v if n[0] == "e" or abs(v) >= least else 0 for n, v in problem.state.items()}
-        return Taylor().solve(replace(problem, initial=tuple(map(Fraction, start.values()))))
+        return Taylor().solve(
+            replace(problem, initial_momenta=tuple(map(Fraction, start.values())))
+        )
 
 
 @pytest.mark.parametrize(

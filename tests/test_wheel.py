@@ -120,7 +120,7 @@ def test_another_project_has_the_plugin_by_installing_the_wheel(
         "test_coarse": "FAILED",
     }
     assert (
-        "Failed: still on euler/generic, f64: 1 of 3 judged quantities are no pass" in done.stdout
+        "Failed: still on euler/generic, f64: 1 of 4 judged quantities are no pass" in done.stdout
     )
     assert "omega: fail, the error reaches" in done.stdout
 

@@ -265,7 +265,9 @@ def _figure(value: float | None) -> str:
 def exact_text(found: Mapping[str, Any]) -> str:
     console = new_console()
     print_line(
-        console, Text(found["scene"], "bold"), f": {found['regime']} (route {found['route']})"
+        console,
+        Text(found["scene"], "bold"),
+        f": {found['regime']} (route {found['route']}, {found['evidence']})",
     )
     for row in found["rows"]:
         print_line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")

@@ -118,7 +118,7 @@ def _shifted(sights: Sequence[Sight]) -> str:
         return ""
     return (
         "What no conserved quantity can see, a comparison in time names: the error of "
-        f"{_listed(told)} is a constant shift of time."
+        f"{_listed(told)} is {'a' if len(told) == 1 else 'in each case a'} constant shift of time."
     )
 
 
