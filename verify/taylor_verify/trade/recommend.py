@@ -93,15 +93,7 @@ def recommend(
     asked: Sequence[Setting] | None = None,
     seed: int = SEED,
 ) -> Recommendation:
-    """The fastest setting measured here whose error stays below ``error`` on the scene and nearby.
-
-    The error is the largest of all tracked quantities, in the judge's units (relative to the largest
-    omega or impulse, radians, arc length). ``asked`` are the settings to choose from, all that there are
-    unless given; ``seed`` is that of the starts nearby and of the order of timing. It takes from seconds
-    to minutes, because it measures. Raises OutOfReach where
-    nothing reaches it, ValueError for what is no positive number, and scenes.faults.Refused for a
-    scene that cannot be read. Rungs on which rounding alone leaves far more are not measured.
-    """
+    """Return the fastest setting measured here; the arguments are those of `taylor_verify.recommend`."""
     check_target(error)
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
