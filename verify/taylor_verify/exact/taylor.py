@@ -59,6 +59,7 @@ class _Enclosing(Solution):
         take, would be needed.
         """
         target = ceil(digits * log2(10))
+        was_stuck = False
         bits, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
         for _ in range(_ATTEMPTS):
             if bits > most_bits:
@@ -68,7 +69,9 @@ class _Enclosing(Solution):
                     rows = self.rows(elapsed, bits, most_bits)
                 motion, missing = self._measured(rows, target)
             except Coarse as reason:
-                bits = reason.bits
+                if reason.stuck and was_stuck:
+                    raise Unsettled("the bounds of no step close, however short it is") from reason
+                bits, was_stuck = reason.bits, reason.stuck
                 continue
             if missing <= 0:
                 return motion

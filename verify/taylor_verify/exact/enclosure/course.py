@@ -34,7 +34,10 @@ _ORDERS_PER_BIT: Final = 0.36
 _STEP_BITS: Final = 8
 # Beside a steady motion the series converges for ever, and the bounds do not close.
 _MOST_GROWTH: Final = 5.0
+_LEAST_CUT: Final = 0.25
 _HALVINGS: Final = 30
+# A last step is not left for less than the rest of this one.
+_NEARLY: Final = Fraction(63, 64)
 # A turn by this share of the order has its last term below the last bit.
 _TURN_PER_ORDER: Final = 1 / 20
 _MOST_STEPS: Final = 1_000_000
@@ -48,11 +51,14 @@ _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
 
 class Coarse(ArithmeticError):
-    """At this precision the motion cannot be followed to its end; ``bits`` may suffice."""
+    """At this precision the motion cannot be followed to its end; ``bits`` may suffice.
 
-    def __init__(self, bits: int) -> None:
+    ``stuck`` says that the bounds of a step did not close, however short it was.
+    """
+
+    def __init__(self, bits: int, stuck: bool = False) -> None:
         super().__init__()
-        self.bits = bits
+        self.bits, self.stuck = bits, stuck
 
 
 @dataclass(frozen=True)
@@ -191,7 +197,7 @@ class Course:
                     there = leg(system, bounds, state, h, found, moving, box, has_centre)
                 return _Step(length, state, found, moving, there)
             state, length = scaled(state, arb(1) / 2), length / 2
-        raise Coarse(2 * self.bits)
+        raise Coarse(2 * self.bits, stuck=True)
 
     def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
@@ -218,14 +224,25 @@ class Course:
         """The length at which the last coefficients fall below the last bit, and the series there."""
         factor = self._root_test(state)
         with ctx.workprec(BOUND_BITS):
-            growth = self._growth(state[0]) + _log2(length)
-            factor = min(factor, log2(_MOST_GROWTH) - growth)
             if self.place is not None:
                 factor = min(factor, self._turning(state, length))
-        fitted = left if factor > 1e9 else _cut(length, factor)
-        if abs(fitted) >= abs(left):
+            factor = min(factor, _log2(left) - _log2(length))
+            factor = self._bounded(state, length, factor)
+        fitted = _cut(length, factor)
+        if abs(fitted) >= abs(left) * _NEARLY:
             fitted = left
         return fitted, scaled(state, ball(fitted / length))
+
+    def _bounded(self, state: Series, length: Fraction, factor: float) -> float:
+        """The factor, or less where the linearised motion would outgrow the bounds within the step."""
+        while True:
+            reach = scaled([list(map(arb.abs_upper, row)) for row in state], _power(factor))
+            most = [sum(entries, arb(0)) for entries in zip(*reach, strict=True)]
+            excess = self._growth(most) + _log2(length) + factor - log2(_MOST_GROWTH)
+            if excess <= 0:
+                return factor
+            # The reach may itself grow with the length.
+            factor -= max(excess / 2, _LEAST_CUT)
 
     def _root_test(self, state: Series) -> float:
         """log2 of the factor by which the length may grow; infinite where the series has ended."""
@@ -291,6 +308,12 @@ class Course:
 def _log2(length: Fraction) -> float:
     """log2 of a magnitude that no float needs to hold."""
     return log2(abs(length.numerator)) - log2(length.denominator)
+
+
+def _power(exponent: float) -> arb:
+    """An exact number near 2^exponent, of any size."""
+    whole = int(exponent // 1)
+    return arb(2.0 ** (exponent - whole)) * arb(2) ** whole
 
 
 def _brief(value: Fraction) -> str:
