@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.cli.streams import say
+from taylor_verify.cli.streams import escaped, say
 
 if TYPE_CHECKING:
     from taylor_verify.job import Job
@@ -39,7 +39,7 @@ def advancing(total: int) -> Iterator[Callable[[Job], None]]:
         task = bar.add_task("compiling and solving", total=total)
 
         def finished(job: Job) -> None:
-            bar.update(task, advance=1, description=job.scene)
+            bar.update(task, advance=1, description=escaped(job.scene))
 
         yield finished
 
@@ -66,9 +66,12 @@ def working(what: str) -> Iterator[None]:
             from rich.console import Console
             from rich.text import Text
 
+            def text() -> Text:
+                return Text(escaped(f"{what}: {latest()}"))
+
             with (
-                Console(stderr=True).status(Text(what)) as spinner,
-                _repeated(lambda: _PATIENCE, lambda: spinner.update(Text(f"{what}: {latest()}"))),
+                Console(stderr=True).status(text()) as spinner,
+                _repeated(lambda: _PATIENCE, lambda: spinner.update(text())),
             ):
                 yield
             return
