@@ -40,6 +40,7 @@ LACKING = [
     ([0], (), "one row is no trajectory"),
     (range(5), (), "the last 18 of the scene's span of 20"),
     (range(20, 41), (), "the first 10 of the scene's span of 20"),
+    ([20, 40], (), "the first 10 of the scene's span of 20"),
     (range(41), OMEGA, "the attitude"),
     (range(41), ("t", "q0", "q1", "q2", "q3"), "the angular velocity"),
     (range(5), OMEGA, "the attitude, the last 18"),
@@ -57,7 +58,7 @@ def test_what_a_file_lacks_is_undecided(
     assert verdict.because.startswith("not judged: ")
     assert lack in verdict.because
     assert "--partial" in verdict.because
-    assert f"`question {SCENE} --csv`" in verdict.because
+    assert f"`taylor-verify question {SCENE} --csv`" in verdict.because
 
 
 @pytest.mark.parametrize(("rows", "names", "lack"), LACKING)

@@ -19,8 +19,8 @@ from samples import LISTED_INSTANTS
 
 from taylor_verify.cli import main
 from taylor_verify.cli.console import EscapingConsole, new_console, print_line, text_of
-from taylor_verify.cli.streams import escaped
 from taylor_verify.publish import sheets
+from taylor_verify.scenes.names import escaped
 
 ROOT = Path(__file__).resolve().parents[1]
 # Clear the screen, ring, a title for the window, the same in C1, and a turn of the direction.
@@ -68,12 +68,12 @@ def test_no_file_or_column_reaches_the_terminal_raw(tmp_path: Path, capsys: Capt
 
 
 def test_json_holds_no_control_character(steering_scene: Path, capsys: Captured) -> None:
-    """The document has the name itself, escaped as JSON does it."""
+    """The document has the name as it is shown everywhere."""
     named = steering_scene.rename(steering_scene.with_name("a\x7f\x1bb.toml"))
     main(["exact", str(named), "--at", "1", "--json"])
     document = capsys.readouterr().out
     assert not CONTROL.search(document)
-    assert json.loads(document)["scene"] == str(named)
+    assert json.loads(document)["scene"] == escaped(str(named))
 
 
 def test_words_of_the_call_are_escaped_when_repeated(capsys: Captured) -> None:

@@ -166,3 +166,11 @@ def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
     """What was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
         check_name(name)
+
+
+@pytest.mark.parametrize("tolerance", ["1e-3", 0, -1.0, float("nan"), True, 10**400])
+@pytest.mark.parametrize("place", ["rtol", "atol"])
+def test_a_tolerance_that_is_no_positive_number_is_refused(place: str, tolerance: Any) -> None:
+    """Given in Python, it is refused as in a solver's name: what was expected, what came, where."""
+    with pytest.raises(ValueError, match=rf"expected a positive number, got .* @ {place}"):
+        solver.SciPy("DOP853", "scipy:DOP853", **{place: tolerance})

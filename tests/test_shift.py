@@ -457,3 +457,19 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual is not None
     # Rounding to doubles is left, of Omega and of the times.
     assert omega.residual == omega.remains <= 1e-13
+
+
+@pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])
+def test_a_clock_that_is_early_and_drifts_is_told_both(with_first: bool) -> None:
+    """A constant and a rate together are no constant, whether or not the first row is the start."""
+
+    def early(problem: Problem) -> Any:
+        times = [t * Fraction(1001, 1000) + Fraction(1, 50) for t in problem.given.clock.elapsed]
+        if with_first:
+            times[0] = Fraction(0)
+        return solution(problem.given).motion(times, 20)["omega"]
+
+    shift = next(v for v in check("euler/generic", early).verdicts if v.quantity == "omega")
+    assert shift.shift == "drifting"
+    assert shift.trend == pytest.approx(-1e-3, rel=1e-6)
+    assert "its clock runs fast by 0.001 of the time and is early by 0.02 at t = 0" in shift.because

@@ -11,6 +11,7 @@ from fractions import Fraction
 import pytest
 from flint import arb, ctx, fmpq
 from mpmath import mpf
+from samples import one_instant
 from test_washboard import DIGITS, ROUTES, axial, board, gap, vector
 
 from taylor_verify.exact.euler.moments import washboard_teeth
@@ -22,8 +23,11 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.run import run
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import diagonal
 
 # A spin against a moment that is too small to stop it before it has passed so many teeth. In the first two
 # the teeth are so deep that the body all but stops on each of the last.
@@ -177,3 +181,13 @@ def test_a_scene_with_many_teeth_is_judged() -> None:
         verdicts = run(each).verdicts
         assert [v.verdict.value for v in verdicts] == ["pass"] * len(verdicts)
         assert "omega" in {v.quantity for v in verdicts}
+
+
+def test_where_integrals_are_hard_series_answer() -> None:
+    """A moment of 1e-100 tips a spin about the middle axis at t = 399: in a second, and proven."""
+    pushed = RigidBody(diagonal(vector(1, 2, 3)), vector(0, 0, "1e-100"))
+    tipped = solution(one_instant(pushed, Spin(vector(0, 1, 0))))
+    motion = tipped.motion([Fraction(10), Fraction(404)], 30)
+    assert (tipped.route, tipped.evidence) == ("taylor", "proven")
+    assert motion.radius[1] <= 1e-30
+    assert abs(motion["omega"][1][1] + 0.922373734915401) <= 1e-14

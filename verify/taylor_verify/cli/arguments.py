@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from taylor_verify.cli import ci, claims, publishing, question, tradeoff, verbs
 from taylor_verify.cli.answer import Answer
-from taylor_verify.cli.streams import escaped
+from taylor_verify.scenes.names import escaped
 from taylor_verify.version import __version__
 
 _DEFAULT_DIGITS = 30

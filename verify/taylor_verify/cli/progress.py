@@ -11,7 +11,8 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.cli.streams import escaped, say
+from taylor_verify.cli.streams import say
+from taylor_verify.scenes.names import escaped
 
 if TYPE_CHECKING:
     from taylor_verify.job import Job

@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import Final, TextIO
+from typing import TextIO
 
-# Control characters of both sets but tab and line break, separators of lines, turns of the direction.
-_CONTROL: Final = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069]"
-)
-
-
-def escaped(text: str) -> str:
-    """The text with an escape for each character that would steer a terminal: a name may hold any."""
-    return _CONTROL.sub(lambda found: ascii(found[0])[1:-1], text)
+from taylor_verify.scenes.names import escaped
 
 
 def say(message: str) -> None:

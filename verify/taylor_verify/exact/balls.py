@@ -54,9 +54,14 @@ class Enclosed(Solution):
 
         Raises Unsettled when a dozen rises of the precision do not suffice.
         """
+        return self.motion_within(_ATTEMPTS, elapsed, digits)
+
+    @final
+    def motion_within(self, attempts: int, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """The same, with no more than so many precisions tried."""
         target = ceil(digits * log2(10))
         bits = target + _FIRST_GUARD_BITS
-        for _ in range(_ATTEMPTS):
+        for _ in range(attempts):
             motion = self._attempt(elapsed, bits)
             missing = _missing_bits(motion, target)
             if missing is None:

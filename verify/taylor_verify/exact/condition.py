@@ -109,7 +109,9 @@ def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterat
 
     Raises Unsettled if there is none.
     """
-    ladder = _TAYLOR_DIGITS if solution(scene).route == "taylor" else _CLOSED_FORM_DIGITS
+    exact = solution(scene)
+    is_by_series = exact.route == "taylor" or exact.by_quadrature
+    ladder = _TAYLOR_DIGITS if is_by_series else _CLOSED_FORM_DIGITS
     is_settled = False
     for exponent, digits in ladder:
         if exponent < least:

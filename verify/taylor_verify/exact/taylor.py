@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls, max_or_nan, midpoint, upper
-from taylor_verify.exact.enclosure.course import Coarse, Course, Row
+from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row
 from taylor_verify.exact.enclosure.placing import Place, norm
 from taylor_verify.exact.enclosure.system import System, moving, posed
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
@@ -119,9 +119,12 @@ class _Enclosing(Solution):
 class TaylorSolution(_Enclosing):
     """The motion of any scene, free or loaded, in balls that are proven to contain it."""
 
+    most_steps: int = MOST_STEPS
+
     def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
         start, place = balls(self._system.start), _place(self.scene, self.scene.initial)
         course = Course.of(self._system, start, place, bits, most_bits)
+        course = replace(course, most_steps=self.most_steps)
         later = sorted({t for t in elapsed if t > 0})
         earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
         rows = {Fraction(0): course.first_row()}

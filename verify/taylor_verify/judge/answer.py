@@ -239,7 +239,7 @@ def _no_end(answer: _Answer, extent: Extent) -> Iterator[str]:
     last = max(answer.times, key=lambda t: abs(t - answer.scene.clock.start))
     end = float(answer.scene.clock.instants[-1])
     yield (
-        f"the last row is at t = {float(last):g}, and the scene ends at t = {end:g}: "
+        f"the last row is at t = {float(last):.12g}, and the scene ends at t = {end:.12g}: "
         "the rest was not judged"
     )
 

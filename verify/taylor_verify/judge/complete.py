@@ -21,6 +21,8 @@ from taylor_verify.solvers.trajectory import Outcome
 
 # A clock that adds up its step errs by a roundoff of the span in each of them: steps of 1e-4 up to 100.
 _CLOCK_STEPS: Final = 10**6
+# So many rows show an interval of their own.
+_FEWEST_ROWS: Final = 3
 
 
 @dataclass(frozen=True)
@@ -51,14 +53,24 @@ class Extent:
         return self.rows[-1] >= self.end - self.slack
 
     @property
+    def inside(self) -> tuple[Fraction, ...]:
+        """The rows within the scene's span."""
+        return tuple(t for t in self.rows if -self.slack <= t <= self.end + self.slack)
+
+    @property
     def reaches_start(self) -> bool:
-        gaps = (after - before for before, after in pairwise(self.rows))
-        return self.rows[0] <= max(self.begin, *gaps, Fraction(0)) + self.slack
+        """Whether the first row within the span is at the first instant, or one interval after it.
+
+        Of two rows nobody can tell the interval.
+        """
+        inside = self.inside
+        gaps = [b - a for a, b in pairwise(inside)] if len(inside) >= _FEWEST_ROWS else []
+        return bool(inside) and inside[0] <= max([self.begin, *gaps]) + self.slack
 
     @property
     def is_one_state(self) -> bool:
-        """Whether one row is all there is, of a scene that asks for several."""
-        return len(self.rows) == 1 and self.begin != self.end
+        """Whether one row is all there is within the span, of a scene that asks for several."""
+        return len(self.inside) <= 1 and self.begin != self.end
 
 
 def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
@@ -69,7 +81,7 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
         yield f"the motion along {span} (one row is no trajectory)"
         return
     if not extent.reaches_start:
-        yield f"the first {float(extent.rows[0]):.6g} of {span}"
+        yield f"the first {float(extent.inside[0]):.6g} of {span}"
     if not extent.reaches_end:
         yield f"the last {float(extent.end - max(extent.rows[-1], Fraction(0))):.6g} of {span}"
 
@@ -79,7 +91,7 @@ def complete_verdict(
 ) -> Verdict:
     """The row that says what was not judged: undecided, or vacuous where a part was asked for."""
     status = Status.VACUOUS if partial else Status.UNDECIDED
-    whole = f"`question {scene.name} --csv` prints the header and the times of a whole file"
+    whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
     asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
     because = f"not judged: {', '.join(lack)}; {whole}; {asked}"
     solver = Recorded({}, setting=file)

@@ -68,8 +68,18 @@ class Judgement:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [f"{v.scene} {v.rung} {v.quantity}: {v.verdict}: {v.because}" for v in others]
+            lines = [
+                f"{v.scene} {v.rung} {v.quantity}: {v.verdict}{_size(v)}: {v.because}"
+                for v in others
+            ]
             raise NotPassed("\n".join(lines) or "nothing was judged")
+
+
+def _size(verdict: Verdict) -> str:
+    """The error beside its bound, where both are known."""
+    if verdict.max is None or verdict.bound is None:
+        return ""
+    return f", error {verdict.max:.3g} at t = {verdict.at:g}, allowed {verdict.bound:.3g}"
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,13 @@ class Shift:
         if self.kind is Kind.WANDERING:
             return f"{at_worst}, wandering; {left}"
         pace = f"{'slow' if self.trend > 0 else 'fast'} by {abs(self.trend):.3g} of the time"
-        return f"{at_worst}, drifting: its clock runs {pace}; {left}"
+        return f"{at_worst}, drifting: its clock runs {pace}{self._offset()}; {left}"
+
+    def _offset(self) -> str:
+        """The shift that a drifting clock begins with, unless it begins right."""
+        first = self.course[0]
+        is_right = abs(first) <= LEAVES * max(map(abs, self.course))
+        return "" if is_right else f" and is {_late(first)} at t = {self.times[0]:g}"
 
     def _strays(self) -> str:
         """The number of rows that share the shift, and the times of those that do not."""
@@ -122,7 +128,7 @@ def _shift(compared: Compared) -> Shift | None:
     start = compared.fit(run.truth, run.rates, run.unshifted)
     if not start.is_finite:
         return None
-    fits = _Fits.of(compared, start, start)
+    fits = _Fits.of(compared, start)
     single = courses.fitted(compared, min(fits.constant, fits.linear, key=_left), courses.single)
     candidates = [fits, *_without_strays(compared, single)] if fits.kind is Kind.NONE else [fits]
     best = next((one for one in candidates if one.kind is not Kind.NONE), fits)
@@ -149,12 +155,19 @@ class _Fits:
 
     @classmethod
     def of(
-        cls, compared: Compared, start: Shifted, begin: Shifted, strays: tuple[int, ...] = ()
+        cls,
+        compared: Compared,
+        start: Shifted,
+        line: Shifted | None = None,
+        strays: tuple[int, ...] = (),
     ) -> _Fits:
-        """The least squares; ``start`` is without a shift, and the fits begin at ``begin``."""
-        begin = courses.best_start(compared, begin, courses.constant)
+        """The least squares; ``start`` is without a shift, and the drifting fit begins at ``line``.
+
+        The constant fit begins at a constant: what a fit begins with stays part of it.
+        """
+        begin = courses.best_start(compared, start, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
-        onward = courses.best_start(compared, constant, courses.linear)
+        onward = line or courses.best_start(compared, constant, courses.linear)
         return cls(
             compared, start, constant, courses.fitted(compared, onward, courses.linear), strays
         )
@@ -227,10 +240,10 @@ def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
             continue
         shared = compared.without(strays)
         run, kept = shared.run, np.delete(course, strays)
-        begin = shared.evaluated(tuple(Fraction(c) for c in kept.tolist()))
-        if begin is not None:
+        line = shared.evaluated(tuple(Fraction(c) for c in kept.tolist()))
+        if line is not None:
             start = shared.fit(run.truth, run.rates, run.unshifted)
-            yield _Fits.of(shared, start, begin, strays)
+            yield _Fits.of(shared, start, line, strays)
 
 
 def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
@@ -256,6 +269,10 @@ def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
     chosen = places[evenly(len(places), _MOST_PAIRED)]
     first, second = np.triu_indices(len(chosen), 1)
     t, c = times[chosen], shifts[chosen]
-    slope = float(np.median((c[second] - c[first]) / (t[second] - t[first])))
+    gaps = t[second] - t[first]
+    if not gaps.all():
+        # Beside a large start, instants may be one number in float64: there is no slope to tell.
+        return _median(shifts, moving, times)
+    slope = float(np.median((c[second] - c[first]) / gaps))
     found: Floats = np.median(c - slope * t) + slope * times
     return found

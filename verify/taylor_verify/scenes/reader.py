@@ -24,6 +24,7 @@ from taylor_verify.scenes.limit import Limit
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.manufactured_reader import manufactured
 from taylor_verify.scenes.motion import IDENTITY, Impulse, Quaternion, Spin, State
+from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.regular_file import read_bytes
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.table import Table
@@ -99,7 +100,7 @@ def read(text: str, name: str) -> Scene:
     if faults.lines or body is None or initial is None or time is None:
         raise Refused(faults.lines)
     return Scene(
-        name=name,
+        name=escaped(name),
         title=title,
         model=model.name,
         track=track,

@@ -19,6 +19,7 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.positive import positive
 from taylor_verify.scenes.precision import Rung, exact_value
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.solver import Lack, Solver
@@ -61,6 +62,13 @@ class SciPy(Solver):
     atol: float = float(_ATOL)
     setting: str = ""
     counts_steps = True
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for a tolerance that is no positive number, or a method that is unknown."""
+        if self.method not in METHODS:
+            raise ValueError(f"expected one of {', '.join(METHODS)}, got {self.method!r} @ method")
+        for place in ("rtol", "atol"):
+            object.__setattr__(self, place, positive(getattr(self, place), place))
 
     def unavailable(self, rung: Rung) -> str:
         return unavailable(self.name, rung)

@@ -40,7 +40,7 @@ _HALVINGS: Final = 30
 _NEARLY: Final = Fraction(63, 64)
 # A turn by this share of the order has its last term below the last bit.
 _TURN_PER_ORDER: Final = 1 / 20
-_MOST_STEPS: Final = 1_000_000
+MOST_STEPS: Final = 1_000_000
 # A box so large, as a power of two of its vector, is lost: steps shrink with it for ever.
 _LOST: Final = -10
 _SHRUNK: Final = -20
@@ -91,7 +91,7 @@ class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
-    More than ``most_bits`` bits are never asked for.
+    More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for.
     """
 
     system: System
@@ -101,6 +101,7 @@ class Course:
     place: Place | None
     bits: int
     most_bits: int
+    most_steps: int = MOST_STEPS
 
     @classmethod
     def of(
@@ -286,10 +287,10 @@ class Course:
             if lengths[-1] < usual * power_of_two(_SHRUNK):
                 raise Coarse(self._needed(now, last))
             steps = len(lengths) + abs(last - now) / usual
-            if steps > _MOST_STEPS:
+            if steps > self.most_steps:
                 raise Unsettled(
                     f"the Taylor series would take about {_brief(steps)} steps to reach a time of "
-                    f"{_brief(last)} from the start; expected at most {_MOST_STEPS}: ask for a shorter "
+                    f"{_brief(last)} from the start; expected at most {self.most_steps}: ask for a shorter "
                     "time"
                 )
 
