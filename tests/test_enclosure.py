@@ -102,7 +102,7 @@ def corners(asked: Scene) -> list[Sequence[int]]:
 
 
 def is_contained(name: str, bits: int = 80, size: Fraction = WIDE) -> bool:
-    """Whether the balls of a box contain the motions from its corners, by far sharper runs."""
+    """Return True if the balls of a box contain the motions from its corners, by far sharper runs."""
     asked, end = CASES[name]
     time = Fraction(end)
     row = enclosed(asked, time, size, bits)

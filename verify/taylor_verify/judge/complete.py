@@ -59,7 +59,7 @@ class Extent:
 
     @property
     def reaches_start(self) -> bool:
-        """Whether the first row within the span is at the first instant, or one interval after it.
+        """True if the first row within the span is at the first instant, or one interval after it.
 
         Of two rows nobody can tell the interval.
         """
@@ -69,7 +69,7 @@ class Extent:
 
     @property
     def is_one_state(self) -> bool:
-        """Whether one row is all there is within the span, of a scene that asks for several."""
+        """True if one row is all there is within the span, of a scene that asks for several."""
         return len(self.inside) <= 1 and self.begin != self.end
 
 

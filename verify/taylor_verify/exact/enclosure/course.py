@@ -51,7 +51,7 @@ _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 
 
 class Coarse(ArithmeticError):
-    """At this precision the motion cannot be followed to its end; ``bits`` may suffice.
+    """The motion cannot be followed to its end at this precision; ``bits`` may suffice.
 
     ``stuck`` says that the bounds of a step did not close, however short it was.
     """

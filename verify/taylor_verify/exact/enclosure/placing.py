@@ -59,7 +59,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Leg:
-    """What one step does to the frame: the polynomials, and bounds of what they miss."""
+    """The turn and the path of one step: the polynomials, and bounds of what they miss."""
 
     turns: list[list[arb]]
     path: Series
