@@ -29,11 +29,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _FLOAT_DIGITS: Final = 20
 
 
-def count(motion: Manufactured | None) -> int:
-    """How many variables the clock has; none without a manufactured motion."""
-    return 0 if motion is None else 1 + 2 * len(motion.waves)
-
-
 def at(motion: Manufactured, elapsed: Fraction, digits: int) -> Vector:
     """The clock at a time since the start: at the start exact, elsewhere to so many digits."""
     if not elapsed:
@@ -59,14 +54,14 @@ def balls_at(motion: Manufactured, elapsed: Fraction) -> list[arb]:
 
 
 def floats(motion: Manufactured | None, times: Sequence[Fraction]) -> Floats:
-    """The clock at each time, (times, count)."""
+    """The clock at each time, (times, variables); no variables without a manufactured motion."""
     if motion is None:
         return np.zeros((len(times), 0))
     return np.array([[float(c) for c in at(motion, t, _FLOAT_DIGITS)] for t in times])
 
 
 class Swing(NamedTuple):
-    """S (d, count) and N (count, count) of z* = S w and w' = N w; no columns without a motion."""
+    """S (d, n) and N (n, n) of z* = S w and w' = N w; no columns without a motion."""
 
     waves: Floats
     turning: Floats
@@ -77,7 +72,7 @@ class Swing(NamedTuple):
         return float(np.abs(self.turning).max(initial=0.0))
 
     def at(self, clock: Floats) -> tuple[Floats, Floats]:
-        """z* and its rate (..., d) at w (..., count)."""
+        """z* and its rate (..., d) at w (..., n)."""
         return clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
 
 

@@ -62,15 +62,6 @@ def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
     return [_sum(p, q) for p, q in zip(forward, backward, strict=True)]
 
 
-def cross(a: Triple, b: Triple) -> list[Polynomial]:
-    one = Fraction(1)
-    return [_sum({(a[j], b[k]): one}, {(a[k], b[j]): -one}) for j, k in ((1, 2), (2, 0), (0, 1))]
-
-
-def dot(a: Triple, b: Triple) -> Polynomial:
-    return {pair: Fraction(1) for pair in zip(a, b, strict=True)}
-
-
 def _times(factor: Fraction, polynomial: Polynomial) -> Polynomial:
     return {pair: factor * coefficient for pair, coefficient in polynomial.items()}
 

@@ -45,9 +45,9 @@ class Place:
         point = None if centre is None else balls(centre)
         return cls(
             turn=[b.mid() for b in turn],
-            turn_error=norm([arb(b.rad()) for b in turn]),
+            turn_error=_radius(turn),
             centre=None if point is None else [b.mid() for b in point],
-            centre_error=norm([arb(b.rad()) for b in point or ()]),
+            centre_error=_radius(point or ()),
         )
 
     def balls(self) -> tuple[list[arb], list[arb] | None]:
@@ -66,37 +66,35 @@ class Leg:
     turn_error: arb
     path_error: arb
 
-    def place(self, begin: Place, s: arb) -> tuple[list[arb], arb, list[arb] | None, arb]:
-        """Attitude and centre at s as balls, and the bounds of their further errors."""
+    def place(self, begin: Place, s: arb) -> Place:
+        """The place at s; its entries are balls, and its bounds are of their further errors."""
         turn = product(begin.turn, value(self.turns, s))
         with ctx.workprec(BOUND_BITS):
             turn_error = begin.turn_error + (1 + begin.turn_error) * self.turn_error
         if begin.centre is None:
-            return turn, turn_error.abs_upper(), None, arb(0)
+            return Place(turn, turn_error.abs_upper(), None, arb(0))
         way = value(self.path, s)
         moved = product(begin.turn, way)
         centre = [c + m for c, m in zip(begin.centre, moved, strict=True)]
         with ctx.workprec(BOUND_BITS):
             error = begin.centre_error + begin.turn_error * norm(way) + self.path_error
-        return turn, turn_error.abs_upper(), centre, error.abs_upper()
+        return Place(turn, turn_error.abs_upper(), centre, error.abs_upper())
 
     def carried(self, begin: Place) -> Place:
         """The place at the end of the step, its roundings counted."""
-        turn, turn_error, centre, centre_error = self.place(begin, arb(1))
+        end = self.place(begin, arb(1))
         with ctx.workprec(BOUND_BITS):
+            rounded, moved = (_radius(entries) for entries in (end.turn, end.centre or ()))
             return Place(
-                turn=[t.mid() for t in turn],
-                turn_error=(turn_error + norm([arb(t.rad()) for t in turn])).abs_upper(),
-                centre=None if centre is None else [c.mid() for c in centre],
-                centre_error=(
-                    centre_error + norm([arb(c.rad()) for c in centre or ()])
-                ).abs_upper(),
+                turn=[t.mid() for t in end.turn],
+                turn_error=(end.turn_error + rounded).abs_upper(),
+                centre=None if end.centre is None else [c.mid() for c in end.centre],
+                centre_error=(end.centre_error + moved).abs_upper(),
             )
 
     def within(self, begin: Place, s: arb) -> tuple[list[arb], list[arb] | None]:
         """Attitude (nine entries) and centre at s, each entry with the whole bound as its radius."""
-        turn, turn_error, centre, centre_error = self.place(begin, s)
-        return Place(turn, turn_error, centre, centre_error).balls()
+        return self.place(begin, s).balls()
 
 
 def leg(
@@ -157,6 +155,11 @@ def _left_out(lengths: Sequence[arb], others: Sequence[arb]) -> arb:
         tail += other
         total += length * tail
     return total
+
+
+def _radius(entries: Sequence[arb]) -> arb:
+    """An upper bound of the distance of any point of these balls from their midpoints."""
+    return norm([arb(entry.rad()) for entry in entries])
 
 
 def _about(entries: Sequence[arb], error: arb) -> list[arb]:
