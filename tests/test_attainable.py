@@ -29,8 +29,9 @@ from taylor_verify.judge.attainable import Floor, floor
 from taylor_verify.judge.errors import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.judge.magnitude import Magnitude, roundings
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.models.problem import adopt
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 from test_publish import MIXED, NAN, STOPPED, UNIT, passed, unscored
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import sheets
 from taylor_verify.publish.attainable import attainable
 from taylor_verify.publish.report import load
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 u = UNIT["f64"]

@@ -16,9 +16,11 @@ from hypothesis import strategies as st
 from taylor_verify.cli import main, verbs
 from taylor_verify.judge.baseline import hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
-from taylor_verify.judge.verdict import Status, Verdict, exit_status
 from taylor_verify.publish.report import load as load_report
 from taylor_verify.publish.report import write
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 PUBLISHED = REPORTS / "data" / "verdicts.json"
@@ -36,7 +38,7 @@ def row(errors: float = 0.5, **changed: Any) -> Verdict:
         "at": 7.0,
         "unit": "max|omega|",
         "bound": 10 * ATTAINABLE,
-        "because": "10 x attainable; a reason",
+        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
         "attainable": ATTAINABLE,
         "ratio": errors,
         "ratio_at": 7.0,
@@ -231,16 +233,16 @@ def test_both_documents_are_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"max": math.nan}, "expected a finite number or null, got NaN"),
+        ({"max": math.nan}, "expected a JSON document, got a fault"),
         ({"max": -1e-15}, "not negative, got -1e-15 @ verdicts[1].max"),
         ({"max": "5e-15"}, "expected a number or null, got '5e-15' @ verdicts[1].max"),
         ({"ratio": True}, "got True @ verdicts[1].ratio"),
-        ({"max": None}, "expected numbers of a row that passed, got null @ verdicts[1]"),
+        ({"max": None}, "expected a number of a row that passed, got null @ verdicts[1].max"),
         ({"verdict": "passed"}, "got 'passed' @ verdicts[1].verdict"),
-        ({"verdict": ["pass"]}, "got ['pass'] @ verdicts[1].verdict"),
-        ({"steps": 1.5}, "expected a count, got 1.5 @ verdicts[1].steps"),
+        ({"verdict": ["pass"]}, "got a list @ verdicts[1].verdict"),
+        ({"steps": 1.5}, "expected a whole number, got 1.5 @ verdicts[1].steps"),
         ({"scene": None}, "expected a text, got None @ verdicts[1].scene"),
-        ({"provenance": {}}, "got None @ verdicts[1].provenance.scene"),
+        ({"provenance": {}}, "got none @ verdicts[1].provenance.scene"),
         ({"provenance": None}, "expected an object, got None @ verdicts[1].provenance"),
         ({"quantity": "omega"}, "every row once, got more of euler/generic taylor f64 omega"),
     ],

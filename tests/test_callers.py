@@ -18,8 +18,8 @@ from taylor_verify.demand import demands
 from taylor_verify.explanation import explanation
 from taylor_verify.judge.convergence import sweep
 from taylor_verify.judge.judgement import Judgement, NotPassed
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.library import cases_directory
 from taylor_verify.solvers.options import options

@@ -22,15 +22,17 @@ from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.answer import FileJudgement
 from taylor_verify.judge.inputs import input_rounding
-from taylor_verify.judge.verdict import COMPLETE, INITIAL, Status, Verdict
 from taylor_verify.models.problem import adopt, pose
+from taylor_verify.records.quantities import COLUMNS, COMPLETE, INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
-from taylor_verify.solvers.file import GROUPS, read
+from taylor_verify.solvers.file import read
 from taylor_verify.solvers.values import exact, held
 
 F64 = rung("f64")
@@ -181,7 +183,7 @@ def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
 def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) -> None:
     """Quaternions beside a scene of omega alone are left out, and that is said."""
     columns = {**exact_columns("euler/generic")}
-    rest = {name: [0.5] * len(columns["t"]) for name in GROUPS["quaternion"]}
+    rest = {name: [0.5] * len(columns["t"]) for name in COLUMNS["quaternion"]}
     found = checked(tmp_path, "euler/generic", {**columns, **rest})
     assert all_pass(found)
     assert any("does not track the attitude" in note for note in found.notes)

@@ -23,11 +23,13 @@ from hypothesis import strategies as st
 from samples import LISTED_INSTANTS
 
 from taylor_verify.cli import main
-from taylor_verify.judge.verdict import Status, Verdict, exit_status
 from taylor_verify.publish.ci import annotations, junit
 from taylor_verify.publish.ci.annotations import annotation_lines
 from taylor_verify.publish.ci.case import Remark, cases, sentence
 from taylor_verify.publish.ci.step_summary import step_summary
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = json.loads(
@@ -50,7 +52,7 @@ def row(status: Status = Status.PASS, **changed: Any) -> Verdict:
         "at": 7.0,
         "unit": "max|omega|",
         "bound": 2e-13,
-        "because": "10 x attainable; one rounding a step",
+        "reason": stated(Cause.STATED, "10 x attainable; one rounding a step"),
         "attainable": 2e-14,
         "ratio": 165.0,
         "ratio_at": 6.5,
@@ -69,7 +71,7 @@ def unscored(status: Status, because: str, **changed: Any) -> Verdict:
         **{"solver": "taylor", "setting": "", **names, **changed},
         verdict=status,
         outcome="not started",
-        because=because,
+        reason=stated(Cause.STATED, because),
     )
 
 
@@ -197,7 +199,7 @@ def test_junit_has_the_structure_of_surefire_and_jenkins(seconds: float | None) 
 def test_any_text_makes_a_document(scene: str, quantity: str, because: str) -> None:
     """Markup, control characters and lone surrogates of somebody's program are escaped; what XML can
     hold comes back as it was."""
-    found = row(Status.FAIL, scene=scene, quantity=quantity, because=because)
+    found = row(Status.FAIL, scene=scene, quantity=quantity, reason=stated(Cause.STATED, because))
     text = junit.junit([found])
     text.encode()
     (failure,) = ElementTree.fromstring(text).iter("failure")
@@ -310,7 +312,9 @@ def test_each_status_has_its_level() -> None:
 @given(st.text(), st.text())
 def test_the_runner_reads_back_what_was_said(quantity: str, because: str) -> None:
     """Whatever a program wrote to stderr, a verdict is one line and no command of the program's."""
-    found = row(Status.FAIL, scene="a,b: 100%.toml", quantity=quantity, because=because)
+    found = row(
+        Status.FAIL, scene="a,b: 100%.toml", quantity=quantity, reason=stated(Cause.STATED, because)
+    )
     (line,) = annotation_lines([found])
     # GitHub's runner splits its input at these.
     assert not set(line) & {"\r", "\n"}
@@ -359,7 +363,9 @@ def test_the_summary_has_every_row_and_first_what_is_no_pass() -> None:
 
 def test_the_summary_breaks_no_table() -> None:
     """Bars, tags and line ends of somebody's words stay within their cell."""
-    text = step_summary([row(Status.FAIL, because="a | b\n<script> `c`", unit="x|y")])
+    text = step_summary(
+        [row(Status.FAIL, reason=stated(Cause.STATED, "a | b\n<script> `c`"), unit="x|y")]
+    )
     (line,) = [line for line in text.splitlines() if "script" in line]
     assert len(re.findall(r"(?<!\\)\|", line)) == 10
     assert r"\<script\>" in line
@@ -367,12 +373,15 @@ def test_the_summary_breaks_no_table() -> None:
 
 def test_the_summary_is_never_longer_than_github_takes() -> None:
     """GitHub drops a summary above 1 MiB as a whole: the reasons are cut, and it says so."""
-    rows = [row(Status.FAIL, scene=f"s/{i}", because="é" * 400) for i in range(5000)]
+    rows = [
+        row(Status.FAIL, scene=f"s/{i}", reason=stated(Cause.STATED, "é" * 400))
+        for i in range(5000)
+    ]
     text = step_summary(rows)
     assert len(text.encode()) < 2**20
     assert re.search(r"And 4[59]00 more", text)
     assert "| **5000** |" in text
-    endless = step_summary([row(Status.FAIL, because="x" * 2**20)])
+    endless = step_summary([row(Status.FAIL, reason=stated(Cause.STATED, "x" * 2**20))])
     assert len(endless.encode()) < 2**20
     assert "| **1** |" in endless
 

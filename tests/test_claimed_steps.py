@@ -17,8 +17,9 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.attainable import radians
 from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
 from taylor_verify.judge.steps import count_steps
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import rung

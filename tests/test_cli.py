@@ -20,13 +20,13 @@ from samples import LISTED_INSTANTS
 
 import taylor_verify
 from taylor_verify.cli import main, verbs
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.precision import LADDER
 from taylor_verify.solvers import registry
 
 ROOT = Path(__file__).resolve().parents[1]

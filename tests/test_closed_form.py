@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors import largest, state_errors
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody

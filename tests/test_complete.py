@@ -13,7 +13,9 @@ from trajectories import columns_at, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.verdict import COMPLETE, Status, Verdict
+from taylor_verify.records.quantities import COMPLETE
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reader import load
 
 SCENE = "euler/with-attitude"

@@ -16,11 +16,12 @@ from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.controls.sight import RUNG, Sight, Twins, document, sights
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.judge.gates import FACTOR
-from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
-from taylor_verify.judge.verdict import INITIAL, Status, Verdict
 from taylor_verify.models.problem import pose
 from taylor_verify.publish import controls, proof, report
 from taylor_verify.publish import sights as stored
+from taylor_verify.records.quantities import INITIAL, UNIT_QUATERNION
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 

@@ -30,7 +30,7 @@ from taylor_verify.judge.answer import FileJudgement
 from taylor_verify.judge.conventions.axes import AXES, Frames
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import EXPLAINS, conventions
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.status import Status
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Spin

@@ -23,9 +23,10 @@ import taylor_verify
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
 from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.precision import LADDER
 from taylor_verify.solvers.registry import NAMES
 from taylor_verify.solvers.trajectory import Outcome
 

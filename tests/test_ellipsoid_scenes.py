@@ -13,10 +13,11 @@ from taylor_verify.exact.ellipsoid import deviation, formed_to, told
 from taylor_verify.exact.route import solution
 from taylor_verify.explanation import explanation
 from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
 from taylor_verify.scenes.faults import Refused
-from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load, read
 from taylor_verify.scenes.tensors import cross, dot
 

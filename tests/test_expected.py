@@ -11,11 +11,12 @@ import pytest
 import taylor_verify
 from taylor_verify.cli import main, verbs
 from taylor_verify.expected import Held, hold
-from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes import expected, library
 from taylor_verify.scenes.expected import Expectation, Expectations, left_out, read, shipped
 from taylor_verify.scenes.faults import Refused
-from taylor_verify.scenes.precision import LADDER
 from taylor_verify.scenes.reader import load
 from taylor_verify.solvers.trajectory import Outcome
 

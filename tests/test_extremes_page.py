@@ -13,11 +13,12 @@ import pytest
 from test_publish import NAN, PROVENANCE, VERSIONS, passed
 
 from taylor_verify.cli import main
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import data, extremes
 from taylor_verify.publish.extremes import Expected
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.report import publish, write
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 WHY = "one roundoff grows to the size of the motion"
 VACUOUS = passed("extremes/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0)

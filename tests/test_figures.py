@@ -13,12 +13,13 @@ from taylor_verify.exact.euler.jacobi import FreeRotation
 from taylor_verify.exact.euler.orbit import Orbit
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.verdict import STATES, Status, Verdict
+from taylor_verify.records.quantities import LADDER, STATES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
-from taylor_verify.scenes.precision import LADDER
 from taylor_verify.scenes.scene import Scene
 
 BODIES = 32

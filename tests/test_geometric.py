@@ -16,9 +16,11 @@ from mpmath import mp
 from taylor_verify.cli import main
 from taylor_verify.judge.convergence import sweep
 from taylor_verify.judge.judgement import judgement
-from taylor_verify.judge.verdict import INITIAL, Status, Verdict
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung

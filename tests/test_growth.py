@@ -27,7 +27,7 @@ from taylor_verify.judge.growth import (
     student,
     word,
 )
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.status import Status
 
 Draw = Callable[[np.random.Generator, int], np.ndarray]
 

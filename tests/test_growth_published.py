@@ -19,11 +19,11 @@ from taylor_verify.growth.experiment import Experiment, Found, experiment
 from taylor_verify.growth.published import Entry
 from taylor_verify.growth.question import Question
 from taylor_verify.judge.growth import BIAS
-from taylor_verify.judge.verdict import Status
 from taylor_verify.publish import growth as pages
 from taylor_verify.publish.pictures import growth as diagram
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 

@@ -24,7 +24,7 @@ Sources = Mapping[str, str]
 
 
 class Import(NamedTuple):
-    """One imported name in full, such as ``taylor_verify.judge.verdict.Verdict``."""
+    """One imported name in full, such as ``taylor_verify.records.verdict.Verdict``."""
 
     target: str
     line: int
@@ -103,20 +103,23 @@ def keeps_its_walls(module: str, source: str) -> Iterator[str]:
             yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
 
 
+def records_stand_alone(module: str, source: str) -> Iterator[str]:
+    """records imports nothing of taylor_verify but records: every room may read it."""
+    if room(module) == "records":
+        yield from _beyond(["taylor_verify.records"], module, source)
+
+
 def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
-    """scenes imports nothing of taylor_verify but scenes."""
+    """scenes imports nothing of taylor_verify but scenes, and the names that all rooms share."""
     if room(module) == "scenes":
-        yield from _beyond(["taylor_verify.scenes"], module, source)
+        readable = ["taylor_verify.scenes", "taylor_verify.records.quantities"]
+        yield from _beyond(readable, module, source)
 
 
-def publish_reads_verdicts(module: str, source: str) -> Iterator[str]:
-    """publish imports judge.verdict and judge.record only, and scenes for its type hints."""
+def publish_reads_records(module: str, source: str) -> Iterator[str]:
+    """publish imports records only, and scenes for its type hints."""
     if room(module) == "publish":
-        readable = [
-            "taylor_verify.publish",
-            "taylor_verify.judge.verdict",
-            "taylor_verify.judge.record",
-        ]
+        readable = ["taylor_verify.publish", "taylor_verify.records"]
         yield from _beyond(readable, module, source, for_types=["taylor_verify.scenes"])
 
 
@@ -193,8 +196,9 @@ def is_small(module: str, source: str) -> Iterator[str]:
 
 RULES: Final = (
     keeps_its_walls,
+    records_stand_alone,
     scenes_stand_alone,
-    publish_reads_verdicts,
+    publish_reads_records,
     heyoka_has_its_place,
     is_silent,
     stands_in_its_own_environment,
@@ -337,19 +341,25 @@ PLANTED = [
         "judge",
     ),
     (
+        records_stand_alone,
+        "taylor_verify.records.verdict",
+        "from taylor_verify.scenes.scene import Scene",
+        "scenes",
+    ),
+    (
         scenes_stand_alone,
         "taylor_verify.scenes.reader",
         "from taylor_verify.run import run",
         "taylor_verify.run",
     ),
     (
-        publish_reads_verdicts,
+        publish_reads_records,
         "taylor_verify.publish.plots",
         "from taylor_verify.judge import gates",
         "gates",
     ),
     (
-        publish_reads_verdicts,
+        publish_reads_records,
         "taylor_verify.publish.plots",
         "import taylor_verify.scenes.scene",
         "scenes",
@@ -393,7 +403,7 @@ def test_every_rule_has_a_planted_fault() -> None:
         ("taylor_verify.exact.theta", "from taylor_verify.scenes.scene import Scene"),
         ("taylor_verify.models.euler", "import heyoka as hy"),
         ("taylor_verify.solvers.taylor.step", "from heyoka import par"),
-        ("taylor_verify.publish.plots", "from taylor_verify.judge.verdict import Verdict"),
+        ("taylor_verify.publish.plots", "from taylor_verify.records.verdict import Verdict"),
         (
             "taylor_verify.publish.plots",
             "if TYPE_CHECKING:\n from taylor_verify.scenes.scene import Scene",

@@ -15,8 +15,9 @@ from taylor_verify import hunt
 from taylor_verify.cli import main
 from taylor_verify.hunt import FAMILIES, Catch, Family, Found
 from taylor_verify.judge.gates import FACTOR
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import worst
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.faults import Refused

@@ -16,8 +16,10 @@ from taylor_verify.judge.baseline import hold
 from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import compare
-from taylor_verify.judge.verdict import INITIAL, Status, Verdict
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reader import load

@@ -16,8 +16,10 @@ from taylor_verify.judge.attainable import Floor, floor
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import Errors, arc_length, largest, state_errors
 from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
-from taylor_verify.judge.verdict import Status, Verdict, exit_status, summary
 from taylor_verify.models.problem import pose
+from taylor_verify.records.reason import Reason
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status, summary
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -43,21 +45,23 @@ def motion_of(**quantities: list[list[object]]) -> Motion:
 
 # Gates.
 
+TERMS = Reason()
+
 
 def test_gate_stands_at_ten_times_the_attainable_error() -> None:
     """An error of exactly the bound passes, one unit above it fails."""
     attainable = np.array([1e-15, 2e-15])
     bound = FACTOR * attainable[1]
     assert FACTOR == 10
-    assert judge(errors_of([0.0, bound]), attainable, "").status is Status.PASS
+    assert judge(errors_of([0.0, bound]), attainable, TERMS).status is Status.PASS
     above = math.nextafter(bound, 1)
-    assert judge(errors_of([0.0, above]), attainable, "").status is Status.FAIL
+    assert judge(errors_of([0.0, above]), attainable, TERMS).status is Status.FAIL
 
 
 def test_gate_asks_every_sample() -> None:
     """A small error at a time when nothing is excused fails, though a later, larger one is allowed."""
     attainable = np.array([1e-16, 1e-12])
-    finding = judge(errors_of([1e-14, 5e-12]), attainable, "")
+    finding = judge(errors_of([1e-14, 5e-12]), attainable, TERMS)
     assert finding.status is Status.FAIL
     assert (finding.worst, finding.ratio_at) == (1, 0)
 
@@ -68,7 +72,7 @@ def test_nan_fails_wherever_it_stands(place: int, other: float) -> None:
     values = [other] * 5
     values[place] = math.nan
     for attainable in (1e-16, 1e-3, 10.0):
-        finding = judge(errors_of(values), np.full(5, attainable), "")
+        finding = judge(errors_of(values), np.full(5, attainable), TERMS)
         assert finding.status is Status.FAIL
         assert finding.worst == place
 
@@ -88,42 +92,42 @@ def test_largest_does_not_lose_a_nan(values: list[float], place: int) -> None:
 def test_an_error_below_every_double_is_an_error() -> None:
     """Where the floor is zero nothing may move: 10^-400 is no zero, and zero itself passes."""
     floor = np.zeros(2)
-    assert judge(errors_of([mpf(0), mpf("1e-400")]), floor, "").status is Status.FAIL
-    assert judge(errors_of([mpf(0), mpf(0)]), floor, "").status is Status.PASS
+    assert judge(errors_of([mpf(0), mpf("1e-400")]), floor, TERMS).status is Status.FAIL
+    assert judge(errors_of([mpf(0), mpf(0)]), floor, TERMS).status is Status.PASS
 
 
 def test_truth_wider_than_a_sixteenth_of_the_bound_decides_nothing() -> None:
     """A truth with a radius over bound/16 makes a gate undecided, for right and wrong alike."""
     attainable = np.array([1e-15])
     width = FACTOR * 1e-15 / 16
-    assert judge(errors_of([0.0], width), attainable, "").status is Status.PASS
+    assert judge(errors_of([0.0], width), attainable, TERMS).status is Status.PASS
     for error in (0.0, 1.0):
-        finding = judge(errors_of([error], 1.01 * width), attainable, "")
+        finding = judge(errors_of([error], 1.01 * width), attainable, TERMS)
         assert finding.status is Status.UNDECIDED
 
 
 def test_floor_that_reaches_the_motion_is_vacuous_but_excuses_nothing_before() -> None:
     """Where ten times the floor exceeds the motion the gate is vacuous; earlier samples still count."""
     attainable = np.array([1e-15, 0.2])
-    assert judge(errors_of([1e-15, 0.9]), attainable, "").status is Status.VACUOUS
-    assert judge(errors_of([1e-13, 0.9]), attainable, "").status is Status.FAIL
+    assert judge(errors_of([1e-15, 0.9]), attainable, TERMS).status is Status.VACUOUS
+    assert judge(errors_of([1e-13, 0.9]), attainable, TERMS).status is Status.FAIL
 
 
 def test_what_left_the_orbit_does_not_come_back() -> None:
     """After a bound as large as the motion a smaller one binds nobody, and counts for no ratio."""
     attainable = np.array([1e-15, 0.2, 1e-3])
-    finding = judge(errors_of([2e-15, 0.9, 0.9]), attainable, "")
+    finding = judge(errors_of([2e-15, 0.9, 0.9]), attainable, TERMS)
     assert finding.status is Status.VACUOUS
     assert (finding.ratio, finding.ratio_at) == (pytest.approx(2), 0)
-    assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, "").status is Status.FAIL
+    assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, TERMS).status is Status.FAIL
 
 
 def test_no_floor_and_an_error_is_a_fail() -> None:
     """Where nothing can be lost (a body at rest) any error is infinitely many times the floor."""
-    finding = judge(errors_of([0.0, 1e-300]), np.zeros(2), "")
+    finding = judge(errors_of([0.0, 1e-300]), np.zeros(2), TERMS)
     assert finding.status is Status.FAIL
     assert finding.ratio == math.inf
-    assert judge(errors_of([0.0, 0.0]), np.zeros(2), "").status is Status.PASS
+    assert judge(errors_of([0.0, 0.0]), np.zeros(2), TERMS).status is Status.PASS
 
 
 # Verdicts.

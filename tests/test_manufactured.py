@@ -18,7 +18,6 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.sensitivity import sensitivity
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models import euler
 from taylor_verify.models.algebra import add, apply, cross
 from taylor_verify.models.euler import heinbockel_moment, momentum_rate
@@ -32,12 +31,14 @@ from taylor_verify.models.form import (
 from taylor_verify.models.kirchhoff import velocities
 from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named

@@ -15,8 +15,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.balances import clock_work
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.manufactured import Manufactured

@@ -21,12 +21,13 @@ from trajectories import columns_at, write_csv
 import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.inputs import _numbers, _with_factors
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem, adopt, pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import protocol

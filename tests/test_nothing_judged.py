@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from taylor_verify.cli import main
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.solvers import entrant
 from taylor_verify.solvers import scipy as solver

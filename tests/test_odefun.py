@@ -8,8 +8,8 @@ from fractions import Fraction
 import pytest
 from mpmath import mp
 
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import pose
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung

@@ -26,14 +26,13 @@ from taylor_verify.publish.pictures.series import front_of, series_of
 from taylor_verify.publish.pictures.style import (
     KINDS,
     PAGE_WIDTH,
-    bits_of,
     kind_of,
     look_of,
     look_of_line,
     look_of_rung,
-    place_of_rung,
 )
 from taylor_verify.publish.pictures.wording import label_of, power_of_ten
+from taylor_verify.records.quantities import bits_of, place_of_rung
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"

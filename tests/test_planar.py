@@ -15,10 +15,11 @@ from taylor_verify.exact.kirchhoff.plane import plane, regime
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import LADDER
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
-from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix

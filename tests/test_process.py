@@ -24,8 +24,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from samples import THREE_INSTANTS
 
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.precision import rung

@@ -17,9 +17,9 @@ import taylor_verify
 from taylor_verify.claims.claim import Finding
 from taylor_verify.cli import main
 from taylor_verify.explanation import explanation
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem
 from taylor_verify.parallel import Failed
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung, rung
 from taylor_verify.solvers.solver import Solver

@@ -18,14 +18,16 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from taylor_verify.judge.record import GateRecord, Record
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import data, tables
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.report import load, publish, write
-from taylor_verify.publish.runs import GRAVITY, place_of_rung
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.verdict import Verdict
 
 VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
 PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
@@ -44,7 +46,7 @@ def passed(scene: str, rung: str, quantity: str, **changed: Any) -> Verdict:
         "at": 7.0,
         "unit": "max|omega|",
         "bound": 60 * u,
-        "because": "10 x attainable; a reason",
+        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
         "attainable": 6 * u,
         "ratio": 0.5,
         "ratio_at": 7.0,
@@ -60,7 +62,9 @@ def passed(scene: str, rung: str, quantity: str, **changed: Any) -> Verdict:
 def unscored(scene: str, rung: str, quantity: str, status: Status, outcome: str) -> Verdict:
     because = f"the reason why {scene} has no number"
     return Verdict(
-        scene, "taylor", rung, "", quantity, status, outcome, because=because, provenance=PROVENANCE
+        *(scene, "taylor", rung, "", quantity, status, outcome),
+        reason=stated(Cause.STATED, because),
+        provenance=PROVENANCE,
     )
 
 
@@ -160,7 +164,11 @@ def one_run(draw: st.DrawFn) -> list[Verdict]:
         numbers: dict[str, Any] = {name: draw(FLOATS) for name in (*NAN, "at", "bound")}
         status, outcome = draw(st.sampled_from(Status)), draw(TEXT)
         verdict = Verdict(scene, solver, rung, setting, quantity, status, outcome, **numbers)
-        rest: dict[str, Any] = {"because": draw(TEXT), "seconds": seconds, "provenance": provenance}
+        rest: dict[str, Any] = {
+            "reason": stated(Cause.STATED, draw(TEXT)),
+            "seconds": seconds,
+            "provenance": provenance,
+        }
         verdicts.append(replace(verdict, **rest))
     return verdicts
 
@@ -318,7 +326,7 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     assert "taylor_verify.publish.tables" in loaded
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
     rooms = {name.split(".")[1] for name in loaded if name.startswith("taylor_verify.")}
-    assert rooms == {"publish", "judge"}
+    assert rooms == {"publish", "records"}
 
 
 # The front page.
@@ -531,8 +539,10 @@ def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) ->
     """No text of a scene, unit, outcome or reason breaks a table, whatever is in it."""
     nasty = "a|b\n`c` <img> *d* _e_ \\| [f](g) $h$"
     hostile = [
-        passed(nasty, "f64", "omega", unit=nasty, because=nasty),
-        replace(unscored(nasty, "f32", "omega", Status.FAIL, nasty), because=nasty),
+        passed(nasty, "f64", "omega", unit=nasty, reason=stated(Cause.STATED, nasty)),
+        replace(
+            unscored(nasty, "f32", "omega", Status.FAIL, nasty), reason=stated(Cause.STATED, nasty)
+        ),
     ]
     write(report, [*MIXED, *hostile], [])
     publish(report)

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from taylor_verify.demand import Demand, demands, report
-from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.reader import read
 

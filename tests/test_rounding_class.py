@@ -14,8 +14,10 @@ import pytest
 from taylor_verify.cli import main, verbs
 from taylor_verify.judge import rounding_class
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.report import load, write
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -203,7 +205,11 @@ def test_every_other_number_has_its_class(changed: dict[str, Any], said: str) ->
     [
         {"steps": 109, "evaluations": 2180},
         {"at": 99.0, "attainable": 5e-14, "bound": 5e-13},
-        {"ratio_at": 3.0, "seconds": 9.0, "because": "10 x attainable, of 101 steps"},
+        {
+            "ratio_at": 3.0,
+            "seconds": 9.0,
+            "reason": stated(Cause.STATED, "10 x attainable, of 101 steps"),
+        },
     ],
 )
 def test_what_is_drawn_anew_departs_by_nothing(changed: dict[str, Any]) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import pose
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung

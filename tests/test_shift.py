@@ -24,11 +24,12 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import state_errors
 from taylor_verify.judge.judgement import judgement
-from taylor_verify.judge.shift import Kind, Shift, time_shifts
-from taylor_verify.judge.verdict import Status
+from taylor_verify.judge.shift import Shift, time_shifts
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.publish.report import load as load_report
 from taylor_verify.publish.report import write
+from taylor_verify.records.reason import Kind
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -117,8 +118,10 @@ def test_half_a_millisecond_late_is_found_and_nothing_remains(name: str, text: s
         assert shift.kind is Kind.CONSTANT
         assert shift.time_shift == pytest.approx(float(text), rel=1e-12)
         assert shift.residual <= 10.0**-DIGITS * 10
-        assert shift.sentence().startswith(
-            f"{'late' if shift.time_shift > 0 else 'early'} by 0.0005"
+        assert (
+            shift.terms()
+            .sentence()
+            .startswith(f"{'late' if shift.time_shift > 0 else 'early'} by 0.0005")
         )
 
 
@@ -145,7 +148,10 @@ def test_a_clock_that_runs_wrong_drifts(pace: str) -> None:
         # A course is held in float64: of the largest shift 2^-52, at a speed near one.
         assert shift.remains <= 60 * abs(float(pace)) * 1e-15
         told = "slow" if float(pace) > 0 else "fast"
-        assert f"drifting: its clock runs {told} by {abs(float(pace)):.3g} of" in shift.sentence()
+        assert (
+            f"drifting: its clock runs {told} by {abs(float(pace)):.3g} of"
+            in shift.terms().sentence()
+        )
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -161,10 +167,10 @@ def test_a_first_row_that_is_not_late_is_named_and_spoils_no_fit(name: str) -> N
         assert shift.time_shift == pytest.approx(-1e-4, rel=1e-12)
         assert shift.residual == shift.remains <= 10.0**-DIGITS * 10
         assert shift.strays == shift.times[:1]
-        assert shift.sentence().startswith("early by 0.0001, constant; ")
+        assert shift.terms().sentence().startswith("early by 0.0001, constant; ")
         rows = len(shift.times)
         said = f" in {rows - 1} of {rows} rows; the row at t = {shift.times[0]:g} does not share it"
-        assert shift.sentence().endswith(said)
+        assert shift.terms().sentence().endswith(said)
 
 
 def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
@@ -179,7 +185,9 @@ def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
         assert shift.trend == pytest.approx(1e-3, rel=1e-9)
         assert shift.strays == (6.0, 13.5)
         assert shift.remains <= 1e-15
-        assert "in 39 of 41 rows; the rows at t = 6, 13.5 do not share it" in shift.sentence()
+        assert (
+            "in 39 of 41 rows; the rows at t = 6, 13.5 do not share it" in shift.terms().sentence()
+        )
 
 
 def test_a_shift_that_few_rows_share_is_no_cause() -> None:
@@ -265,7 +273,7 @@ def test_an_error_across_the_motion_is_no_shift() -> None:
     shift = judged(scene, exact, Motion({"omega": pushed}, truth.radius))["omega"]
     assert shift is not None
     assert shift.kind is Kind.NONE
-    assert shift.sentence() == "no shift of time explains it"
+    assert shift.terms().sentence() == "no shift of time explains it"
     largest = 1e-8 / max(np.linalg.norm(truth["omega"].astype(float), axis=1))
     assert shift.residual == pytest.approx(largest, rel=1e-6)
     assert abs(shift.time_shift) * np.max(np.linalg.norm(velocity, axis=1)) <= 1e-12
@@ -283,7 +291,7 @@ def test_what_a_shift_leaves_is_told_beside_it() -> None:
         both = late["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
     shift = judged(scene, exact, Motion({"omega": both}, late.radius))["omega"]
     assert shift is not None
-    assert shift.sentence() == "late by 0.0005, constant; 3e-09 remains"
+    assert shift.terms().sentence() == "late by 0.0005, constant; 3e-09 remains"
     # The scale of an error is that of the truth, at its own instants.
     assert shift.residual == pytest.approx(3e-9, rel=0.05)
 

@@ -17,15 +17,16 @@ from hypothesis import strategies as st
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.times import rounded_times
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.precision import LADDER, power_of_two, rung
+from taylor_verify.scenes.precision import power_of_two, rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback

@@ -12,8 +12,8 @@ import pytest
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.verdict import Status
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load

@@ -13,9 +13,10 @@ from trajectories import QUATERNION, columns_at, exact_columns, write_csv
 import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reader import load

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from math import inf
 from typing import Final
 
+from taylor_verify.judge.gates import TRUTH_SHARE
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.verdict import INITIAL, STATES, Status, Verdict
+from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.faults import brief
 from taylor_verify.scenes.positive import positive
 
@@ -16,8 +19,6 @@ Tolerance = float | Mapping[str, float] | None
 Only = str | Collection[str] | None
 
 CONSERVED: Final = "conserved"
-# As the judge has it: a truth wider than this share of a bound cannot decide.
-_TRUTH_SHARE: Final = 16
 
 _MEND: Final = {
     Status.UNDECIDED: "no fault of the solver, and no pass; a tolerance of your own may decide it",
@@ -52,7 +53,7 @@ class Demand:
 
     @property
     def _is_decided(self) -> bool:
-        return self.tolerance is None or self.truth_radius * _TRUTH_SHARE <= self.tolerance
+        return self.tolerance is None or self.truth_radius * TRUTH_SHARE <= self.tolerance
 
 
 def demands(judgement: Judgement, tolerance: Tolerance = None, only: Only = None) -> list[Demand]:

@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from taylor_verify.judge.verdict import Status, Verdict, exit_status
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.expected import Expectation, Expectations, Row, is_extreme, shipped
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.trajectory import Outcome

@@ -15,10 +15,11 @@ from taylor_verify.exact.kirchhoff.general import screws_beside
 from taylor_verify.exact.kirchhoff.screws import Screw
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.carrying import Carrying, carrying
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
@@ -52,7 +53,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "model": scene.model,
         "rung": rung,
         "bits": rung_named(rung).bits,
-        "track": sorted({"omega" if scene.model == "euler" else "impulse"} | scene.track),
+        "track": sorted({MAIN[scene.model]} | scene.track),
         "warnings": list(scene.warnings),
         "body": ellipsoid.told(scene.body) if isinstance(scene.body, ImmersedBody) else [],
         **{name: record.get(name) for name in _FROM_RECORD},
@@ -186,7 +187,7 @@ def _finite(factor: float) -> float | None:
 def _gate(verdict: Verdict) -> dict[str, Any]:
     names = (
         *("quantity", "max", "mean", "final", "at", "unit", "attainable", "bound", "ratio"),
-        *("ratio_at", "because"),
+        *("ratio_at", "because", "reason"),
     )
     row = verdict.row()
     return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
@@ -225,7 +226,7 @@ def _counts(form: Form) -> dict[str, Any]:
 
 def _left_out(scene: Scene) -> list[str]:
     """What the scene does not ask for."""
-    possible = ("attitude",) if scene.model == "euler" else ("attitude", "centre")
+    possible = TRACKED[scene.model]
     found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
     if scene.body.is_free:
         found.append("no moment" if scene.model == "euler" else "no force and no couple")

@@ -18,7 +18,9 @@ from typing import Any, Final
 
 from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.provenance import command, processor, versions
-from taylor_verify.judge.verdict import INITIAL, Status, Verdict
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.reader import read

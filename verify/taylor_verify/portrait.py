@@ -28,6 +28,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.explanation import explanation
 from taylor_verify.parallel import documents
+from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.library import find
@@ -100,8 +101,7 @@ def _comment(text: str) -> list[str]:
 
 
 def _tracked(scene: Scene) -> list[str]:
-    least = "omega" if scene.model == "euler" else "impulse"
-    return [least, *(name for name in ("attitude", "centre") if name in scene.track)]
+    return [MAIN[scene.model], *(name for name in TRACKED[scene.model] if name in scene.track)]
 
 
 # The equations of motion in general form, in LaTeX.

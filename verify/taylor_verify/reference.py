@@ -12,6 +12,7 @@ from typing import Any, Final
 from taylor_verify.exact.printed import decimal_text, document
 from taylor_verify.exact.route import solution
 from taylor_verify.parallel import documents
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin
@@ -19,15 +20,6 @@ from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 
 DIGITS: Final = 32
-
-# The names of a trajectory file; r12 is row 1, column 2.
-_COLUMNS: Final = {
-    "omega": ("w1", "w2", "w3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "attitude": tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)),
-    "centre": ("c1", "c2", "c3"),
-}
 
 
 def reference(scene: Scene) -> dict[str, Any]:
@@ -72,11 +64,11 @@ def _expense(name: str) -> tuple[int, bool]:
 
 
 def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
-    tracked = [quantity for quantity in _COLUMNS if quantity in rows[0]]
+    tracked = [quantity for quantity in COLUMNS if quantity in rows[0]]
     columns = {"t": [row["t"] for row in rows]}
     for quantity in tracked:
         entries = zip(*(_entries(row[quantity]) for row in rows), strict=True)
-        for name, column in zip(_COLUMNS[quantity], entries, strict=True):
+        for name, column in zip(COLUMNS[quantity], entries, strict=True):
             columns[name] = list(column)
     return columns | {"radius": [row["radius"] for row in rows]}
 

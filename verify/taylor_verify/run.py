@@ -34,7 +34,8 @@ def run(
     from taylor_verify.judge.costs import SOLVING, Costs, total
     from taylor_verify.judge.initial import with_initial
     from taylor_verify.judge.judgement import judgement, unjudged
-    from taylor_verify.judge.verdict import Status
+    from taylor_verify.records.reason import Cause
+    from taylor_verify.records.status import Status
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
@@ -45,7 +46,8 @@ def run(
     if isinstance(problem, Trajectory):
         is_refused = problem.outcome is Outcome.NOT_REPRESENTABLE
         status = Status.REFUSED if is_refused else Status.UNAVAILABLE
-        return unjudged(scene, solver, rung, status, problem.detail, problem.outcome)
+        why, cause = problem.detail, Cause.NOT_POSED
+        return unjudged(scene, solver, rung, status, why, cause, problem.outcome)
     costs = Costs()
     began = perf_counter()
     with costs.of(SOLVING):

@@ -20,11 +20,15 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
+from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.folder_lock import Occupied, alone_in
+from taylor_verify.records.json_text import converted
+from taylor_verify.records.record import Record
+from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
     from taylor_verify.job import Job
@@ -50,7 +54,7 @@ class Unfinished:
             return _read(file.read_bytes())
         except OSError:
             return None
-        except (LookupError, TypeError, ValueError):
+        except ValueError:
             _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.scene, file)
             with suppress(OSError):
                 file.unlink()
@@ -100,52 +104,31 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
 # The files.
 
 
+@dataclass(frozen=True)
+class _Stored:
+    """A judgement as it is stored."""
+
+    verdicts: tuple[Verdict, ...]
+    record: Record | None
+    costs: dict[str, float]
+
+
 def _written(judgements: Sequence[Judgement]) -> bytes:
-    rows = [
-        {
-            "verdicts": [vars(verdict) for verdict in judgement.verdicts],
-            "record": judgement.record and judgement.record.document(),
-            "costs": dict(judgement.costs),
-        }
-        for judgement in judgements
-    ]
+    rows = [_Stored(j.verdicts, j.record, dict(j.costs)) for j in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
-    text = json.dumps(rows).encode()
+    text = json.dumps(to_builtins(rows)).encode()
     return _digest(text).encode() + b"\n" + text
 
 
 def _read(content: bytes) -> list[Judgement]:
-    """The judgements as they were; LookupError, TypeError or ValueError for any other content."""
+    """Return the judgements as they were; ValueError for any other content."""
     from taylor_verify.judge.judgement import Judgement
 
     digest, _, text = content.partition(b"\n")
     if digest != _digest(text).encode():
         raise ValueError("expected the digest of the content")
-    return [
-        Judgement(
-            tuple(_verdict(row) for row in judgement["verdicts"]),
-            None if judgement["record"] is None else _record(judgement["record"]),
-            costs=judgement["costs"],
-        )
-        for judgement in json.loads(text)
-    ]
-
-
-def _verdict(row: dict[str, Any]) -> Any:
-    from taylor_verify.judge.verdict import Status, Verdict
-
-    return Verdict(**{**row, "verdict": Status(row["verdict"])})
-
-
-def _record(document: dict[str, Any]) -> Any:
-    from taylor_verify.judge.record import GateRecord, Record
-
-    gates = tuple(GateRecord(**_with_tuples(gate)) for gate in document["gates"])
-    return Record(**{**_with_tuples(document), "gates": gates})
-
-
-def _with_tuples(document: dict[str, Any]) -> dict[str, Any]:
-    return {k: tuple(v) if isinstance(v, list) else v for k, v in document.items()}
+    rows = converted(json.loads(text), tuple[_Stored, ...])
+    return [Judgement(row.verdicts, row.record, costs=row.costs) for row in rows]
 
 
 # What a judgement depends on.

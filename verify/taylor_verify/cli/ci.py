@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from taylor_verify.expected import Held
     from taylor_verify.judge import baseline
     from taylor_verify.judge.rounding_class import Departure
-    from taylor_verify.judge.verdict import Status, Verdict
     from taylor_verify.publish.ci.case import Remark
+    from taylor_verify.records.status import Status
+    from taylor_verify.records.verdict import Verdict
 
 # Where GitHub's runner wants the summary of a step.
 _SUMMARY = "GITHUB_STEP_SUMMARY"
@@ -145,8 +146,8 @@ def _unexpected(expected: Held, verdicts: Sequence[Verdict]) -> list[Remark]:
 
     Where the command is red because nothing was judged, every row is undecided.
     """
-    from taylor_verify.judge.verdict import Status
     from taylor_verify.publish.ci.case import Remark
+    from taylor_verify.records.status import Status
 
     solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in verdicts}
     mismatches = [
@@ -211,7 +212,7 @@ def _nothing_shared(before: Iterable[Verdict], now: Iterable[Verdict]) -> str:
 
 
 def _remarks(held: baseline.Held, rows: Iterable[Verdict]) -> list[Remark]:
-    from taylor_verify.judge.verdict import Status
+    from taylor_verify.records.status import Status
 
     # A departure names its row by scene, rung and quantity: a command has one solver.
     owners = {(v.scene, v.rung, v.quantity): (v.solver, v.setting) for v in rows}

@@ -11,20 +11,18 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
-from taylor_verify.judge.verdict import STATES
+from taylor_verify.records.json_text import converted
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.reason import Reason
+from taylor_verify.records.status import gravest
 
 if TYPE_CHECKING:
     from taylor_verify.expected import Held
     from taylor_verify.judge.answer import FileJudgement
-    from taylor_verify.judge.verdict import Verdict
+    from taylor_verify.records.verdict import Verdict
 
 _ROOMY = 120
-# What a reason is made of.
-_RULE = "10 x attainable"
-_AS_A_SHIFT = "; as a shift of time: "
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
-# The worst first: what a line that stands for several verdicts is called.
-_GRAVITY = ("fail", "undecided", "refused", "vacuous", "unavailable", "pass")
 
 # The unit of time is the scene's, whatever that is.
 _UNITS = {
@@ -50,7 +48,7 @@ def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) ->
 
 def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
     """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
-    from taylor_verify.judge.verdict import summary
+    from taylor_verify.records.verdict import summary
 
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
@@ -105,7 +103,7 @@ def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
 
 
 def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
-    status = _status(min((v.verdict.value for v in group), key=_GRAVITY.index))
+    status = _status(gravest(v.verdict for v in group))
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
@@ -140,16 +138,16 @@ def _ratio(verdict: Verdict) -> float:
 def _told(verdict: Verdict) -> str:
     if verdict.at is None:
         return verdict.because
-    return f"{_error(verdict.row())}; bound = {verdict.because}"
+    return f"{'; '.join(_error(verdict.row()))}; bound = {verdict.because}"
 
 
-def _error(gate: Mapping[str, Any]) -> str:
-    """One gate's numbers, from a row or an explanation: null is an error that is not finite."""
+def _error(gate: Mapping[str, Any]) -> tuple[str, str]:
+    """Return the error and its ratio of a gate, from a row or an explanation; null is not finite."""
     size, bound = _figure(gate["max"]), _figure(gate["bound"])
     ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
     return (
-        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} "
-        f"is allowed; largest error/attainable {ratio} at t = {gate['ratio_at']:g}"
+        f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} is allowed",
+        f"largest error/attainable {ratio} at t = {gate['ratio_at']:g}",
     )
 
 
@@ -162,7 +160,7 @@ def _status(status: str) -> Text:
 
 def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
     """What the file is, what its conventions are, a line for each quantity, and every reason."""
-    from taylor_verify.judge.verdict import summary
+    from taylor_verify.records.verdict import summary
 
     console = new_console()
     print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
@@ -217,18 +215,16 @@ def _print_conventions(console: Console, judged: FileJudgement) -> None:
 
 
 def _print_reason(console: Console, verdict: Verdict) -> None:
-    """What is wrong, where, what a shift of time makes of it, and why so much is allowed."""
+    """Print the conclusion, the error and its place, its shift of time, and the arithmetic of the bound."""
+    reason = verdict.reason
+    if reason.conclusion:
+        print_indented(console, "    ", reason.conclusion)
     if verdict.at is None:
-        print_indented(console, "    ", verdict.because)
         return
-    said, rule, why = verdict.because.rpartition(_RULE)
-    bound, meaning, shift = (rule + why).partition(_AS_A_SHIFT)
-    if said:
-        print_indented(console, "    ", said.removesuffix("; "))
-    print_indented(console, "    ", _error(verdict.row()))
-    if meaning:
-        print_indented(console, "    ", f"{meaning.removeprefix('; ')}{shift}")
-    print_indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {bound}")
+    print_indented(console, "    ", "; ".join(_error(verdict.row())))
+    if reason.meaning:
+        print_indented(console, "    ", reason.meaning)
+    print_indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {reason.allowance}")
 
 
 def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
@@ -374,8 +370,8 @@ def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
     print_line(console)
     print_line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
     if gate["at"] is not None:
-        for part in _error(gate).split("; "):
+        for part in _error(gate):
             print_indented(console, "    ", part)
-    because = [part.strip() for part in gate["because"].split(";")]
+    because = converted(gate["reason"], Reason).parts()
     for i, part in enumerate(because):
         print_indented(console, "    because " if i == 0 else "            ", part)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.verdict import Verdict
+    from taylor_verify.records.verdict import Verdict
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.file import TrajectoryFile
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
     from taylor_verify.cli.terminal import names_text
+    from taylor_verify.records.quantities import LADDER
     from taylor_verify.scenes.library import EXTREMES, names
-    from taylor_verify.scenes.precision import LADDER
     from taylor_verify.scenes.reader import load
     from taylor_verify.solvers.registry import NAMES
 
@@ -38,9 +38,9 @@ def list_all(options: argparse.Namespace) -> Answer:
 
 def run(options: argparse.Namespace) -> Answer:
     """The whole chain for some scenes, or for the standard set."""
+    from taylor_verify.records.quantities import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
-    from taylor_verify.scenes.precision import LADDER
 
     rungs = known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
     _known_solver(options.solver)
@@ -64,7 +64,7 @@ def _run(
     from taylor_verify.cli.ci import outputs, tell
     from taylor_verify.cli.terminal import verdicts_text
     from taylor_verify.expected import hold
-    from taylor_verify.judge.verdict import summary
+    from taylor_verify.records.verdict import summary
 
     published = _published(options, rungs) if options.against is not None else None
     asked = outputs(options)
@@ -205,7 +205,7 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.progress import working
     from taylor_verify.cli.terminal import check_text
     from taylor_verify.judge.answer import judge_file
-    from taylor_verify.judge.verdict import exit_status
+    from taylor_verify.records.verdict import exit_status
     from taylor_verify.scenes.precision import rung
 
     (name,) = known_rungs([options.rung])

@@ -9,7 +9,7 @@ from typing import Any, Final
 from taylor_verify.controls.defect import Defect
 from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.judge.gates import FACTOR
-from taylor_verify.judge.verdict import Verdict
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.solvers.solver import Solver
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
+from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
@@ -88,7 +89,7 @@ def _impulses(scene: Scene, body: ImmersedBody, start: Impulse) -> Input:
         return replace(scene, initial=replace(start, linear=there[:3], angular=there[3:]))
 
     units = _block_units(z, [body.linear, body.angular], body.energy_matrix)
-    return Input("momentum", ("x1", "x2", "x3", "y1", "y2", "y3"), units, moved)
+    return Input("momentum", IMPULSES, units, moved)
 
 
 def _omega(scene: Scene, spin: Spin) -> Input:

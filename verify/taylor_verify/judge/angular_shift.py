@@ -18,7 +18,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import largest, norms
 from taylor_verify.judge.inputs import angular_velocity
-from taylor_verify.judge.shift import LEAVES, Kind, strays_from
+from taylor_verify.judge.shift import LEAVES, strays_from
+from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene

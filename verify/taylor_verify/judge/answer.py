@@ -26,12 +26,15 @@ from taylor_verify.judge.inputs import input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
-from taylor_verify.judge.verdict import Status, Verdict, summary
 from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.records.reason import Cause
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import GROUPS, Recorded, TrajectoryFile
+from taylor_verify.solvers.file import Recorded, TrajectoryFile
 from taylor_verify.solvers.values import held
 
 Array = np.ndarray[Any, Any]
@@ -45,7 +48,7 @@ _TELLING_BITS: Final = 18
 _MOST_SPANS: Final = 100
 _MODELS: Final = {
     "euler": ("omega", "quaternion", "attitude"),
-    "kirchhoff": tuple(GROUPS),
+    "kirchhoff": tuple(COLUMNS),
 }
 
 
@@ -80,7 +83,7 @@ class FileJudgement(Judgement):
             "file": {
                 "name": self.file.name,
                 "rows": len(self.file.times),
-                "columns": ["t", *(c for group in self.file.groups for c in GROUPS[group])],
+                "columns": ["t", *(c for group in self.file.groups for c in COLUMNS[group])],
                 "notes": list(self.notes),
             },
         }
@@ -129,9 +132,9 @@ def judge_file(
             complete = complete_verdict(scene, file.name, rung, lack, partial)
             judged = replace(judged, verdicts=(*judged.verdicts, complete))
     except NotRepresentable as reason:
-        judged = _alone(scene, file, rung, Status.REFUSED, str(reason))
+        judged = _alone(scene, file, rung, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
-        judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt))
+        judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
     if "omega" in failed and (cause := gyroscopic_cause(compared, scene, rung, found)):
         notes += (cause,)
@@ -149,13 +152,13 @@ def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Convention
             f"{found.world.words}; as it stands the file asks for times far beyond the scene, which has "
             "no closed form, and they are not computed: the rows near the start are wrong already"
         )
-        return _alone(scene, file, rung, Status.FAIL, why)
+        return _alone(scene, file, rung, Status.FAIL, why, Cause.TOO_FAR)
     if is_far(scene, answer.times, _MOST_SPANS):
         why = (
             f"the file goes more than {_MOST_SPANS} times as far as the scene, which has no closed "
             "form: its exact motion is not computed up to there"
         )
-        return _alone(scene, file, rung, Status.UNDECIDED, why)
+        return _alone(scene, file, rung, Status.UNDECIDED, why, Cause.TOO_FAR)
     sides = [_side(part, rung, file.name) for part in answer.sides()]
     unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
     if unfinished is not None:
@@ -163,9 +166,11 @@ def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Convention
     return _united(sides, file, float(scene.clock.start))
 
 
-def _alone(scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str) -> Judgement:
-    """One row for a file that was not compared."""
-    return unjudged(scene, Recorded({}, setting=file.name), rung, status, why)
+def _alone(
+    scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: str, cause: Cause
+) -> Judgement:
+    """Return one row for a file that was not compared."""
+    return unjudged(scene, Recorded({}, setting=file.name), rung, status, why, cause)
 
 
 # What can be compared, and what is said of the rest.
@@ -174,16 +179,16 @@ def _alone(scene: Scene, file: TrajectoryFile, rung: Rung, status: Status, why: 
 def _comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
     """The groups that the scene's motion has; what its model does not have is refused."""
     foreign = [name for name in file.groups if name not in _MODELS[scene.model]]
-    known = " ".join(" ".join(GROUPS[name]) for name in _MODELS[scene.model])
+    known = " ".join(" ".join(COLUMNS[name]) for name in _MODELS[scene.model])
     faults = [
         f"expected columns of a scene of model {scene.model} ({known}), got "
-        f"{' '.join(GROUPS[name])} @ {file.name}"
+        f"{' '.join(COLUMNS[name])} @ {file.name}"
         for name in foreign
     ]
     groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
     if not groups and not faults:
-        wanted = " or ".join(" ".join(GROUPS[name]) for name in _wanted(scene))
-        got = " ".join(n for name in file.groups for n in GROUPS[name]) or "t alone"
+        wanted = " or ".join(" ".join(COLUMNS[name]) for name in _wanted(scene))
+        got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
         faults.append(f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name}")
     if faults:
         raise Refused(faults)
@@ -196,9 +201,8 @@ def _is_known(group: str, scene: Scene) -> bool:
 
 
 def _wanted(scene: Scene) -> list[str]:
-    main = ["omega"] if scene.model == "euler" else ["linear_impulse", "angular_impulse"]
     return [
-        *main,
+        *MOMENTA[scene.model],
         *(["quaternion"] if "attitude" in scene.track else []),
         *(["centre"] if "centre" in scene.track else []),
     ]
@@ -212,10 +216,10 @@ def _tracked(groups: Sequence[str]) -> frozenset[str]:
 def _notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
     for name in file.groups:
         if name not in groups:
-            yield f"{' '.join(GROUPS[name])} not compared: {scene.name} does not track the {_noun(name)}"
+            yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {_noun(name)}"
     for name in _missing(groups, scene):
         other = " or r11 ... r33" if name == "quaternion" else ""
-        columns = " ".join(GROUPS[name])
+        columns = " ".join(COLUMNS[name])
         yield f"the {_noun(name)} is not judged: the file has no {columns}{other}"
 
 
@@ -371,11 +375,11 @@ def _verdict(sides: Sequence[Graded], file: TrajectoryFile) -> Verdict:
 
 def _flaw(file: TrajectoryFile, quantity: str) -> str:
     """Where the first value of a quantity stands that is no finite number; empty if there is none."""
-    groups = _MADE_OF.get(quantity, tuple(GROUPS))
+    groups = _MADE_OF.get(quantity, tuple(COLUMNS))
     for row, time in enumerate(file.times):
         for group in groups:
             values = file.groups[group][row] if group in file.groups else ()
-            for name, value in zip(GROUPS[group], values, strict=False):
+            for name, value in zip(COLUMNS[group], values, strict=False):
                 if not isinstance(value, Fraction):
                     return f"{name} is {value} in row {row + 1}, t = {float(time):g}"
     return ""

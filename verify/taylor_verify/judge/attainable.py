@@ -30,6 +30,7 @@ from taylor_verify.exact.looks import chosen, evenly
 from taylor_verify.exact.tangent import Flow
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.magnitude import roundings
+from taylor_verify.records.reason import Carried, RoundoffFloor
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -86,18 +87,13 @@ class Floor:
         drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
         return self._at_samples(drift, self.times[nodes])
 
-    def reason(self, attainable: Floats, sample: int, carried: str) -> str:
-        """The arithmetic of the floor at one sample, in one sentence."""
+    def terms(self, attainable: Floats, sample: int, carried: Carried) -> RoundoffFloor:
+        """Return the terms of the floor at one sample."""
         reached = self._path_times() <= self.times[sample]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         floor_there = float(attainable[sample])
         growth = floor_there / (self.unit_roundoff * steps**0.5)
-        what = "the orbit's transition matrix" if carried == "orbit" else "the gradient"
-        return (
-            f"attainable = u sqrt(N) x growth = {self.unit_roundoff:.2g} x sqrt({steps}) x "
-            f"{growth:.3g} = {floor_there:.2g}: in each step one rounding of every component x_i, "
-            f"u (|x_i| + h S_i) with S_i the terms of its rate in magnitude, carried by {what}"
-        )
+        return RoundoffFloor(carried, floor_there, self.unit_roundoff, float(steps), growth)
 
     def worst(self) -> float:
         """The largest attainable error of a momentum, relative to its own size."""

@@ -32,6 +32,7 @@ from mpmath import mp
 from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
+from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import in_mpfr, precision, to_mpf, to_mpfr
@@ -47,11 +48,6 @@ _NODES_A_PERIOD: Final = 6
 _LEAST_NODES, _MOST_NODES = 64, 2000
 # Of the motion at the nodes: norms are wanted to a digit or two.
 _DIGITS: Final = 12
-_MOMENTA: Final = {"euler": ("omega",), "kirchhoff": ("linear_impulse", "angular_impulse")}
-
-BECAUSE: Final = (
-    "and as many roundings of the clock of the loads, each of which does work ever after"
-)
 
 
 @dataclass(frozen=True)
@@ -178,12 +174,12 @@ def _free(scene: Scene, rows: Column) -> Column:
     found = rates(free, Motion(_parts(scene, rows), zeros))
     columns = [
         found.velocity[name] * np.array([mp.ldexp(1, found.units[name] - found.time)], dtype=object)
-        for name in _MOMENTA[scene.model]
+        for name in MOMENTA[scene.model]
     ]
     joined: Column = np.concatenate(columns, axis=1)
     return joined
 
 
 def _parts(scene: Scene, rows: Column) -> dict[str, Column]:
-    names = _MOMENTA[scene.model]
+    names = MOMENTA[scene.model]
     return {name: rows[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}

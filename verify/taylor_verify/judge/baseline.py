@@ -24,14 +24,12 @@ A baseline excuses nothing: a gate that fails does so though it failed before.
 
 from __future__ import annotations
 
-import json
 import math
-import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, NoReturn
+from typing import Final
 
 from taylor_verify.judge.rounding_class import (
     ERRORS,
@@ -44,14 +42,14 @@ from taylor_verify.judge.rounding_class import (
     paired,
     told,
 )
-from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
-from taylor_verify.judge.verdict import COMPLETE, Status, Verdict, exit_status
+from taylor_verify.records.json_text import parsed
+from taylor_verify.records.quantities import COMPLETE, UNIT_QUATERNION
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.limit import Limit
 from taylor_verify.scenes.regular_file import read_bytes
 
-_TEXTS: Final = ("scene", "solver", "rung", "setting", "quantity", "outcome", "unit")
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
-_COUNTS: Final = ("steps", "evaluations")
 # From the best: 0 all passed, 3 nothing shown, 1 failed.
 _GRADES: Final = (0, 3, 1)
 _MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
@@ -170,29 +168,43 @@ def _row(verdict: Verdict, expected: str, got: str) -> Departure:
 
 
 def load(file: Path | str) -> tuple[Verdict, ...]:
-    """The verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
+    """Return the verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
 
     Raises scenes.faults.Refused for a file that cannot be read, and ValueError, with what was expected
     and where, for one that holds something else: a baseline that is half understood would let all pass.
     """
     content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:
-        document = _parsed(content)
-        rows = document.get("verdicts") if isinstance(document, Mapping) else None
-        if not isinstance(rows, list):
-            raise ValueError('expected an object with "verdicts", a list')
-        found = tuple(_read(row, f"verdicts[{i}]") for i, row in enumerate(rows))
-        _check_once(found)
+        rows = parsed(content, _Rows).verdicts
+        for i, verdict in enumerate(rows):
+            _check(verdict, f"verdicts[{i}]")
+        _check_once(rows)
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
-    return found
+    return rows
 
 
-def _parsed(content: bytes) -> Any:
-    try:
-        return json.loads(content.decode(), parse_constant=_no_number)
-    except RecursionError:
-        raise ValueError("expected a JSON document, got brackets nested too deeply") from None
+@dataclass(frozen=True)
+class _Rows:
+    """The part of a document that a baseline is made of."""
+
+    verdicts: tuple[Verdict, ...]
+
+
+def _check(verdict: Verdict, place: str) -> None:
+    """Refuse a row whose numbers cannot be those of a verdict, or that nothing can be compared with."""
+    if not isinstance(verdict.provenance.get("scene"), str):
+        raise ValueError(
+            f"expected the digest of the scene's text, got none @ {place}.provenance.scene"
+        )
+    for name in _SIZES:
+        value = getattr(verdict, name)
+        if value is None and verdict.verdict is Status.PASS:
+            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
+        if value is not None and not value >= 0:
+            raise ValueError(
+                f"expected a number that is not negative, got {value!r} @ {place}.{name}"
+            )
 
 
 def _check_once(found: Iterable[Verdict]) -> None:
@@ -200,73 +212,3 @@ def _check_once(found: Iterable[Verdict]) -> None:
     twice = [" ".join(filter(None, key)) for key, count in rows.items() if count > 1]
     if twice:
         raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
-
-
-def _no_number(text: str) -> NoReturn:
-    raise ValueError(f"expected a finite number or null, got {text}")
-
-
-def _read(row: Any, place: str) -> Verdict:
-    """A row; keys that this version does not know are left out."""
-    if not isinstance(row, Mapping):
-        raise ValueError(f"expected a row, got {row!r} @ {place}")
-    sizes = {name: _size(row, name, place) for name in _SIZES}
-    fields: dict[str, Any] = {
-        **{name: _text(row, name, place) for name in _TEXTS},
-        **{name: _count(row, name, place) for name in _COUNTS},
-        **sizes,
-        "verdict": _status(row, place),
-        "at": _number(row, "at", place),
-        "provenance": {"scene": _digest(row, place)},
-    }
-    found = Verdict(**fields)
-    if found.verdict is Status.PASS and None in sizes.values():
-        raise ValueError(f"expected numbers of a row that passed, got null @ {place}")
-    return found
-
-
-def _text(row: Mapping[str, Any], name: str, place: str) -> str:
-    value = row.get(name)
-    if not isinstance(value, str):
-        raise ValueError(f"expected a text, got {value!r} @ {place}.{name}")
-    return value
-
-
-def _number(row: Mapping[str, Any], name: str, place: str) -> float | None:
-    value = row.get(name)
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"expected a number or null, got {value!r} @ {place}.{name}")
-    if not abs(value) <= sys.float_info.max:  # 1e999 is read as infinite
-        raise ValueError(f"expected a finite number or null, got {value!r:.60} @ {place}.{name}")
-    return float(value)
-
-
-def _size(row: Mapping[str, Any], name: str, place: str) -> float | None:
-    value = _number(row, name, place)
-    if value is not None and not value >= 0:
-        raise ValueError(f"expected a number that is not negative, got {value!r} @ {place}.{name}")
-    return value
-
-
-def _count(row: Mapping[str, Any], name: str, place: str) -> int:
-    value = row.get(name)
-    if isinstance(value, bool) or not isinstance(value, int) or not value >= 0:
-        raise ValueError(f"expected a count, got {value!r} @ {place}.{name}")
-    return value
-
-
-def _status(row: Mapping[str, Any], place: str) -> Status:
-    value = row.get("verdict")
-    if value not in list(Status):
-        known = ", ".join(Status)
-        raise ValueError(f"expected one of {known}, got {value!r} @ {place}.verdict")
-    return Status(value)
-
-
-def _digest(row: Mapping[str, Any], place: str) -> str:
-    provenance = row.get("provenance")
-    if not isinstance(provenance, Mapping):
-        raise ValueError(f"expected an object, got {provenance!r} @ {place}.provenance")
-    return _text(provenance, "scene", f"{place}.provenance")

@@ -13,7 +13,10 @@ from itertools import pairwise
 from typing import Final
 
 from taylor_verify.judge.judgement import unjudged
-from taylor_verify.judge.verdict import COMPLETE, Status, Verdict
+from taylor_verify.records.quantities import COMPLETE
+from taylor_verify.records.reason import Cause
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import Recorded
@@ -93,7 +96,9 @@ def complete_verdict(
     status = Status.VACUOUS if partial else Status.UNDECIDED
     whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
     asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
-    because = f"not judged: {', '.join(lack)}; {whole}; {asked}"
+    said = f"not judged: {', '.join(lack)}; {whole}; {asked}"
     solver = Recorded({}, setting=file)
-    (row,) = unjudged(scene, solver, rung, status, because, Outcome.FINISHED).verdicts
+    (row,) = unjudged(
+        scene, solver, rung, status, said, Cause.INCOMPLETE, Outcome.FINISHED
+    ).verdicts
     return replace(row, quantity=COMPLETE, roundoff=float(rung.unit_roundoff))

@@ -19,8 +19,9 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.judge.judgement import judgement
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.positive import positive
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named

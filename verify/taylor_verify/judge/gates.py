@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from taylor_verify.judge.errors import Errors, Floats
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.reason import Cause, Reason
+from taylor_verify.records.status import Status
 
 # The floor is the root mean square of a random sum. Ten times it leaves room for a solver that
 # rounds a few times a step and for the tail of the distribution, and no room for one step in a
@@ -21,38 +22,40 @@ WIDENING = 10
 # And no more than a processor can do: a step is some dozens of dependent operations.
 STEPS_PER_SECOND = 10**8
 # A truth wider than this share of a bound cannot judge against it.
-_TRUTH_SHARE = 16
+TRUTH_SHARE = 16
 # At an error of one the answer zero would do as well: such a bound forbids nothing.
 _VACUOUS = 1.0
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What a gate found: the status, the sample that decided and the numbers there."""
+    """The finding of a gate: the status, the sample that decided and the numbers there."""
 
     status: Status
     worst: int
     ratio: float
     ratio_at: int
-    because: str
+    reason: Reason
 
 
-def judge(errors: Errors, attainable: Floats, reason: str) -> Finding:
-    """Hold every sample's error against FACTOR times the attainable one.
+def judge(errors: Errors, attainable: Floats, terms: Reason) -> Finding:
+    """Compare every sample's error with FACTOR times the attainable one.
 
-    The ratio is the largest of the samples that are asked, or of all if none is.
+    The ratio is the largest of the samples that are asked, or of all if none is. ``terms`` say what is
+    attainable; the finding adds the factor, and a remark where the numbers do not say everything.
     """
     bounds = FACTOR * attainable
     worst = index_of_largest(errors.doubles)
     ratios = _ratios(errors.doubles, attainable)
     ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
     status = _status(errors, bounds)
-    because = f"{FACTOR} x attainable; {reason}"
+    reason = replace(terms, factor=float(FACTOR))
     if status is Status.VACUOUS:
-        because = f"{_vacuous(errors, bounds)}; {because}"
+        reason = reason.with_remark(Cause.VACUOUS, _vacuous(errors, bounds))
     if status is Status.UNDECIDED:
-        because = f"the truth is wider than 1/{_TRUTH_SHARE} of the bound; {because}"
-    return Finding(status, worst, float(ratios[ratio_at]), ratio_at, because)
+        wide = f"the truth is wider than 1/{TRUTH_SHARE} of the bound"
+        reason = reason.with_remark(Cause.WIDE_TRUTH, wide)
+    return Finding(status, worst, float(ratios[ratio_at]), ratio_at, reason)
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:
@@ -63,13 +66,13 @@ def _status(errors: Errors, bounds: Floats) -> Status:
     if asked < len(bounds):
         # What the floor does not excuse still fails: the samples before it reached the motion.
         return Status.VACUOUS if within[:asked].all() else Status.FAIL
-    if not (errors.widths * _TRUTH_SHARE <= bounds).all():
+    if not (errors.widths * TRUTH_SHARE <= bounds).all():
         return Status.UNDECIDED
     return Status.PASS if within.all() else Status.FAIL
 
 
 def _asked(bounds: Floats) -> int:
-    """How many samples the gate asks: those before the bound reaches the size of the motion.
+    """Return the number of samples that the gate asks: those before its bound reaches the motion's size.
 
     A floor may fall again afterwards, as the orbit's own condition does after a flip. But it is that
     of small errors, and one as large as the motion has left the orbit: nothing brings it back.
@@ -79,7 +82,7 @@ def _asked(bounds: Floats) -> int:
 
 
 def _vacuous(errors: Errors, bounds: Floats) -> str:
-    """Why the gate forbids nothing, and what is gated in its place."""
+    """Return why the gate forbids nothing, and what is gated in its place."""
     open_at = f"the bound reaches {float(np.max(bounds)):.2g}, and the answer zero is off by 1"
     instead = "; only the conserved quantities are gated there" if errors.is_state else ""
     return f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"

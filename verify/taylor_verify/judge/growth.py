@@ -22,7 +22,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.status import Status
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 

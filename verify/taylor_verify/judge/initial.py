@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 from mpmath import mp, mpf
@@ -17,10 +16,9 @@ from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.regraded import Graded
-from taylor_verify.judge.verdict import INITIAL, STATES, Verdict
-
-_RUN: Final = "one rounding of each component of the start on the rung"
-_FILE: Final = "a rounding of the input and one of the row"
+from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
+from taylor_verify.records.verdict import Verdict
 
 
 def with_initial(judgement: Judgement, start: float) -> Judgement:
@@ -30,19 +28,21 @@ def with_initial(judgement: Judgement, start: float) -> Judgement:
         return judgement
     times = np.array(record.times)
     gates = [
-        Graded.of(verdict, times, np.array(gate.errors), np.array(gate.attainable), "")
+        Graded.of(verdict, times, np.array(gate.errors), np.array(gate.attainable), verdict.reason)
         for verdict, gate in zip(judgement.verdicts, record.gates, strict=True)
     ]
-    initial = initial_verdict(gates, start, _RUN)
+    initial = initial_verdict(gates, start, Carried.START)
     if initial is None:
         return judgement
     return replace(judgement, verdicts=(initial, *judgement.verdicts))
 
 
-def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE) -> Verdict | None:
-    """The verdict on the row at the start; None where there is no such row.
+def initial_verdict(
+    gates: Sequence[Graded], start: float, carried: Carried = Carried.ROW
+) -> Verdict | None:
+    """Return the verdict on the row at the start; None where there is no such row.
 
-    ``allowed`` says in words what is attainable there.
+    ``carried`` tells the start of a run from that of a file, which has been rounded once more.
     """
     starts = [
         (gate, int(k))
@@ -52,7 +52,7 @@ def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE)
     ]
     if not starts:
         return None
-    findings = [_finding(gate, k, allowed) for gate, k in starts]
+    findings = [_finding(gate, k, carried) for gate, k in starts]
     worst = index_of_largest(np.array([finding.ratio for finding in findings]))
     (gate, k), finding = starts[worst], findings[worst]
     error, attainable = float(gate.errors[k]), float(gate.attainable[k])
@@ -72,7 +72,7 @@ def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE)
         final=error,
         at=start,
         bound=FACTOR * attainable,
-        because=f"{said}; {finding.because}",
+        reason=finding.reason.with_remark(Cause.START, said),
         attainable=attainable,
         ratio=finding.ratio,
         ratio_at=start,
@@ -84,8 +84,9 @@ def initial_verdict(gates: Sequence[Graded], start: float, allowed: str = _FILE)
     )
 
 
-def _finding(gate: Graded, k: int, allowed: str) -> Finding:
+def _finding(gate: Graded, k: int, carried: Carried) -> Finding:
     error = np.array([mpf(float(gate.errors[k]))], dtype=object)
     width = np.array([mp.inf if gate.is_doubtful else mp.zero], dtype=object)
     row = Errors(gate.verdict.quantity, gate.verdict.unit, error, width, {}, is_state=True)
-    return judge(row, gate.attainable[k : k + 1], allowed)
+    floor = RoundoffFloor(carried, float(gate.attainable[k]))
+    return judge(row, gate.attainable[k : k + 1], Reason(floor=floor))

@@ -14,18 +14,21 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.attainable import Floats, Floor, floor
-from taylor_verify.judge.balances import BECAUSE, ClockWork, clock_work
+from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import Errors, state_errors
 from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.judge.record import GateRecord, Record
-from taylor_verify.judge.shift import Kind, Shift, time_shifts
+from taylor_verify.judge.shift import Shift, time_shifts
 from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.unit_quaternion import unit_quaternion
-from taylor_verify.judge.verdict import Status, Verdict, exit_status
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import MAIN
+from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
+from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.mpfr import in_mpfr
 from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
@@ -123,20 +126,22 @@ def judgement(
     main = main_quantity(problem.scene)
     if trajectory.outcome is not Outcome.FINISHED:
         status = Status.UNAVAILABLE if trajectory.outcome.is_unavailable else Status.FAIL
-        return Judgement((run.verdict(main, status, because=_unfinished(trajectory)),), None)
+        return Judgement((run.verdict(main, status, reason=_unfinished(trajectory)),), None)
     exact = solution(problem.given)
     try:
         steps = count_steps(problem, solver, trajectory.steps, seconds)
         return _compare(replace(run, steps=steps), exact)
     except Unsettled as doubt:
-        return Judgement((run.verdict(main, Status.UNDECIDED, because=str(doubt)),), None)
+        reason = stated(Cause.NO_TRUTH, str(doubt))
+        return Judgement((run.verdict(main, Status.UNDECIDED, reason=reason),), None)
 
 
-def _unfinished(trajectory: Trajectory) -> str:
+def _unfinished(trajectory: Trajectory) -> Reason:
     if trajectory.outcome.is_unavailable:
-        return str(trajectory.detail)
+        return stated(Cause.UNFINISHED, str(trajectory.detail))
     detail = f" ({trajectory.detail})" if trajectory.detail else ""
-    return f"a run that did not finish is not scored: it {trajectory.outcome.value}{detail}"
+    text = f"a run that did not finish is not scored: it {trajectory.outcome.value}{detail}"
+    return stated(Cause.UNFINISHED, text)
 
 
 def _compare(run: _Run, exact: Solution) -> Judgement:
@@ -184,13 +189,12 @@ Gated = tuple[Verdict, GateRecord]
 
 def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated:
     attainable = base.of_state(errors)
-    finding = judge(errors, attainable, _reason(run, base, errors, attainable, "orbit"))
+    finding = judge(errors, attainable, _reason(run, base, errors, attainable, Carried.ORBIT))
     if shift is None:
         return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
     passed = finding.status is Status.PASS
     if not passed:
-        meaning = f"as a shift of time: {shift.sentence()}"
-        finding = replace(finding, because=f"{finding.because}; {meaning}")
+        finding = replace(finding, reason=replace(finding.reason, shift=shift.terms()))
     verdict = replace(
         _verdict(run, errors, attainable, finding),
         time_shift=shift.time_shift,
@@ -220,17 +224,21 @@ def _conserved(
         steps = max(run.steps.counted, len(base.times))
         roundoff = run.problem.rung.unit_roundoff
         attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
-    loads = f", {BECAUSE}" if work else ""
-    reason = _reason(run, base, errors, attainable, "gradient", loads)
+    reason = _reason(run, base, errors, attainable, Carried.GRADIENT, work is not None)
     finding = judge(errors, attainable, reason)
     return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
 
 
 def _reason(
-    run: _Run, base: Floor, errors: Errors, attainable: Floats, carried: str, loads: str = ""
-) -> str:
-    told = f"{base.reason(attainable, index_of_largest(errors.doubles), carried)}{loads}"
-    return f"{told}; {run.steps.because}" if run.steps.because else told
+    run: _Run,
+    base: Floor,
+    errors: Errors,
+    attainable: Floats,
+    carried: Carried,
+    clock_work: bool = False,
+) -> Reason:
+    terms = base.terms(attainable, index_of_largest(errors.doubles), carried)
+    return Reason(floor=replace(terms, clock_work=clock_work), claim=run.steps.claim)
 
 
 def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
@@ -245,7 +253,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         at=float(instants[worst]),
         unit=errors.unit,
         bound=float(FACTOR * attainable[worst]),
-        because=finding.because,
+        reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,
         ratio_at=float(instants[finding.ratio_at]),
@@ -317,6 +325,7 @@ def unjudged(
     rung: Rung,
     status: Status,
     why: str,
+    cause: Cause,
     outcome: Outcome = Outcome.NOT_REPRESENTABLE,
 ) -> Judgement:
     """The judgement of a run that could not begin."""
@@ -328,11 +337,12 @@ def unjudged(
         quantity=main_quantity(scene),
         verdict=status,
         outcome=outcome.value,
-        because=str(why),
+        reason=stated(cause, str(why)),
         provenance=provenance(scene.digest),
     )
     return Judgement((verdict,), None)
 
 
 def main_quantity(scene: Scene) -> str:
-    return "omega" if scene.model == "euler" else "impulse"
+    """Return the quantity that every run of the scene's model has."""
+    return MAIN[scene.model]

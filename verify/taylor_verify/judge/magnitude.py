@@ -22,6 +22,7 @@ import numpy as np
 from taylor_verify.exact.gathering import Path
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -37,9 +38,7 @@ _WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
 _COMPONENTS: Final = {
     "momentum": ("H1", "H2", "H3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "centre": ("c1", "c2", "c3"),
+    **{name: COLUMNS[name] for name in ("linear_impulse", "angular_impulse", "centre")},
 }
 
 

@@ -23,11 +23,11 @@ from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
 from taylor_verify.judge.inputs import angular_velocity
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.judge.record import GateRecord
-from taylor_verify.judge.shift import Kind
-from taylor_verify.judge.unit_quaternion import UNIT_QUATERNION
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
+from taylor_verify.records.record import GateRecord
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.solvers.file import Recorded
@@ -101,8 +101,8 @@ def _states_apart(
             if errors.quantity in ("attitude", "centre"):
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
-                reason = base.reason(attainable, worst, "orbit")
-                rows.append(_row(problem, solver, errors, attainable, reason))
+                terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
+                rows.append(_row(problem, solver, errors, attainable, terms))
     return rows
 
 
@@ -123,11 +123,8 @@ def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gate
         exact = _omega(problem, truth)
         values = norms(solver.quantities["omega"] - exact.rows) / exact.scale
         errors = Errors("omega", "max|omega|", values, truth.radius, {"omega": exact.scale})
-        reason = (
-            "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), and "
-            "one rounding of Omega itself"
-        )
-        row, gate = _row(problem, solver, errors, exact.attainable, reason)
+        terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
+        row, gate = _row(problem, solver, errors, exact.attainable, terms)
         digits = ceil(problem.rung.bits * log10(2)) + _GUARD_DIGITS
         shift = angular_shift(problem.given, solver.quantities["omega"], digits)
         if shift is None:
@@ -139,9 +136,9 @@ def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gate
 
 
 def _row(
-    problem: Problem, solver: Recorded, errors: Errors, attainable: Floats, reason: str
+    problem: Problem, solver: Recorded, errors: Errors, attainable: Floats, terms: Reason
 ) -> Gated:
-    finding = judge(errors, attainable, reason)
+    finding = judge(errors, attainable, terms)
     instants, worst, values = problem.given.clock.instants, finding.worst, errors.values
     verdict = Verdict(
         scene=problem.scene.name,
@@ -157,7 +154,7 @@ def _row(
         at=float(instants[worst]),
         unit=errors.unit,
         bound=float(FACTOR * attainable[worst]),
-        because=finding.because,
+        reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,
         ratio_at=float(instants[finding.ratio_at]),

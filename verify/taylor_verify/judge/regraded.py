@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
@@ -17,14 +17,13 @@ from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.record import GateRecord, Record
-from taylor_verify.judge.verdict import STATES, Status, Verdict
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.reason import Cause, InputShare, Reason
+from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.verdict import Verdict
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-
-# The gravest first.
-_GRAVITY: Final = (Status.FAIL, Status.UNDECIDED, Status.VACUOUS, Status.PASS)
-_RULE: Final = f"{FACTOR} x attainable; "
 
 
 @dataclass(frozen=True)
@@ -40,15 +39,15 @@ class Graded:
     errors: Floats
     attainable: Floats
     is_doubtful: bool
-    reason: str
+    terms: Reason
 
     @classmethod
     def of(
-        cls, verdict: Verdict, times: Floats, errors: Floats, attainable: Floats, reason: str
+        cls, verdict: Verdict, times: Floats, errors: Floats, attainable: Floats, terms: Reason
     ) -> Graded:
         """A gate whose verdict tells whether the truth was narrow enough."""
         is_doubtful = verdict.verdict is Status.UNDECIDED
-        return cls(verdict, times, errors, attainable, is_doubtful, reason)
+        return cls(verdict, times, errors, attainable, is_doubtful, terms)
 
 
 def graded(judgement: Judgement, inputs: InputRounding, roundoff: float) -> list[Graded]:
@@ -68,13 +67,9 @@ def _graded(
     moved = inputs.at_samples.get(gate.quantity, np.zeros(len(rounding)))
     both = np.hypot(rounding, moved)
     worst = index_of_largest(np.array(gate.errors))
-    reason = (
-        f"attainable = (rounding^2 + input^2)^(1/2) = {both[worst]:.2g}; "
-        f"input: {inputs.moved}, moved by u = {roundoff:.2g} of its size, "
-        f"moves this by {moved[worst]:.2g}; "
-        f"rounding: {verdict.because.split(_RULE)[-1]}"
-    )
-    return Graded.of(verdict, times, np.array(gate.errors), both, reason)
+    share = InputShare(inputs.moved, roundoff, float(moved[worst]), float(both[worst]))
+    terms = replace(verdict.reason, remarks=(), input=share)
+    return Graded.of(verdict, times, np.array(gate.errors), both, terms)
 
 
 def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
@@ -88,7 +83,7 @@ def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
 def _gravity(verdict: Verdict) -> tuple[int, float]:
     ratio = verdict.ratio
     told = float("inf") if ratio is None or ratio != ratio else ratio
-    return _GRAVITY.index(verdict.verdict), -told
+    return GRAVITY.index(verdict.verdict), -told
 
 
 def _verdict(side: Graded, flaw: str) -> Verdict:
@@ -97,7 +92,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
     widths = np.array([mp.inf if side.is_doubtful else mp.zero] * len(times), dtype=object)
     is_state = gate.quantity in STATES
     errors = Errors(gate.quantity, gate.unit, column, widths, {}, is_state)
-    finding = judge(errors, attainable, side.reason)
+    finding = judge(errors, attainable, side.terms)
     worst = finding.worst
     return replace(
         gate,
@@ -105,7 +100,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
         max=float(side.errors[worst]),
         at=float(times[worst]),
         bound=float(FACTOR * attainable[worst]),
-        because=f"{flaw}; {finding.because}" if flaw else finding.because,
+        reason=finding.reason.with_remark(Cause.NOT_FINITE, flaw) if flaw else finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,
         ratio_at=float(times[finding.ratio_at]),

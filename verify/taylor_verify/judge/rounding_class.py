@@ -41,7 +41,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from taylor_verify.judge.verdict import Status, Verdict
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 FACTOR: Final = 10.0
 LEVEL: Final = 0.5

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Final
 
@@ -23,6 +22,7 @@ from taylor_verify.exact.solution import Solution
 from taylor_verify.judge import courses
 from taylor_verify.judge.compared import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors import Errors
+from taylor_verify.records.reason import Kind, TimeShift
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
@@ -39,18 +39,8 @@ _FEWEST: Final = 3
 _UNUSUAL: Final = 10.0
 # The line of Theil and Sen looks at all pairs of so many samples.
 _MOST_PAIRED: Final = 201
-_MOST_NAMED: Final = 3
 # Its square is a double. No shift of time makes an error of that size, nor one that is not finite.
 _LARGEST_ERROR: Final = 2**500
-
-
-class Kind(StrEnum):
-    """How the shift goes on in time."""
-
-    CONSTANT = "constant"
-    DRIFTING = "drifting"
-    WANDERING = "wandering"
-    NONE = "none"
 
 
 @dataclass(frozen=True)
@@ -75,37 +65,29 @@ class Shift:
     course: tuple[float, ...]
     strays: tuple[float, ...] = ()
 
-    def sentence(self) -> str:
-        """The shift in words that a person can act on."""
+    def terms(self) -> TimeShift:
+        """Return the shift as a reason has it, at the sample where it is largest."""
         if self.kind is Kind.NONE:
-            return "no shift of time explains it"
-        left = f"{self.remains:.2g} remains{self._strays()}"
+            return TimeShift(self.kind)
+        rows = len(self.times)
         if self.kind is Kind.CONSTANT:
-            return f"{_late(self.time_shift)}, constant; {left}"
-        worst = max(range(len(self.times)), key=lambda k: abs(self.course[k]))
-        at_worst = f"{_late(self.course[worst])} at t = {self.times[worst]:g}"
-        if self.kind is Kind.WANDERING:
-            return f"{at_worst}, wandering; {left}"
-        pace = f"{'slow' if self.trend > 0 else 'fast'} by {abs(self.trend):.3g} of the time"
-        return f"{at_worst}, drifting: its clock runs {pace}{self._offset()}; {left}"
-
-    def _offset(self) -> str:
-        """The shift that a drifting clock begins with, unless it begins right."""
-        first = self.course[0]
-        is_right = abs(first) <= LEAVES * max(map(abs, self.course))
-        return "" if is_right else f" and is {_late(first)} at t = {self.times[0]:g}"
-
-    def _strays(self) -> str:
-        """The number of rows that share the shift, and the times of those that do not."""
-        if not self.strays:
-            return ""
-        count, rows = len(self.strays), len(self.times)
-        named = ", ".join(f"{t:g}" for t in self.strays[:_MOST_NAMED])
-        rest = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
-        those = (
-            f"the row at t = {named} does" if count == 1 else f"the rows at t = {named}{rest} do"
+            return TimeShift(
+                self.kind, self.time_shift, self.remains, rows=rows, strays=self.strays
+            )
+        worst = max(range(rows), key=lambda k: abs(self.course[k]))
+        found = TimeShift(
+            self.kind,
+            self.course[worst],
+            self.remains,
+            self.times[worst],
+            self.trend,
+            rows=rows,
+            strays=self.strays,
         )
-        return f" in {rows - count} of {rows} rows; {those} not share it"
+        first = self.course[0]
+        if abs(first) <= LEAVES * max(map(abs, self.course)):
+            return found
+        return replace(found, begins=first, begins_at=self.times[0])
 
 
 def time_shifts(
@@ -217,10 +199,6 @@ class _Fits:
             course=tuple(course.tolist()),
             strays=tuple(run.instants[k] for k in self.strays),
         )
-
-
-def _late(shift: float) -> str:
-    return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
 
 
 # The samples that do not share the course of the others.

@@ -15,15 +15,16 @@ from dataclasses import dataclass
 from taylor_verify.judge.attainable import radians
 from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.reason import ClaimedSteps
 from taylor_verify.solvers.solver import Solver
 
 
 @dataclass(frozen=True)
 class Steps:
-    """The steps that are counted, and the reason where they are fewer than the solver says."""
+    """The steps that are counted, and the claim where they are fewer than the solver says."""
 
     counted: int
-    because: str = ""
+    claim: ClaimedSteps | None = None
 
 
 def count_steps(problem: Problem, solver: Solver, claimed: int, seconds: float | None) -> Steps:
@@ -46,4 +47,4 @@ def count_steps(problem: Problem, solver: Solver, claimed: int, seconds: float |
         limit = f"{STEPS_PER_SECOND:.0e} for each of the {seconds:.3g} seconds that it took"
     if claimed <= most:
         return Steps(claimed)
-    return Steps(most, f"it claims {claimed} steps; at most {most} are counted, {limit}")
+    return Steps(most, ClaimedSteps(claimed, most, limit))

@@ -19,9 +19,10 @@ from mpmath import mp
 from taylor_verify.judge.attainable import Floats, Floor
 from taylor_verify.judge.errors import Errors, norms
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
-from taylor_verify.judge.verdict import Status
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.reason import Carried, Reason, RoundoffFloor
+from taylor_verify.records.status import Status
 
-UNIT_QUATERNION: Final = "unit quaternion"
 # A length is written out where six digits show that it is not 1.
 _SHOWN: Final = 1e-4
 
@@ -44,12 +45,14 @@ def unit_quaternion(
     worst = index_of_largest(errors.doubles)
     lowest, highest = (float(end(lengths - 1)) for end in (min, max))
     extent = dict.fromkeys(_length(excess, attainable[worst]) for excess in (lowest, highest))
-    reason = (
-        f"attainable = u N = {base.unit_roundoff:.2g} x {steps[worst]:.4g} = {attainable[worst]:.2g}: in "
-        "each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
-        f"{' to '.join(extent)}"
+    terms = RoundoffFloor(
+        Carried.LENGTH,
+        float(attainable[worst]),
+        base.unit_roundoff,
+        float(steps[worst]),
+        lengths=" to ".join(extent),
     )
-    finding = judge(errors, attainable, reason)
+    finding = judge(errors, attainable, Reason(floor=terms))
     return (errors, attainable, finding) if finding.status is Status.FAIL else None
 
 

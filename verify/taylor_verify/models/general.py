@@ -12,6 +12,7 @@ from fractions import Fraction
 from taylor_verify.models.form import Equations, Form, euler_equations, kirchhoff_equations
 from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -20,7 +21,6 @@ _CENTRE = ("c1", "c2", "c3")
 # Letters of what a manufactured motion is made of.
 _OF_MOTION = "hknabfg"
 _MOMENTUM = ("H1", "H2", "H3")
-_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
 
 def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
@@ -63,7 +63,7 @@ def whole_form(model: str) -> Form:
 def _of(model: str) -> tuple[Equations, tuple[str, ...]]:
     if model == "euler":
         return euler_equations, _MOMENTUM
-    return kirchhoff_equations, _IMPULSES
+    return kirchhoff_equations, IMPULSES
 
 
 def _coefficients(problem: Problem) -> dict[str, Fraction]:

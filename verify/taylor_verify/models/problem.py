@@ -19,6 +19,7 @@ from taylor_verify.models.choice import Choice, constants_told, for_immersed_bod
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units, natural_units
+from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.instants import Instants
@@ -27,8 +28,6 @@ from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
-
-_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
 
 class NotRepresentable(Exception):
@@ -340,7 +339,7 @@ def _round_kirchhoff(
     )
     numbers = _indexed("x", x) | _indexed("y", y) | _indexed("X", X) | _indexed("L", L)
     numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
-    return _Data(for_immersed_body(numbers), _IMPULSES, given, start)
+    return _Data(for_immersed_body(numbers), IMPULSES, given, start)
 
 
 def _rounded_quaternion(quaternion: Quaternion, rounded: _Rounding) -> Quaternion:

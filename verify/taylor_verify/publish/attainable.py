@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Final
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, ratio, word
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
-from taylor_verify.publish.runs import Run, is_scored, place_of_rung, runs
+from taylor_verify.publish.runs import Run, is_scored, runs
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 _WHAT: Final = (
     "Attainable is what would be left if every step rounded each component once and did nothing else "

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.markdown import bold
 from taylor_verify.publish.runs import is_scored
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 NOTHING = "\N{EN DASH}"
 INFINITE = "∞"
@@ -66,7 +67,15 @@ def peak(verdict: Verdict) -> str:
 
 
 def reason(verdict: Verdict) -> str:
-    """The reason of the gate, and first what the reason of a gate does not say."""
-    if verdict.max is None and is_scored(verdict):
-        return f"the error is not a finite number; {verdict.because}"
-    return verdict.because
+    """Return the reason of a verdict in one line; an error that is no number is said first."""
+    return "; ".join(filter(None, (_not_finite(verdict), verdict.because)))
+
+
+def conclusion(verdict: Verdict) -> str:
+    """Return the remarks of a reason alone; an error that is no number is said first."""
+    return "; ".join(filter(None, (_not_finite(verdict), verdict.reason.conclusion)))
+
+
+def _not_finite(verdict: Verdict) -> str:
+    is_number = verdict.max is not None or not is_scored(verdict)
+    return "" if is_number else "the error is not a finite number"

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import INITIAL, Status, is_conserved
 from taylor_verify.publish import sheets
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.data import versions
@@ -20,8 +19,9 @@ from taylor_verify.publish.proof import (
     times_bound,
     title,
 )
-from taylor_verify.publish.runs import STATE_QUANTITIES
 from taylor_verify.publish.sights import CONTROLS, Sight
+from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
+from taylor_verify.records.status import Status
 
 # Where the short table stands in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish --controls; do not edit -->"
@@ -223,7 +223,7 @@ def short(sights: Sequence[Sight]) -> str:
             prose(sight.what),
             _summed(sight, lambda name: name == "T"),
             _summed(sight, lambda name: name != "T" and is_conserved(name)),
-            _summed(sight, lambda name: name in STATE_QUANTITIES),
+            _summed(sight, lambda name: name in STATES),
         ]
         for sight in told
     ]

@@ -17,11 +17,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.judge.record import Record
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import file_names
 from taylor_verify.publish.replacement import first_line, replace_files
 from taylor_verify.publish.runs import Run, runs
+from taylor_verify.records.record import Record
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, read_row
 
 FOLDER: Final = "data"
 VERDICTS: Final = "verdicts.json"
@@ -206,8 +207,7 @@ def verdict(
     found = {**python, **same}
     provenance: dict[str, Any] = {"versions": found} if found else {}
     provenance |= {**own, **stored["provenance"]}
-    given = {**stored, "verdict": Status(stored["verdict"]), "provenance": provenance}
-    return Verdict(**given, seconds=timing.get("seconds"))
+    return read_row({**stored, "provenance": provenance, "seconds": timing.get("seconds")})
 
 
 @contextmanager

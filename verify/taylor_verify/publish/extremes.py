@@ -14,13 +14,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish import data, sheets
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
 from taylor_verify.publish.replacement import replace_files
 from taylor_verify.publish.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 EXTREMES: Final = f"{data.FOLDER}/extremes.json"
 PAGE: Final = "tables/extremes.md"

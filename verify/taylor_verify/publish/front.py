@@ -5,20 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
 from taylor_verify.publish.contents import Page
 from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts
-from taylor_verify.publish.runs import (
-    STATE_QUANTITIES,
-    Run,
-    gravest,
-    is_scored,
-    place_of_rung,
-    runs,
-)
+from taylor_verify.publish.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.quantities import STATES, place_of_rung
+from taylor_verify.records.verdict import Verdict
 
 _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
@@ -150,7 +144,7 @@ def _cell(run: Run | None) -> str:
     if run is None:
         return NOTHING
     status = gravest(run.verdicts)
-    main = min(run.state, key=lambda v: STATE_QUANTITIES.index(v.quantity), default=None)
+    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
     if main is None or main.max is None:
         return judged(status)
     return error(main) if status.value == "pass" else f"{error(main)} {judged(status)}"

@@ -24,8 +24,8 @@ from taylor_verify.publish.pictures import (
 )
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.replacement import replace_files
-from taylor_verify.publish.runs import place_of_rung
 from taylor_verify.publish.sights import CONTROLS
+from taylor_verify.records.quantities import COLUMNS, place_of_rung
 
 PAGE: Final = f"{figures.FOLDER}/README.md"
 
@@ -33,7 +33,6 @@ _MAKER: Final = "<!-- made by taylor-verify publish --gallery; do not edit -->"
 _SOLVER: Final = "taylor"
 # The rung whose samples are marked on a polhode.
 _RUNG: Final = "f64"
-_OMEGA: Final = ("w1", "w2", "w3")
 
 _WHAT: Final = (
     "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`; each "
@@ -162,7 +161,7 @@ def _polhode(stored: Stored, scene: str) -> Shown:
         *(stored.portrait_name(scene), stored.record_name(scene, _RUNG)),
         stored.reference_name(scene),
     )
-    drawn = polhode.picture(portrait, stored.samples(scene, _OMEGA), record)
+    drawn = polhode.picture(portrait, stored.samples(scene, COLUMNS["omega"]), record)
     return Shown(_heading(portrait), drawn, caption, sources)
 
 

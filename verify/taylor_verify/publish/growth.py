@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Status
 from taylor_verify.publish import data, figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.pictures import growth as diagram
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.status import Status
 
 GROWTH: Final = f"{data.FOLDER}/growth.json"
 LONG: Final = f"{data.FOLDER}/growth-long.json"

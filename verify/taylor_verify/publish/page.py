@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Status, Verdict, summary
 from taylor_verify.publish.cells import figure, instant, judged, reason
 from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.runs import Run, is_scored, place_of_rung
+from taylor_verify.publish.runs import Run, is_scored
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, summary
 
 MADE_BY: Final = "<!-- made by taylor-verify publish; do not edit -->"
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from taylor_verify.judge.verdict import Status
 from taylor_verify.publish.cells import INFINITE, figure
 from taylor_verify.publish.markdown import bold, code, prose
 from taylor_verify.publish.sights import Sight
+from taylor_verify.records.status import Status
 
 MAIN: Final = ("omega", "impulse")
 

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish import controls, sights
 from taylor_verify.publish.cells import in_roundoffs
 from taylor_verify.publish.markdown import Column, code, table
-from taylor_verify.publish.runs import place_of_rung
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.verdict import Verdict
 
 BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of accuracy -->"

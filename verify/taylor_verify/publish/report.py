@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from taylor_verify.judge.record import Record
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish import (
     attainable,
     controls,
@@ -30,6 +28,8 @@ from taylor_verify.publish.contents import others
 from taylor_verify.publish.front import front
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.records.record import Record
+from taylor_verify.records.verdict import Verdict
 
 TABLES = "tables"
 FRONT = "README.md"

@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from taylor_verify.judge.verdict import STATES, Status, Verdict
+from taylor_verify.records import status
+from taylor_verify.records.quantities import CONSERVED, MAIN, STATES, place_of_rung
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
-STATE_QUANTITIES = STATES
-
-# The order of columns: energy, momenta in body axes, momenta in space. Others come after these.
-CONSERVED_QUANTITIES = (
-    *("T", "H2", "H_space", "F2", "FG", "y1", "y2", "y3"),
-    *("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov", "x_space", "y_space"),
-)
-
-# The worst first.
-GRAVITY = (
-    Status.FAIL,
-    Status.UNDECIDED,
-    Status.REFUSED,
-    Status.VACUOUS,
-    Status.UNAVAILABLE,
-    Status.PASS,
-)
-
-_MODELS = {"omega": "Euler", "impulse": "Kirchhoff"}
+_MODELS = {MAIN["euler"]: "Euler", MAIN["kirchhoff"]: "Kirchhoff"}
 _READING_ORDER = (*_MODELS.values(), "")
-_BITS = {"f32": 24, "f64": 53, "f80": 64, "f128": 113}
 
 
 @dataclass(frozen=True)
@@ -49,7 +32,7 @@ class Run:
 
     @property
     def state(self) -> tuple[Verdict, ...]:
-        return tuple(v for v in self.verdicts if v.quantity in STATE_QUANTITIES)
+        return tuple(v for v in self.verdicts if v.quantity in STATES)
 
     @property
     def conserved(self) -> dict[str, Verdict]:
@@ -69,7 +52,7 @@ class Run:
 def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
     """Those of all these runs, each once."""
     found = dict.fromkeys(name for run in runs for name in run.conserved)
-    known = [name for name in CONSERVED_QUANTITIES if name in found]
+    known = [name for name in CONSERVED if name in found]
     return (*known, *(name for name in found if name not in known))
 
 
@@ -80,8 +63,8 @@ def quantities_of_scene(run: Run, among: Sequence[Run]) -> tuple[str, ...]:
 
 
 def gravest(verdicts: Iterable[Verdict]) -> Status:
-    """The status of several verdicts taken together."""
-    return min((verdict.verdict for verdict in verdicts), key=GRAVITY.index)
+    """Return the status of several verdicts taken together."""
+    return status.gravest(verdict.verdict for verdict in verdicts)
 
 
 def is_scored(verdict: Verdict) -> bool:
@@ -102,11 +85,3 @@ def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:
 def _place(run: Run) -> tuple[int, str, str, str, tuple[int, int, str]]:
     model = _READING_ORDER.index(run.model)
     return model, run.solver, run.setting, run.scene, place_of_rung(run.rung)
-
-
-def place_of_rung(rung: str) -> tuple[int, int, str]:
-    """The ladder: the IEEE formats by their bits, then mpN by N, then anything else."""
-    if rung in _BITS:
-        return 0, _BITS[rung], rung
-    multiple = re.fullmatch(r"mp([0-9]+)", rung)
-    return (1, int(multiple[1]), rung) if multiple else (2, 0, rung)

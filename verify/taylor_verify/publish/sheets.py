@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish.cells import in_roundoffs, word
 from taylor_verify.publish.runs import (
     Run,
@@ -18,6 +17,7 @@ from taylor_verify.publish.runs import (
     quantities_of_scene,
     runs,
 )
+from taylor_verify.records.verdict import Verdict
 
 # What a spreadsheet begins a formula with; a tab has gone with the line ends.
 _FORMULA: Final = ("=", "+", "-", "@")

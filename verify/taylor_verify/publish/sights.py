@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Status, Verdict, is_conserved
 from taylor_verify.publish import data
 from taylor_verify.publish.replacement import replace_files
-from taylor_verify.publish.runs import STATE_QUANTITIES
+from taylor_verify.records.quantities import STATES, is_conserved
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, read_row
 
 CONTROLS: Final = f"{data.FOLDER}/controls.json"
 
@@ -52,7 +53,7 @@ class Sight:
 
     @property
     def state(self) -> tuple[str, ...]:
-        return tuple(name for name in self.quantities if name in STATE_QUANTITIES)
+        return tuple(name for name in self.quantities if name in STATES)
 
     @property
     def is_finished(self) -> bool:
@@ -125,7 +126,7 @@ def _row(verdict: Verdict) -> dict[str, Any]:
 
 
 def _verdict(row: Mapping[str, Any], provenance: dict[str, Any]) -> Verdict:
-    return Verdict(**{**row, "verdict": Status(row["verdict"])}, provenance=provenance)
+    return read_row({**row, "provenance": provenance})
 
 
 def _sight(row: Mapping[str, Any], verdicts: Iterable[Verdict], factor: float) -> Sight:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.cells import (
     NOTHING,
     error,
@@ -28,6 +27,8 @@ from taylor_verify.publish.runs import (
     quantities_of_scene,
     runs,
 )
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 _MEANINGS = {
     Status.PASS: "the error of every sample is within its bound",

@@ -23,9 +23,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Final
 
+from taylor_verify.records.quantities import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.faults import Faults, Refused, near, shown
-from taylor_verify.scenes.precision import LADDER, rung
+from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.table import Table
 
 FILE: Final = "EXPECTED.toml"

@@ -9,7 +9,7 @@ from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
-LADDER = ("f32", "f64", "f80", "f128", "mp237")
+from taylor_verify.records.quantities import FORMATS
 
 _LEAST_BITS = 24
 # The numbers of a verdict are doubles: errors of 2^-1000 still are, those of 2^-1075 are not.
@@ -57,10 +57,10 @@ class Rung:
 
 
 _IEEE = {
-    "f32": Rung("f32", 24, -126, 127),
-    "f64": Rung("f64", 53, -1022, 1023),
-    "f80": Rung("f80", 64, -16382, 16383),
-    "f128": Rung("f128", 113, -16382, 16383),
+    "f32": Rung("f32", FORMATS["f32"], -126, 127),
+    "f64": Rung("f64", FORMATS["f64"], -1022, 1023),
+    "f80": Rung("f80", FORMATS["f80"], -16382, 16383),
+    "f128": Rung("f128", FORMATS["f128"], -16382, 16383),
 }
 
 

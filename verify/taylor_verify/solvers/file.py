@@ -22,6 +22,7 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.faults import Faults, Refused, cut, near
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike, shown
 from taylor_verify.solvers.formats.reading import read_columns
@@ -29,24 +30,16 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, exact
 
-GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
-    "omega": ("w1", "w2", "w3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "quaternion": ("q0", "q1", "q2", "q3"),
-    "attitude": tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)),
-    "centre": ("c1", "c2", "c3"),
-}
-KNOWN: Final = ("t", *(name for names in GROUPS.values() for name in names))
+KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
 # Printed by `publish --reference` beside the motion; it is no part of it.
 _IGNORED: Final = ("radius",)
 # What other programs call the same columns: none of these is near enough in spelling to be guessed.
 _ELSEWHERE: Final = {
     "time": "t",
-    **dict(zip(("wx", "wy", "wz"), GROUPS["omega"], strict=True)),
-    **dict(zip(("omega1", "omega2", "omega3"), GROUPS["omega"], strict=True)),
-    **dict(zip(("qw", "qx", "qy", "qz"), GROUPS["quaternion"], strict=True)),
-    **dict(zip(("cx", "cy", "cz"), GROUPS["centre"], strict=True)),
+    **dict(zip(("wx", "wy", "wz"), COLUMNS["omega"], strict=True)),
+    **dict(zip(("omega1", "omega2", "omega3"), COLUMNS["omega"], strict=True)),
+    **dict(zip(("qw", "qx", "qy", "qz"), COLUMNS["quaternion"], strict=True)),
+    **dict(zip(("cx", "cy", "cz"), COLUMNS["centre"], strict=True)),
 }
 _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 # Errors are told as doubles, and so is whatever is as large as the answer itself.
@@ -74,7 +67,7 @@ class Recorded(Solver):
 class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
-    ``groups`` maps the names of GROUPS to rows of values; ``digits`` is the largest number of
+    ``groups`` maps the names of COLUMNS to rows of values; ``digits`` is the largest number of
     significant decimals that any value is written with, None where one is binary or a fraction.
     """
 
@@ -103,7 +96,7 @@ def read(file: str | os.PathLike[str]) -> TrajectoryFile:
         raise Refused(faults.lines)
     groups = {
         group: tuple(zip(*(values[name] for name in names), strict=True))
-        for group, names in GROUPS.items()
+        for group, names in COLUMNS.items()
         if names[0] in values
     }
     return TrajectoryFile(str(file), times, groups, _written_digits(wanted))
@@ -133,7 +126,7 @@ def _refuse_incomplete(columns: Sequence[Column], file: str, faults: Faults) -> 
     present = {column.name for column in columns}
     if "t" not in present:
         faults.add("a column `t` of times", "none", file, "add the column `t`")
-    for names in GROUPS.values():
+    for names in COLUMNS.values():
         missing = [name for name in names if name not in present]
         if 0 < len(missing) < len(names):
             faults.add(f"all of {' '.join(names)}", f"no {' '.join(missing)}", file)

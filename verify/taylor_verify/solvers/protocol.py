@@ -78,6 +78,7 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin
@@ -101,14 +102,6 @@ _HEXADECIMAL = re.compile(
     r"([+-]?)0x([0-9a-f]{0,1000})\.?([0-9a-f]{0,1000})(?:p([+-]?[0-9]{1,5}))?", re.IGNORECASE
 )
 _NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
-
-_NAMES = {
-    "omega": ("w1", "w2", "w3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "quaternion": ("q0", "q1", "q2", "q3"),
-    "centre": ("c1", "c2", "c3"),
-}
 
 
 class Misanswer(Exception):
@@ -154,7 +147,7 @@ def question(problem: Problem) -> dict[str, Any]:
 
 def column_names(problem: Problem) -> list[str]:
     """The columns of an answer: t, and those of everything the scene tracks."""
-    return ["t", *(name for group, _ in columns(problem) for name in _NAMES[group])]
+    return ["t", *(name for group, _ in columns(problem) for name in COLUMNS[group])]
 
 
 def _data(problem: Problem) -> dict[str, Any]:

@@ -14,13 +14,12 @@ from mpmath import mp
 
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import held_exactly
-
-_IMPULSES = ("x1", "x2", "x3", "y1", "y2", "y3")
 
 
 class Outcome(Enum):
@@ -136,7 +135,7 @@ def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[st
         momenta = _vectors(columns, "H", units.momentum)
         quantities["omega"] = [tensors.apply(K, H) for H in momenta]
     else:
-        for name in _IMPULSES:
+        for name in IMPULSES:
             if name not in columns:
                 columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
         quantities["linear_impulse"] = _vectors(columns, "x", units.impulse)

@@ -20,13 +20,13 @@ from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import state_errors
 from taylor_verify.judge.gates import FACTOR
 from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.records.quantities import FORMATS
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 
 # Of a truth that says only how large the motion is.
 _DIGITS: Final = 15
-_TYPES: Final = ("f32", "f64", "f80", "f128")
 _MOST_BITS: Final = 1000
 # A floor is not quite in proportion to the roundoff: beside an unstable motion, rounding the data moves
 # the orbit too. Some bits more make up for it.
@@ -67,8 +67,8 @@ def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
 
     A type of the ladder where one will do, else mpN; None where no rung does, or nothing is known.
     """
-    rung, least = rung_named(_TYPES[-1]), inf
-    for name in _TYPES:
+    rung, least = rung_named([*FORMATS][-1]), inf
+    for name in FORMATS:
         rung = rung_named(name)
         found = least_error(scene, rung)
         if found is not None and found <= error:

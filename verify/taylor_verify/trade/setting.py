@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.models.units import natural_units
+from taylor_verify.records.quantities import FORMATS
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
@@ -15,7 +16,7 @@ from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 
-RUNGS: Final = ("f32", "f64", "f80", "f128")
+RUNGS: Final = tuple(FORMATS)
 # Every third power of ten that is above twice the rung's roundoff, where its own tolerance begins.
 _TOLERANCES: Final = tuple(f"1e-{digits}" for digits in range(3, 75, 3))
 _SCIPY: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")

@@ -17,8 +17,9 @@ from taylor_verify.controls.traps.trap import Case, Gate
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.judgement import judgement
-from taylor_verify.judge.verdict import INITIAL, Verdict
 from taylor_verify.models.problem import adopt
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody

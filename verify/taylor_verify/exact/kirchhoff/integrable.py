@@ -21,6 +21,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
@@ -34,7 +35,6 @@ Terms = Mapping[tuple[int, ...], Fraction]
 # A formula of x and y, in whatever numbers these are.
 Formula = Callable[[Sequence[Any], Sequence[Any]], Any]
 
-_NAMES: Final = ("x1", "x2", "x3", "y1", "y2", "y3")
 _CYCLIC: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
@@ -273,7 +273,7 @@ def terms(formula: Formula) -> Terms:
     """The formula multiplied out, its coefficients being rational."""
     from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-    context = fmpq_mpoly_ctx.get(_NAMES, Ordering.lex)
+    context = fmpq_mpoly_ctx.get(IMPULSES, Ordering.lex)
     state = [_Exact(generator) for generator in context.gens()]
     found = formula(state[:3], state[3:]).polynomial
     assert isinstance(found, fmpq_mpoly)

@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.ci.case import Case, Remark, cases
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 _LEVELS: Final = {
     Status.FAIL: "error",

@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.cells import figure, instant, ratio, reason
-from taylor_verify.publish.runs import GRAVITY, is_scored
+from taylor_verify.publish.runs import is_scored
+from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.verdict import Verdict
 
 Key = tuple[str, str, str, str, str]
 

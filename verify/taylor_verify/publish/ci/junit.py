@@ -23,8 +23,9 @@ from typing import Final
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from taylor_verify.judge.verdict import Status, Verdict
 from taylor_verify.publish.ci.case import Case, Remark, cases
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 # A status that is not listed is a KeyError, and never green.
 _ELEMENTS: Final = {

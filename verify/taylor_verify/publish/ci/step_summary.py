@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish.cells import NOTHING, error, figure, instant, judged, ratio
 from taylor_verify.publish.ci.case import Case, Remark, cases
 from taylor_verify.publish.markdown import Column, bold, code, prose, table
 from taylor_verify.publish.page import counts
+from taylor_verify.records.verdict import Verdict
 
 # GitHub takes 1 MiB from a step, and drops a larger summary altogether.
 _MOST_BYTES: Final = 1_000_000

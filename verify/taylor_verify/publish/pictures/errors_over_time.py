@@ -20,8 +20,9 @@ from taylor_verify.publish.pictures.legend import draw_legend, foot_of
 from taylor_verify.publish.pictures.log_axes import number_axes
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_rung, place_of_rung
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_rung
 from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.records.quantities import place_of_rung
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,6 +15,7 @@ from typing import Any, Final
 from zlib import crc32
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
+from taylor_verify.records.quantities import bits_of, place_of_rung
 
 Dashes = tuple[float, ...]
 
@@ -67,7 +68,6 @@ _RUNGS: Final = {
 }
 # A star of the same width looks smaller.
 _SIZES: Final = {"*": 6.5, "d": 5.5}
-_BITS: Final = {"f32": 24, "f64": 53, "f80": 64, "f128": 113}
 _BEYOND: Final = ("p", "h", "8", "*", "P", "X")
 
 # Every kind in reading order; of two entries that fit a name the one with more words counts.
@@ -162,7 +162,7 @@ def look_of_rung(rung: str) -> Look:
     """The look of taylor on a rung, which is also that of the rung where nothing else is compared."""
     if rung in _RUNGS:
         return _RUNGS[rung]
-    marker = _BEYOND[_digits_of(rung) % len(_BEYOND)]
+    marker = _BEYOND[bits_of(rung) % len(_BEYOND)]
     return Look("#000000", marker, DASHED, width=1.2, size=_SIZES.get(marker, 5.0))
 
 
@@ -172,26 +172,16 @@ def look_of_line(number: int) -> Look:
     return Look(colour, _LINE_MARKERS[number % len(_LINE_MARKERS)])
 
 
-def place(family: str, rung: str) -> tuple[int, int, str]:
-    """Where a family stands among others: taylor first by rung, then kinds and names as above."""
+def place(family: str, rung: str) -> tuple[int, int, int, str]:
+    """Return a key to sort families by: taylor first by rung, then kinds and names as above."""
     kind = kind_of(family)
     if kind == TAYLOR:
-        return (0, place_of_rung(rung), family)
+        return (0, *place_of_rung(rung)[:2], family)
     names = [name for one in KINDS for name, _, _ in one.looks]
     named = _named(_words(family))
     kinds = [one.name for one in KINDS]
-    return (1 + kinds.index(kind), names.index(named[1][0]) if named else len(names), family)
-
-
-def place_of_rung(rung: str) -> int:
-    """The rung's place on the ladder: float types first, then by bits."""
-    names = list(_RUNGS)
-    return names.index(rung) if rung in names else len(names) + _digits_of(rung)
-
-
-def bits_of(rung: str) -> int:
-    """The bits of a rung's significand; 0 for a name that is no rung."""
-    return _BITS.get(rung) or (_digits_of(rung) if re.fullmatch(r"mp\d+", rung) else 0)
+    number = names.index(named[1][0]) if named else len(names)
+    return (1 + kinds.index(kind), number, 0, family)
 
 
 def settings() -> dict[str, Any]:
@@ -251,9 +241,3 @@ def _unknown(name: str, kind: str) -> Look:
     angle = _UNKNOWN_ANGLES[number % len(_UNKNOWN_ANGLES)]
     dashes = next((one.dashes for one in KINDS if one.name == kind), SOLID)
     return Look(_UNKNOWN_COLOURS[colour], (_UNKNOWN_CORNERS[corners], 1, angle), dashes, size=7.0)
-
-
-def _digits_of(rung: str) -> int:
-    """The bits of mpN; 0 for a rung with no number in its name."""
-    found = re.search(r"\d+", rung)
-    return int(found.group()) if found else 0

@@ -20,8 +20,9 @@ from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture, save
 from taylor_verify.publish.pictures.rows import Ratio, ratios
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, bits_of, look_of_line, place_of_rung
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
 from taylor_verify.publish.pictures.wording import stem_of, times
+from taylor_verify.records.quantities import bits_of, place_of_rung
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import log10
 from typing import Any, Final
 
-from taylor_verify.judge.verdict import Verdict
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.runs import STATE_QUANTITIES, Run, is_scored
+from taylor_verify.publish.runs import Run, is_scored
 from taylor_verify.publish.sights import Sight
 from taylor_verify.publish.site.figure import (
     WIDE,
@@ -22,12 +21,14 @@ from taylor_verify.publish.site.figure import (
     short,
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of, rungs_upwards
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.verdict import Verdict
 
 Record = Mapping[str, Any]
 
 _TAYLOR: Final = "taylor"
 # The state, and of what is conserved the energy alone: the others have their numbers in the table.
-_DRAWN: Final = (*STATE_QUANTITIES, "T")
+_DRAWN: Final = (*STATES, "T")
 _LINE: Final = {"width": 1.2}
 
 
@@ -181,7 +182,7 @@ def _failures(sight: Sight) -> list[tuple[str, Verdict]]:
     return [
         (sight.name.replace("-", " "), sight.verdicts[name])
         for name in sight.seen_by
-        if name in STATE_QUANTITIES and sight.verdicts[name].ratio
+        if name in STATES and sight.verdicts[name].ratio
     ]
 
 
@@ -233,10 +234,7 @@ def shifts(sights: Iterable[Sight], fallback: str | None = None) -> Figure | Non
         (sight.name.replace("-", " "), name, verdict)
         for sight in sights
         for name, verdict in sight.verdicts.items()
-        if name in STATE_QUANTITIES
-        and verdict.shift in _SHIFTED
-        and verdict.residual
-        and verdict.max
+        if name in STATES and verdict.shift in _SHIFTED and verdict.residual and verdict.max
     ]
     if not found:
         return None

@@ -12,7 +12,8 @@ from collections.abc import Iterable
 from typing import Any, Final
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET, contrast
-from taylor_verify.publish.pictures.style import look_of, look_of_line, look_of_rung, place_of_rung
+from taylor_verify.publish.pictures.style import look_of, look_of_line, look_of_rung
+from taylor_verify.records.quantities import place_of_rung
 
 DARK_PAPER: Final = "#15181C"
 LINE_CONTRAST: Final = 3.0

@@ -9,12 +9,11 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from taylor_verify.judge.verdict import summary
 from taylor_verify.publish.cells import NOTHING, error, figure, instant, judged, ratio, word
 from taylor_verify.publish.file_names import of_scene
 from taylor_verify.publish.markdown import Column, code, prose, table
 from taylor_verify.publish.pictures import digits_map
-from taylor_verify.publish.runs import STATE_QUANTITIES, Run, gravest, is_scored
+from taylor_verify.publish.runs import Run, gravest, is_scored
 from taylor_verify.publish.site import errors, work
 from taylor_verify.publish.site.figure import Figure
 from taylor_verify.publish.site.links import Links, title_of
@@ -22,6 +21,8 @@ from taylor_verify.publish.site.looks import Palette
 from taylor_verify.publish.site.prose import Prose, sections, without_title
 from taylor_verify.publish.site.scene_page import ScenePage
 from taylor_verify.publish.site.source import Report
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.verdict import summary
 
 NAVIGATION: Final = (
     {"page": "scenes.html", "name": "Scenes"},
@@ -275,7 +276,7 @@ def _main_error(run: Run | None) -> str:
     """The largest error of omega or the impulse, or the word that stands in its place."""
     if run is None:
         return NOTHING
-    main = min(run.state, key=lambda v: STATE_QUANTITIES.index(v.quantity), default=None)
+    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
     status = gravest(run.verdicts)
     if main is None or main.max is None:
         return judged(status)

@@ -9,8 +9,15 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from taylor_verify.judge.verdict import Verdict
-from taylor_verify.publish.cells import figure, in_roundoffs, instant, judged, ratio, reason, word
+from taylor_verify.publish.cells import (
+    conclusion,
+    figure,
+    in_roundoffs,
+    instant,
+    judged,
+    ratio,
+    word,
+)
 from taylor_verify.publish.file_names import of_scene
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
 from taylor_verify.publish.runs import Run, gravest
@@ -22,6 +29,8 @@ from taylor_verify.publish.site.mathml import mathml
 from taylor_verify.publish.site.prose import Prose
 from taylor_verify.publish.site.source import Document, Report
 from taylor_verify.publish.trades import Trade
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.verdict import Verdict
 
 # The rung whose errors colour the curves in space.
 _SHOWN: Final = "f64"
@@ -32,14 +41,6 @@ _DRAWN: Final = {
     "axis": "axis",
     "path": "centre",
     "potential": "potential",
-}
-# The columns of a trajectory file, so that what is copied can be checked as one.
-_COLUMNS: Final = {
-    "omega": ("w1", "w2", "w3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "attitude": tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
-    "centre": ("c1", "c2", "c3"),
 }
 
 
@@ -226,7 +227,7 @@ def _gates(runs: Sequence[Run]) -> str:
     found = [
         (run.rung, v) for name in names for run in runs for v in run.verdicts if v.quantity == name
     ]
-    parts = [(rung, v.quantity, *_split(reason(v))) for rung, v in found]
+    parts = [(rung, v.quantity, *_bound(v)) for rung, v in found]
     rows = [[code(quantity), rung, prose(sum_)] for rung, quantity, sum_, _ in parts]
     said: dict[str, dict[str, None]] = {}
     for _, quantity, _, words in parts:
@@ -237,10 +238,12 @@ def _gates(runs: Sequence[Run]) -> str:
     return "\n\n".join([arithmetic, bullets(notes)])
 
 
-def _split(because: str) -> tuple[str, str]:
-    """The arithmetic before the first colon, and what it means behind it."""
-    arithmetic, _, words = because.partition(": ")
-    return arithmetic, words.strip().removesuffix(".")
+def _bound(verdict: Verdict) -> tuple[str, str]:
+    """Return the arithmetic of the bound, and the meaning of its terms; empty where there is none."""
+    floor = verdict.reason.floor
+    arithmetic, meaning = floor.parts() if floor else ("", "")
+    parts = (conclusion(verdict), verdict.reason.rule, arithmetic)
+    return "; ".join(filter(None, parts)), meaning
 
 
 # Text to copy.
@@ -251,8 +254,8 @@ def _values(document: Document) -> str:
     rows = document["rows"]
     if not rows:
         return ""
-    keys = [key for key in _COLUMNS if key in rows[0]]
-    heading = ["t", *(name for key in keys for name in _COLUMNS[key])]
+    keys = [key for key in COLUMNS if key in rows[0]]
+    heading = ["t", *(name for key in keys for name in COLUMNS[key])]
     lines = [heading, *([str(r["t"]), *(n for key in keys for n in _flat(r[key]))] for r in rows)]
     widths = [max(len(line[i]) for line in lines) for i in range(len(heading))]
     return "\n".join(

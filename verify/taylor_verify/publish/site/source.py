@@ -15,9 +15,10 @@ from typing import Any, Final
 
 from taylor_verify.publish import data, portraits, sights, trades
 from taylor_verify.publish.file_names import of_scene, of_solver
-from taylor_verify.publish.runs import Run, place_of_rung, runs
+from taylor_verify.publish.runs import Run, runs
 from taylor_verify.publish.sights import Sight
 from taylor_verify.publish.trades import Trade, Trades
+from taylor_verify.records.quantities import place_of_rung
 
 GROWTH: Final = "growth.json"
 REACH: Final = "reach.json"

@@ -1,0 +1,116 @@
+"""JSON text of typed documents, and documents read from it: every reader and writer is one of these.
+
+A float that is not finite is null, because JSON has no word for it. Floats are written so that they read
+back to the last bit.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, Final, TypeVar
+
+import msgspec
+
+Document = TypeVar("Document")
+
+# A number that is not negative. The schema says so; a value in memory may be NaN, which no bound admits.
+Size = Annotated[float, msgspec.Meta(extra_json_schema={"minimum": 0})]
+Count = Annotated[int, msgspec.Meta(ge=0)]
+
+# What msgspec says of a value that does not fit: the words, and the place behind them.
+_PLACE: Final = re.compile(r" - at `\$\.?(.*)`$")
+_MISSING: Final = re.compile(r"Object missing required field `(.*)`")
+_TYPE: Final = re.compile(r"`([^`]*)`")
+_WORDS: Final = {
+    **{"object": "an object", "array": "a list", "str": "a text", "bool": "true or false"},
+    **{"float": "a number", "int": "a whole number"},
+}
+_STEP: Final = re.compile(r"\[(\d+)\]|(\.\.\.|[^.\[\]]+)")
+
+
+def plain(document: Any) -> Any:
+    """Return a typed document as dicts, lists and values, without fields that are at their default."""
+    if is_dataclass(document) and not isinstance(document, type):
+        members = ((field, getattr(document, field.name)) for field in fields(document))
+        return {f.name: plain(value) for f, value in members if value != f.default}
+    if isinstance(document, (tuple, list)):
+        return [plain(item) for item in document]
+    if isinstance(document, Mapping):
+        return {key: plain(value) for key, value in document.items()}
+    if isinstance(document, Enum):
+        return document.value
+    return finite(document)
+
+
+def finite(value: Any) -> Any:
+    """Return the value; None for a float that is not finite."""
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def parsed(content: bytes, kind: type[Document]) -> Document:
+    """Return the document of a type that JSON text holds; keys that the type has not are left out.
+
+    Raises ValueError with what was expected, what came, and the place in the document.
+    """
+    try:
+        try:
+            return msgspec.json.decode(content, type=kind)
+        except msgspec.ValidationError as error:
+            raise ValueError(_fault(error, json.loads(content))) from error
+    except RecursionError:
+        raise ValueError("expected a JSON document, got brackets nested too deeply") from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"expected a JSON document, got a fault: {error}") from error
+
+
+def converted(value: Any, kind: type[Document]) -> Document:
+    """Return the document of a type that dicts and lists hold; raises as ``parsed`` does."""
+    try:
+        return msgspec.convert(value, kind)
+    except msgspec.ValidationError as error:
+        raise ValueError(_fault(error, value)) from error
+
+
+def read(file: Path, kind: type[Document]) -> Document:
+    """Return the document of a type in a file; ValueError names the file, OSError is left as it is."""
+    try:
+        return parsed(file.read_bytes(), kind)
+    except ValueError as error:
+        raise ValueError(f"{error} @ {file}") from error
+
+
+def _fault(error: msgspec.ValidationError, document: Any) -> str:
+    """Return what was expected and what came, with the place in this project's way."""
+    text = str(error).replace("Number out of range", "Expected a finite number")
+    text = re.sub("Invalid enum value '.*?'", "Expected a word that is known here", text)
+    match = _PLACE.search(text)
+    said = (text[: match.start()] if match else text).partition(", got ")[0]
+    place = match[1] if match else ""
+    if missing := _MISSING.fullmatch(said):
+        return f"expected {missing[1]}, got no such key @ {place or 'the document'}"
+    return (
+        f"{said[:1].lower()}{said[1:]}, got {_at(document, place)}{f' @ {place}' if place else ''}"
+    )
+
+
+def _in_words(found: re.Match[str]) -> str:
+    return " or ".join(_WORDS.get(word, word) for word in found[1].split(" | "))
+
+
+def _at(document: Any, place: str) -> str:
+    """Return what stands at a place of a document; of a dictionary msgspec does not tell the key."""
+    for index, name in _STEP.findall(place):
+        if name == "...":
+            return "another value"
+        if name and name not in document:
+            return "none"
+        document = document[int(index)] if index else document[name]
+    if isinstance(document, (dict, list)):
+        return "an object" if isinstance(document, dict) else "a list"
+    return f"{document!r:.60}"

@@ -1,0 +1,278 @@
+"""The reason of a verdict, as values; its sentences are made of them here and nowhere else.
+
+remarks   conclusions that the numbers of the verdict do not say, each with its cause
+factor    what the gate allows, in units of the roundoff floor
+floor     the roundoff floor at the sample of the largest error, and the terms it is made of
+input     the part of the floor that the rounding of the input adds, for an answer from elsewhere
+claim     the steps that a solver claims, where fewer are counted
+shift     the shift of time behind the error of a state quantity that did not pass
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Final
+
+# So many of the rows that do not share a shift are named.
+_MOST_NAMED: Final = 3
+_AS_A_SHIFT: Final = "as a shift of time"
+
+
+class Cause(StrEnum):
+    """The kind of a conclusion: the word that a program reads in place of the sentence."""
+
+    NOT_FINITE = "not finite"
+    VACUOUS = "vacuous bound"
+    WIDE_TRUTH = "wide truth"
+    START = "start"
+    UNFINISHED = "unfinished"
+    NO_TRUTH = "no truth"
+    NOT_POSED = "not posed"
+    TOO_FAR = "too far"
+    INCOMPLETE = "incomplete"
+    STATED = "stated"
+
+
+class Carried(StrEnum):
+    """The way in which the roundings of the steps reach the compared quantity."""
+
+    ORBIT = "transition matrix"
+    GRADIENT = "gradient"
+    VELOCITY = "velocity of x and y"
+    LENGTH = "length of the quaternion"
+    START = "start"
+    ROW = "row"
+
+
+class Kind(StrEnum):
+    """The course of the shift of time that explains an error; NONE leaves more than a tenth of it."""
+
+    CONSTANT = "constant"
+    DRIFTING = "drifting"
+    WANDERING = "wandering"
+    NONE = "none"
+
+
+@dataclass(frozen=True)
+class Remark:
+    """One conclusion: its cause, and the sentence without a full stop."""
+
+    cause: Cause
+    text: str
+
+
+@dataclass(frozen=True)
+class RoundoffFloor:
+    """The error ``value`` that perfect rounding would leave; None stands for no finite number.
+
+    It is ``roundoff`` x ``steps``^1/2 x ``growth`` where an orbit or a gradient carries the roundings, and
+    ``roundoff`` x ``steps`` for the length of a quaternion, of which ``lengths`` says what was met. With
+    ``clock_work`` the roundings of the clock of a manufactured load are in it too.
+    """
+
+    carried: Carried
+    value: float | None = None
+    roundoff: float | None = None
+    steps: float | None = None
+    growth: float | None = None
+    clock_work: bool = False
+    lengths: str = ""
+
+    def sentence(self) -> str:
+        """Return the arithmetic, then behind a colon its meaning."""
+        arithmetic, meaning = self.parts()
+        return f"{arithmetic}: {meaning}" if arithmetic else meaning
+
+    def parts(self) -> tuple[str, str]:
+        """Return the arithmetic, empty where there is none, and its meaning."""
+        value, u = _figure(self.value), _figure(self.roundoff)
+        if self.carried is Carried.START:
+            return "", "one rounding of each component of the start on the rung"
+        if self.carried is Carried.ROW:
+            return "", "a rounding of the input and one of the row"
+        if self.carried is Carried.VELOCITY:
+            return "", (
+                "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "
+                "and one rounding of Omega itself"
+            )
+        if self.carried is Carried.LENGTH:
+            return f"attainable = u N = {u} x {_figure(self.steps, 4)} = {value}", (
+                "in each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
+                f"{self.lengths}"
+            )
+        is_orbit = self.carried is Carried.ORBIT
+        matrix = "the orbit's transition matrix" if is_orbit else "the gradient"
+        return (
+            f"attainable = u sqrt(N) x growth = {u} x sqrt({_count(self.steps)}) x "
+            f"{_figure(self.growth, 3)} = {value}"
+        ), (
+            "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
+            "of its rate in magnitude, carried by "
+            f"{matrix}{_CLOCK_WORK if self.clock_work else ''}"
+        )
+
+
+_CLOCK_WORK: Final = (
+    ", and as many roundings of the clock of the loads, each of which does work ever after"
+)
+
+
+@dataclass(frozen=True)
+class InputShare:
+    """The part of a floor that the rounding of the input adds.
+
+    ``moved`` says which inputs were moved by ``roundoff`` of their size, ``error`` what this makes of the
+    quantity, and ``total`` the root of the sum of squares of this and the roundoff floor.
+    """
+
+    moved: str
+    roundoff: float
+    error: float | None
+    total: float | None
+
+    def sentence(self) -> str:
+        """Return the arithmetic of the whole floor, but for the roundoff floor itself."""
+        return (
+            f"attainable = (rounding^2 + input^2)^(1/2) = {_figure(self.total)}; "
+            f"input: {self.moved}, moved by u = {self.roundoff:.2g} of its size, "
+            f"moves this by {_figure(self.error)}"
+        )
+
+
+@dataclass(frozen=True)
+class ClaimedSteps:
+    """The steps that a solver claims, and those counted: at most what the ``limit`` says in words."""
+
+    claimed: int
+    counted: int
+    limit: str
+
+    def sentence(self) -> str:
+        """Return the claim and what is counted of it."""
+        return f"it claims {self.claimed} steps; at most {self.counted} are counted, {self.limit}"
+
+
+@dataclass(frozen=True)
+class TimeShift:
+    """The shift of time behind an error: c with answer(t) ~ exact(t - c), positive if it is late.
+
+    ``late`` is the shift where it is largest, at time ``at`` (a constant one has no ``at``), ``remains``
+    the largest error that it leaves, in the unit of the error. A drifting one grows by ``trend`` in a
+    unit of time, and is ``begins`` at time ``begins_at`` unless it begins right. ``strays`` are the times
+    of those of the ``rows`` rows that do not share the shift.
+    """
+
+    kind: Kind
+    late: float = 0.0
+    remains: float = 0.0
+    at: float | None = None
+    trend: float = 0.0
+    begins: float | None = None
+    begins_at: float = 0.0
+    rows: int = 0
+    strays: tuple[float, ...] = ()
+
+    def sentence(self) -> str:
+        """Return the shift in words that a person can act on."""
+        if self.kind is Kind.NONE:
+            return "no shift of time explains it"
+        left = f"{self.remains:.2g} remains{self._strays()}"
+        if self.at is None:
+            return f"{_late(self.late)}, {self.kind}; {left}"
+        at_worst = f"{_late(self.late)} at t = {self.at:g}"
+        if self.kind is Kind.WANDERING:
+            return f"{at_worst}, wandering; {left}"
+        pace = f"{'slow' if self.trend > 0 else 'fast'} by {abs(self.trend):.3g} of the time"
+        first = ""
+        if self.begins is not None:
+            first = f" and is {_late(self.begins)} at t = {self.begins_at:g}"
+        return f"{at_worst}, drifting: its clock runs {pace}{first}; {left}"
+
+    def _strays(self) -> str:
+        """Return the number of rows that share the shift, and the times of those that do not."""
+        if not self.strays:
+            return ""
+        count = len(self.strays)
+        named = ", ".join(f"{t:g}" for t in self.strays[:_MOST_NAMED])
+        rest = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
+        those = (
+            f"the row at t = {named} does" if count == 1 else f"the rows at t = {named}{rest} do"
+        )
+        return f" in {self.rows - count} of {self.rows} rows; {those} not share it"
+
+
+@dataclass(frozen=True)
+class Reason:
+    """The reason of one verdict. A verdict that compares nothing has remarks alone."""
+
+    remarks: tuple[Remark, ...] = ()
+    factor: float | None = None
+    floor: RoundoffFloor | None = None
+    input: InputShare | None = None
+    claim: ClaimedSteps | None = None
+    shift: TimeShift | None = None
+
+    @property
+    def conclusion(self) -> str:
+        """The remarks; empty where the numbers of the verdict say everything."""
+        return "; ".join(remark.text for remark in self.remarks)
+
+    @property
+    def rule(self) -> str:
+        """The gate in units of the roundoff floor; empty where nothing was compared."""
+        return "" if self.factor is None else f"{self.factor:g} x attainable"
+
+    @property
+    def allowance(self) -> str:
+        """The arithmetic of the bound; empty where nothing was compared."""
+        return "; ".join(self._terms())
+
+    def parts(self) -> list[str]:
+        """Return the sentences one by one: conclusions, the arithmetic of the bound, the shift."""
+        remarks = (remark.text for remark in self.remarks)
+        return [*remarks, *self._terms(), *filter(None, [self.meaning])]
+
+    @property
+    def meaning(self) -> str:
+        """The shift of time behind the error; empty where the reason has none."""
+        return f"{_AS_A_SHIFT}: {self.shift.sentence()}" if self.shift else ""
+
+    def with_remark(self, cause: Cause, text: str) -> Reason:
+        """Return this reason with a conclusion in front of those that it has."""
+        return replace(self, remarks=(Remark(cause, text), *self.remarks))
+
+    def __str__(self) -> str:
+        """Return all sentences in one line."""
+        return "; ".join(self.parts())
+
+    def _terms(self) -> Iterator[str]:
+        if self.rule:
+            yield self.rule
+        if self.input:
+            yield self.input.sentence()
+        if self.floor:
+            yield f"{'rounding: ' if self.input else ''}{self.floor.sentence()}"
+        if self.claim:
+            yield self.claim.sentence()
+
+
+NO_REASON: Final = Reason()
+
+
+def stated(cause: Cause, text: str) -> Reason:
+    """Return the reason that is one remark: why nothing was compared."""
+    return Reason((Remark(cause, text),))
+
+
+def _late(shift: float) -> str:
+    return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
+
+
+def _figure(value: float | None, digits: int = 2) -> str:
+    return "not finite" if value is None else f"{value:.{digits}g}"
+
+
+def _count(steps: float | None) -> str:
+    return "not finite" if steps is None else str(round(steps))
