@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, isfinite, log10
+from math import ceil, log10
 from typing import Any, Final
 
 import numpy as np
@@ -27,6 +27,7 @@ from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.records.answers import Convention, FileRead, whole
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
@@ -75,30 +76,32 @@ class FileJudgement(Judgement):
     notes: tuple[str, ...] = ()
 
     def document(self) -> dict[str, Any]:
-        """As JSON holds it: the rows of `run`, and what was found out."""
+        """Return the document that `check --json` prints."""
+        groups = self.file.groups
+        file = FileRead(
+            self.file.name,
+            len(self.file.times),
+            ("t", *(column for group in groups for column in COLUMNS[group])),
+            self.notes,
+        )
         return {
             "verdicts": [verdict.row() for verdict in self.verdicts],
             "summary": summary(self.verdicts),
-            "conventions": [self._convention(finding) for finding in self.conventions],
-            "file": {
-                "name": self.file.name,
-                "rows": len(self.file.times),
-                "columns": ["t", *(c for group in self.file.groups for c in COLUMNS[group])],
-                "notes": list(self.notes),
-            },
+            "conventions": [whole(self._convention(finding)) for finding in self.conventions],
+            "file": whole(file),
         }
 
-    def _convention(self, found: Finding) -> dict[str, Any]:
-        return {
-            "about": found.subject,
-            "found": found.words,
-            "ambiguous": not found.is_certain,
-            "alternatives": list(found.alternatives),
-            "error_without": found.before if isfinite(found.before) else None,
-            "error_with": found.after if isfinite(found.after) else None,
-            "corrected": self.accepted and found.is_certain,
-            "sentence": found.sentence,
-        }
+    def _convention(self, found: Finding) -> Convention:
+        return Convention(
+            about=found.subject,
+            found=found.words,
+            ambiguous=not found.is_certain,
+            corrected=self.accepted and found.is_certain,
+            sentence=found.sentence,
+            alternatives=found.alternatives,
+            error_without=found.before,
+            error_with=found.after,
+        )
 
 
 def judge_file(

@@ -94,9 +94,9 @@ def _fault(error: msgspec.ValidationError, document: Any) -> str:
     place = match[1] if match else ""
     if missing := _MISSING.fullmatch(said):
         return f"expected {missing[1]}, got no such key @ {place or 'the document'}"
-    return (
-        f"{said[:1].lower()}{said[1:]}, got {_at(document, place)}{f' @ {place}' if place else ''}"
-    )
+    said = _TYPE.sub(_in_words, said)
+    where = f" @ {place}" if place else ""
+    return f"{said[:1].lower()}{said[1:]}, got {_at(document, place)}{where}"
 
 
 def _in_words(found: re.Match[str]) -> str:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
+
+from msgspec import Meta
 
 from taylor_verify.records.json_text import Count, Size, converted, finite, plain
 from taylor_verify.records.quantities import COMPLETE, is_conserved
@@ -14,49 +16,82 @@ from taylor_verify.records.status import Status
 
 @dataclass(frozen=True)
 class Verdict:
-    """One compared quantity.
+    """One compared quantity of one run.
 
-    ``max``, ``mean`` and ``final`` are errors in ``unit``, ``at`` the time of the largest; ``bound``
-    and ``attainable`` hold at that time. ``ratio`` is the largest error over attainable of all
-    samples (those before a vacuous gate's bound reached the size of the motion) and ``ratio_at`` its
-    time: the gate asks each of them, so ``ratio`` decides.
-
-    For a state quantity ``time_shift`` is the constant c with answer(t) ~ exact(t - c), in the unit of t
-    and positive if the answer is late, and ``residual`` the largest error that it leaves, in ``unit``.
-    ``shift`` is the course of the shift of time behind the error: constant, drifting, wandering, or none
-    (it leaves more than a tenth). ``remains`` is the largest error that this course leaves, and ``trend``
-    the shift per unit of time of one that drifts; both are None where no shift explains the error.
-
-    A number that does not exist, or is not finite, is None.
+    A number that does not exist, or is not finite, is None. ``bound`` and ``attainable`` hold at the time
+    of the largest error; the gate asks every sample, so that ``ratio`` decides (of a vacuous gate: the
+    samples before its bound reached the size of the motion).
     """
 
-    scene: str
+    scene: Annotated[
+        str, Meta(description="The name of a shipped scene, or the path of a scene file.")
+    ]
     solver: str
-    rung: str
-    setting: str
-    quantity: str
+    rung: Annotated[str, Meta(description="f32, f64, f80, f128 or mpN, N the bits.")]
+    setting: Annotated[str, Meta(description="Tells two uses of one solver apart.")]
+    quantity: Annotated[
+        str,
+        Meta(
+            description="initial state; omega, impulse, attitude, centre; T, H2, F2, FG, y3, H_space and "
+            "so on; complete, where a file lacks a part of what the scene asks."
+        ),
+    ]
     verdict: Status
-    outcome: str
-    max: Size | None = None
-    mean: Size | None = None
-    final: Size | None = None
-    at: float | None = None
-    unit: str = ""
-    bound: Size | None = None
+    outcome: Annotated[str, Meta(description="How the solver ended.")]
+    max: Annotated[Size | None, Meta(description="The largest error of all samples, in unit.")] = (
+        None
+    )
+    mean: Annotated[Size | None, Meta(description="The mean error of all samples.")] = None
+    final: Annotated[Size | None, Meta(description="The error of the last sample.")] = None
+    at: Annotated[float | None, Meta(description="The time of the largest error.")] = None
+    unit: Annotated[str, Meta(description="What an error of 1 is.")] = ""
+    bound: Annotated[
+        Size | None, Meta(description="What is allowed at the time of the largest error.")
+    ] = None
     reason: Reason = NO_REASON
-    attainable: Size | None = None
-    ratio: Size | None = None
-    ratio_at: float | None = None
-    time_shift: float | None = None
-    residual: Size | None = None
-    shift: str | None = None
-    trend: float | None = None
-    remains: Size | None = None
-    roundoff: Size | None = None
-    exponent: float | None = None
+    attainable: Annotated[
+        Size | None,
+        Meta(description="What perfect rounding would leave, at the time of the largest error."),
+    ] = None
+    ratio: Annotated[
+        Size | None,
+        Meta(description="The largest error over attainable, of all samples; it decides."),
+    ] = None
+    ratio_at: Annotated[float | None, Meta(description="The time of the largest ratio.")] = None
+    time_shift: Annotated[
+        float | None,
+        Meta(
+            description="State quantities: c with answer(t) ~ exact(t - c), positive if the answer is late."
+        ),
+    ] = None
+    residual: Annotated[
+        Size | None,
+        Meta(description="State quantities: the largest error that the time shift leaves."),
+    ] = None
+    shift: Annotated[
+        str | None,
+        Meta(
+            description="State quantities: the course of the shift of time behind the error, constant, "
+            "drifting, wandering, or none where it leaves more than a tenth."
+        ),
+    ] = None
+    trend: Annotated[
+        float | None, Meta(description="The shift per unit of time, where it is drifting.")
+    ] = None
+    remains: Annotated[
+        Size | None,
+        Meta(description="The largest error that the course of the shift leaves, in unit."),
+    ] = None
+    roundoff: Annotated[Size | None, Meta(description="u = 2^-bits of the rung.")] = None
+    exponent: Annotated[
+        float | None, Meta(description="Growth of the error as a power of t, where fitted.")
+    ] = None
     steps: Count = 0
-    evaluations: Count = 0
-    seconds: Size | None = None
+    evaluations: Annotated[Count, Meta(description="Of the derivative.")] = 0
+    seconds: Annotated[
+        Size | None,
+        Meta(description="Of the run, all its quantities together; in files it stands apart."),
+    ] = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
     @property

@@ -1,0 +1,105 @@
+"""The documents that `run --json` and `check --json` print."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from msgspec import Meta
+
+from taylor_verify.records.json_text import Count, Size, plain
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+
+Sentences = tuple[Annotated[str, Meta(min_length=1)], ...]
+
+
+@dataclass(frozen=True)
+class Convention:
+    """One convention of a file that is not the scene's."""
+
+    about: Annotated[str, Meta(description="time, body, axes or a group of columns.")]
+    found: str
+    ambiguous: Annotated[
+        bool, Meta(description="True if this motion cannot tell it from the alternatives.")
+    ]
+    corrected: Annotated[
+        bool,
+        Meta(description="True if it was accepted: the verdicts are of the corrected file."),
+    ]
+    sentence: str
+    alternatives: tuple[str, ...] = ()
+    error_without: Annotated[Size | None, Meta(description="Relative, or in radians.")] = None
+    error_with: Size | None = None
+
+
+@dataclass(frozen=True)
+class FileRead:
+    """A trajectory file as it was read; ``notes`` say what was not compared, and why."""
+
+    name: str
+    rows: Count
+    columns: tuple[str, ...]
+    notes: Sentences = ()
+
+
+@dataclass(frozen=True)
+class Against:
+    """The comparison with a published folder: what has left its rounding class."""
+
+    folder: str
+    compared: Count
+    departures: Sentences
+
+
+@dataclass(frozen=True)
+class AgainstBaseline:
+    """The comparison with an earlier run.
+
+    ``regressions`` are worse by more than rounding explains, ``undecided`` could not be compared, and
+    ``changes`` are all other differences.
+    """
+
+    file: str
+    compared: Count
+    regressions: Sentences
+    undecided: Sentences
+    changes: Sentences
+
+
+@dataclass(frozen=True)
+class ExpectationsMet:
+    """The rows of the extremes that were expected to be no pass: how many came so, and what did not."""
+
+    met: Count
+    mismatches: Sentences
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A run that was not made, and why."""
+
+    scene: str
+    rung: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The verdicts of `run` or `check`, and what they were compared with."""
+
+    verdicts: tuple[Verdict, ...]
+    summary: Annotated[
+        dict[Status, Count], Meta(description="The number of verdicts of each status.")
+    ]
+    expected: ExpectationsMet | None = None
+    left_out: tuple[LeftOut, ...] = ()
+    against: Against | None = None
+    baseline: AgainstBaseline | None = None
+    conventions: tuple[Convention, ...] = ()
+    file: FileRead | None = None
+
+
+def whole(document: Any) -> dict[str, Any]:
+    """Return a document with all of its keys, those that are empty too."""
+    return {name: plain(value) for name, value in vars(document).items()}

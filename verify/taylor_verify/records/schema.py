@@ -1,0 +1,76 @@
+"""The JSON schema of the documents of `run --json` and `check --json`, made from their types.
+
+python -c 'from taylor_verify.records.schema import text; print(text(), end="")' > verdicts.schema.json
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Final
+
+import msgspec
+
+from taylor_verify.records.answers import Answer
+from taylor_verify.records.status import Status
+
+_DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+_DESCRIPTION: Final = (
+    "What `taylor-verify run --json` and `taylor-verify check --json` print. Keys that are not listed may "
+    "be added; those that are listed keep their meaning."
+)
+# A row is written with these, whatever it compares.
+REQUIRED: Final = (
+    *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
+    *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
+    *("evaluations", "provenance"),
+)
+_RUNG: Final = "^(f32|f64|f80|f128|mp[1-9][0-9]*)$"
+
+
+def schema() -> dict[str, Any]:
+    """Return the schema of an answer, with what a type cannot say of a row."""
+    (root,), found = msgspec.json.schema_components((Answer,), ref_template="#/$defs/{name}")
+    answer = found.pop(root["$ref"].rpartition("/")[2])
+    verdict = found["Verdict"]
+    because = {"description": "The reason in one line.", "type": "string"}
+    verdict["properties"] = {"because": because, **verdict["properties"]}
+    verdict["properties"]["rung"]["pattern"] = _RUNG
+    verdict["properties"]["quantity"]["minLength"] = 1
+    verdict["properties"]["provenance"] = {
+        "description": "What the row can be traced to: SHA-256 of the scene's text, versions, machine.",
+        "type": "object",
+        "required": ["scene"],
+        "properties": {"scene": {"type": "string"}},
+    }
+    verdict["required"] = list(REQUIRED)
+    number = {"type": "number"}
+    compared = dict.fromkeys(("max", "bound", "attainable", "at"), number)
+    verdict["if"] = {"properties": {"verdict": {"const": Status.PASS.value}}}
+    verdict["then"] = {"description": "What passed has numbers.", "properties": compared}
+    verdict["else"] = {
+        "description": "What did not says why.",
+        "properties": {"because": {"minLength": 1}},
+    }
+    answer["properties"]["summary"] |= {
+        "required": [status.value for status in Status],
+        "propertyNames": {"$ref": "#/$defs/Status"},
+    }
+    head = {"$schema": _DIALECT, **answer, "title": "Verdicts", "description": _DESCRIPTION}
+    made: dict[str, Any] = _tidied({**head, "$defs": found})
+    return made
+
+
+def _tidied(schema: Any) -> Any:
+    """Return the schema without the defaults of the types, its docstrings in one line."""
+    if isinstance(schema, list):
+        return [_tidied(item) for item in schema]
+    if isinstance(schema, str):
+        return " ".join(schema.split())
+    if not isinstance(schema, dict):
+        return schema
+    return {key: _tidied(value) for key, value in schema.items() if key != "default"}
+
+
+def text() -> str:
+    """Return the schema as the published file has it."""
+    return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
