@@ -96,7 +96,7 @@ def test_an_rk4_of_small_steps_is_believed() -> None:
     """A step of 1e-4 over t = 100 on an orbit of a radian per unit of time is counted whole."""
     problem = pose(load(SCENE), rung("f64"))
     found = count_steps(problem, Callback(hasty), 10**6, seconds=1.0)
-    assert (found.counted, found.because) == (10**6, "")
+    assert (found.counted, found.claim) == (10**6, None)
 
 
 def test_no_more_steps_are_counted_than_a_processor_does() -> None:
@@ -104,7 +104,7 @@ def test_no_more_steps_are_counted_than_a_processor_does() -> None:
     problem = pose(load(SCENE), rung("f64"))
     found = count_steps(problem, Callback(hasty), MANY, seconds=0.001)
     assert found.counted == int(STEPS_PER_SECOND * 0.001)
-    assert "seconds that it took" in found.because
+    assert "seconds that it took" in found.claim.limit
 
 
 def test_a_solver_of_this_project_counts_its_own() -> None:

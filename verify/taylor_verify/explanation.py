@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import isfinite
 from os import PathLike
 from typing import Any
@@ -148,6 +149,7 @@ def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any]
         return None
     worst, pace = found.worst, found.pace
     per_period = None if pace is None or period is None else _finite(pace * period)
+    sentences = list(_condition_sentences(found, rung, per_period))
     return {
         "from": found.times[0],
         "worst": _finite(found.factors[worst]),
@@ -155,28 +157,29 @@ def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any]
         "end": _finite(found.factors[-1]),
         "end_at": found.times[-1],
         "per_period": per_period,
-        "sentence": _condition_sentence(found, rung, per_period),
+        "sentence": " ".join(sentences),
+        "sentences": sentences,
     }
 
 
-def _condition_sentence(found: Carrying, rung: Rung, per_period: float | None) -> str:
-    """The factors in words, and what they make of one rounding of this rung."""
+def _condition_sentences(found: Carrying, rung: Rung, per_period: float | None) -> Iterator[str]:
+    """Yield the factors in words, and the size that one rounding of this rung grows to."""
     worst, u = found.worst, float(rung.unit_roundoff)
     becomes = u * found.factors[worst]
-    growth = ""
-    if per_period is not None:
-        growth = f" It grows in proportion to time, by about {per_period:.2g} per period."
-    elif found.pace is not None:
-        growth = f" It grows in proportion to time, by about {found.pace:.2g} per time unit."
-    lost = "; nothing of the state is left then" if not becomes < 1 else ""
     later = ""
     if worst < len(found.times) - 1:
         later = f", and by {found.factors[-1]:.3g} at the end (t = {found.times[-1]:g})"
-    return (
+    yield (
         f"An error in the state at t = {found.times[0]:g} is multiplied, each time relative to the "
         f"state, by {found.factors[worst]:.3g} at worst (t = {found.times[worst]:g}){later}."
-        f"{growth} On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at "
-        f"worst{lost}."
+    )
+    if per_period is not None:
+        yield f"It grows in proportion to time, by about {per_period:.2g} per period."
+    elif found.pace is not None:
+        yield f"It grows in proportion to time, by about {found.pace:.2g} per time unit."
+    lost = "; nothing of the state is left then" if not becomes < 1 else ""
+    yield (
+        f"On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at worst{lost}."
     )
 
 

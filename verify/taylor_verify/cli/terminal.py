@@ -362,8 +362,8 @@ def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
         print_indented(console, label, number["meaning"])
     if found["condition"] is not None:
         print_line(console, Text("conditioning", "bold"))
-        for sentence in found["condition"]["sentence"].split(". "):
-            print_indented(console, "  ", sentence.removesuffix(".") + ".")
+        for sentence in found["condition"]["sentences"]:
+            print_indented(console, "  ", sentence)
 
 
 def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
