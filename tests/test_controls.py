@@ -15,11 +15,10 @@ from taylor_verify.controls.defect import Defect
 from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.controls.sight import RUNG, Sight, Twins, document, sights
 from taylor_verify.exact.invariants import invariants
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.models.problem import pose
 from taylor_verify.publish import controls, proof, report
 from taylor_verify.publish import sights as stored
-from taylor_verify.records.quantities import INITIAL, UNIT_QUATERNION
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import rung
@@ -225,7 +224,7 @@ def test_rows_come_back_as_they_were_stored() -> None:
         for name, verdict in run.items():
             if verdict.max is not None and np.isfinite(verdict.max):
                 assert verdict.ratio is not None
-                assert row.over_bound(name) == verdict.ratio / FACTOR
+                assert row.over_bound(name) == verdict.ratio / GATE_FACTOR
             if verdict.verdict is Status.FAIL:
                 assert row.verdicts[name].shift == verdict.shift
 

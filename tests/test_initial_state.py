@@ -13,11 +13,10 @@ import pytest
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.judge.baseline import hold
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import compare
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -60,7 +59,7 @@ def test_a_sound_run_starts_where_it_was_told(scene: str, on: str) -> None:
     first, *others = run(scene, "taylor", on).verdicts
     assert (first.quantity, first.verdict) == (INITIAL, Status.PASS)
     assert first.at == float(load(scene).clock.start)
-    assert first.bound == FACTOR * first.attainable
+    assert first.bound == GATE_FACTOR * first.attainable
     assert "is the scene's initial state" in first.because
     assert "one rounding of each component of the start on the rung" in first.because
     assert all(verdict.quantity != INITIAL for verdict in others)

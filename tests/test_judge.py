@@ -15,8 +15,9 @@ from taylor_verify.exact.solution import Settled, Unsettled
 from taylor_verify.judge.attainable import Floor, floor
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import Errors, arc_length, largest, state_errors
-from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
+from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status, summary
@@ -51,8 +52,8 @@ TERMS = Reason()
 def test_gate_stands_at_ten_times_the_attainable_error() -> None:
     """An error of exactly the bound passes, one unit above it fails."""
     attainable = np.array([1e-15, 2e-15])
-    bound = FACTOR * attainable[1]
-    assert FACTOR == 10
+    bound = GATE_FACTOR * attainable[1]
+    assert GATE_FACTOR == 10
     assert judge(errors_of([0.0, bound]), attainable, TERMS).status is Status.PASS
     above = math.nextafter(bound, 1)
     assert judge(errors_of([0.0, above]), attainable, TERMS).status is Status.FAIL
@@ -99,7 +100,7 @@ def test_an_error_below_every_double_is_an_error() -> None:
 def test_truth_wider_than_a_sixteenth_of_the_bound_decides_nothing() -> None:
     """A truth with a radius over bound/16 makes a gate undecided, for right and wrong alike."""
     attainable = np.array([1e-15])
-    width = FACTOR * 1e-15 / 16
+    width = GATE_FACTOR * 1e-15 / 16
     assert judge(errors_of([0.0], width), attainable, TERMS).status is Status.PASS
     for error in (0.0, 1.0):
         finding = judge(errors_of([error], 1.01 * width), attainable, TERMS)

@@ -28,7 +28,6 @@ from mpmath import mp
 from taylor_verify.controls.defects import DEFECTS, Defect
 from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import largest, state_errors
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.models.form import (
     Form,
     Named,
@@ -39,6 +38,7 @@ from taylor_verify.models.form import (
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.special import ClebschAbout
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Impulse, Motion, Quaternion, Spin
@@ -136,7 +136,7 @@ def assert_held(asked: Scene, given: Scene) -> None:
 def apart(run: Run, image: Motion, steps: int) -> float:
     """How far a run and another's image in its scene are apart, as a share of what is allowed.
 
-    Allowed are FACTOR floors for each: both are answers to this scene, in ``steps`` steps and in its
+    Allowed are GATE_FACTOR floors for each: both are answers to this scene, in ``steps`` steps and in its
     own, and an orbit's image has the orbit's own condition. NaN or infinite
     where either has a NaN.
     """
@@ -146,7 +146,7 @@ def apart(run: Run, image: Motion, steps: int) -> float:
     shares = []
     with mp.workprec(BITS):
         for errors in state_errors(asked, motion, image):
-            allowed = FACTOR * (one.of_state(errors) + other.of_state(errors))
+            allowed = GATE_FACTOR * (one.of_state(errors) + other.of_state(errors))
             shares += [share(e, a) for e, a in zip(errors.values, allowed, strict=True)]
     return float(largest(shares))
 

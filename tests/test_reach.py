@@ -12,7 +12,7 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.exact.elements import elements
-from taylor_verify.judge.gates import FACTOR
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -147,7 +147,7 @@ def test_solvers_come_near_the_floor(axis: dict[str, dict[str, reach.Reach]]) ->
     """What is not lost is within the judge's factor of the attainable error."""
     for found in axis["1e-2"].values():
         for error, least in zip(found.errors, found.floors, strict=True):
-            assert error <= FACTOR * least or least >= 0.1
+            assert error <= GATE_FACTOR * least or least >= 0.1
 
 
 def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, reach.Reach]]) -> None:
@@ -182,7 +182,7 @@ def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
     fine = measured(one, "1")["f64"]
     monkeypatch.setattr(reach, "Taylor", lambda: at_tolerance("1e-6"))
     coarse = measured(one, "1")["f64"]
-    assert fine.errors[0] <= FACTOR * fine.floors[0]
+    assert fine.errors[0] <= GATE_FACTOR * fine.floors[0]
     assert coarse.errors[0] > 1e4 * fine.errors[0]
 
 
@@ -217,8 +217,8 @@ def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
         least = least_error(generic, rung(name))
         (_, omega, *_) = taylor_verify.run(generic, Taylor(), name).verdicts
         assert least is not None
-        assert 0 < least <= omega.attainable * FACTOR
-        assert omega.max <= FACTOR * omega.attainable
+        assert 0 < least <= omega.attainable * GATE_FACTOR
+        assert omega.max <= GATE_FACTOR * omega.attainable
 
 
 def test_a_rung_that_cannot_reach_it_is_not_measured(generic: Scene) -> None:
@@ -236,8 +236,8 @@ def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
     """It takes a floor of the judge's factor times the target; what is nearer is measured."""
     least = least_error(generic, F64)
     assert least is not None
-    assert left_out(generic, [F64], 0.99 * least / FACTOR).keys() == {F64}
-    assert left_out(generic, [F64], 1.01 * least / FACTOR) == {}
+    assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
+    assert left_out(generic, [F64], 1.01 * least / GATE_FACTOR) == {}
     assert recommend(generic, 1e-3, [setting("taylor", F32)]).left_out == ()
 
 

@@ -16,9 +16,8 @@ from math import log
 from time import monotonic
 from typing import Any, Final
 
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.provenance import command, processor, versions
-from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -78,7 +77,7 @@ class Found:
         ratio = f"{self.worst.ratio:.3g}"
         why = (
             f"# Why: of {self.family.what}, the largest error over attainable that a hunt has found,\n"
-            f"# {ratio} in {self.worst.verdict.quantity} on {RUNG}; a gate stands at {FACTOR}.\n"
+            f"# {ratio} in {self.worst.verdict.quantity} on {RUNG}; a gate stands at {GATE_FACTOR}.\n"
         )
         return why + self.family.text(self.worst.place)
 
@@ -140,7 +139,7 @@ def _counts(verdict: Verdict) -> bool:
 def document(found: Iterable[Found], seconds: float, seed: int) -> dict[str, Any]:
     """The rows that the published table is made from."""
     return {
-        "factor": FACTOR,
+        "factor": GATE_FACTOR,
         "rung": RUNG,
         "seconds": seconds,
         "seed": seed,

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from taylor_verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
 from taylor_verify.records.json_text import converted
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import gravest
 
@@ -171,7 +171,8 @@ def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
         console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
         print_line(console)
         print_line(
-            console, "allowed: ten times what rounding the input and every step would leave;"
+            console,
+            f"allowed: {GATE_FACTOR} times what rounding the input and every step would leave;",
         )
         print_line(console, "/floor: the largest error over what it would leave, of all rows.")
     for note in judged.notes:

@@ -7,13 +7,14 @@ first order: the gate of the state alone is on its edge.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import ceil, inf, log10, nextafter
+from math import inf, nextafter
 from typing import final
 
 import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.errors import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem
@@ -23,8 +24,6 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
 
 # What the judge works with (see judge.judgement): the truth must be the same number there as here.
-_MORE_DIGITS = 3
-_SPARE_BITS = 96
 # An error of this size makes its sample the worst, so that the verdict tells the bound there.
 _CONSPICUOUS = 1e-6
 
@@ -57,10 +56,10 @@ def _moved(problem: Problem, sound: Trajectory, error: float) -> Trajectory:
     """The middle sample's omega put at the truth plus this much, relative to max |omega|."""
     given, bits = problem.given, problem.rung.bits
     middle = len(problem.times) // 2
-    truth = solution(given).motion(given.clock.elapsed, ceil(bits * log10(2)) + _MORE_DIGITS)
+    truth = solution(given).motion(given.clock.elapsed, truth_digits(bits))
     assert isinstance(given.body, RigidBody)
-    with mp.workprec(bits + _SPARE_BITS):
-        (compared, *_) = state_errors(given, truth, sound.motion(bits + _SPARE_BITS))
+    with mp.workprec(working_bits(bits)):
+        (compared, *_) = state_errors(given, truth, sound.motion(working_bits(bits)))
         omega = truth["omega"][middle]
         I, K = (
             np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from taylor_verify.controls.defect import Defect
 from taylor_verify.controls.defects import DEFECTS
-from taylor_verify.judge.gates import FACTOR
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.solvers.solver import Solver
@@ -59,7 +59,7 @@ def document(found: Iterable[Sight]) -> dict[str, Any]:
         for v in (*sight.twin, *sight.verdicts)
     }
     return {
-        "factor": FACTOR,
+        "factor": GATE_FACTOR,
         "defects": [_row(sight.defect) for sight in sights],
         "verdicts": list(verdicts.values()),
     }

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, inf, log10, nan, pi
+from math import inf, nan, pi
 from typing import Any, Final
 
 import numpy as np
@@ -19,6 +19,7 @@ from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
+from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.errors import state_errors
 from taylor_verify.judge.growth import Law
 from taylor_verify.models.problem import Problem
@@ -111,7 +112,7 @@ def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
 def _state_and_phase(
     problem: Problem, exact: Solution, answer: Motion, period: float
 ) -> list[Measured]:
-    digits = ceil(problem.rung.bits * log10(2)) + _MORE_DIGITS
+    digits = truth_digits(problem.rung.bits, _MORE_DIGITS)
     elapsed = problem.given.clock.elapsed[: len(answer.radius)]
     clock = Clock(problem.given.clock.start, problem.given.clock.instants[: len(elapsed)])
     given = replace(problem.given, clock=clock, track=frozenset())

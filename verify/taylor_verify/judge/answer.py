@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, log10
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +16,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
@@ -274,7 +274,7 @@ def _width(double: float) -> int:
 
 def _cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
     """Whether the file was printed with too few digits to be right."""
-    needed = ceil(rung.bits * log10(2)) + 1
+    needed = truth_digits(rung.bits, 1)
     if file.digits is not None and file.digits < needed - 2:
         yield (
             f"no number is written with more than {file.digits} significant digits, where "
@@ -339,7 +339,7 @@ class _Answer:
 def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
     """The exact R at these times, for vectors that are in space axes."""
     given = replace(adopt(scene, rung, times).given, track=frozenset({"attitude"}))
-    digits = ceil(bits * log10(2))
+    digits = truth_digits(bits, 0)
     return solution(given).motion(given.clock.elapsed, digits)["attitude"]
 
 

@@ -7,13 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from taylor_verify.judge.errors import Errors, Floats
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Cause, Reason
 from taylor_verify.records.status import Status
 
-# The floor is the root mean square of a random sum. Ten times it leaves room for a solver that
-# rounds a few times a step and for the tail of the distribution, and no room for one step in a
-# hundred done wrongly.
-FACTOR = 10
 # Steps that somebody else claims widen a gate as their square root, WIDENING times at most beyond
 # those of a method that resolves every sample and every hundredth of a radian. So 10^4 steps a radian
 # count: an RK4 of step 1e-4 on an orbit of one radian per unit of time claims no more.
@@ -39,17 +36,17 @@ class Finding:
 
 
 def judge(errors: Errors, attainable: Floats, terms: Reason) -> Finding:
-    """Compare every sample's error with FACTOR times the attainable one.
+    """Compare every sample's error with GATE_FACTOR times the attainable one.
 
     The ratio is the largest of the samples that are asked, or of all if none is. ``terms`` say what is
     attainable; the finding adds the factor, and a remark where the numbers do not say everything.
     """
-    bounds = FACTOR * attainable
+    bounds = GATE_FACTOR * attainable
     worst = index_of_largest(errors.doubles)
     ratios = _ratios(errors.doubles, attainable)
     ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
     status = _status(errors, bounds)
-    reason = replace(terms, factor=float(FACTOR))
+    reason = replace(terms, factor=float(GATE_FACTOR))
     if status is Status.VACUOUS:
         reason = reason.with_remark(Cause.VACUOUS, _vacuous(errors, bounds))
     if status is Status.UNDECIDED:

@@ -13,10 +13,10 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.judge.errors import Errors
-from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
+from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.regraded import Graded
-from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.verdict import Verdict
 
@@ -56,7 +56,7 @@ def initial_verdict(
     worst = index_of_largest(np.array([finding.ratio for finding in findings]))
     (gate, k), finding = starts[worst], findings[worst]
     error, attainable = float(gate.errors[k]), float(gate.attainable[k])
-    is_within = error <= FACTOR * attainable
+    is_within = error <= GATE_FACTOR * attainable
     said = (
         f"the row at the start, t = {start:g}, is the scene's initial state"
         if is_within
@@ -71,7 +71,7 @@ def initial_verdict(
         mean=error,
         final=error,
         at=start,
-        bound=FACTOR * attainable,
+        bound=GATE_FACTOR * attainable,
         reason=finding.reason.with_remark(Cause.START, said),
         attainable=attainable,
         ratio=finding.ratio,

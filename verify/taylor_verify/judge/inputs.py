@@ -20,7 +20,6 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, log10
 from typing import Any, Final
 
 import numpy as np
@@ -30,6 +29,7 @@ from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import looked_at
 from taylor_verify.judge.errors import norms, state_errors
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
@@ -44,7 +44,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 # Up to this many inputs one at a time; of more, this many draws give the sum to a third.
 _MOST_DRAWS: Final = 8
 _MORE_DIGITS: Final = 6
-_SPARE_BITS: Final = 96
 _UPPER: Final = tuple((i, k) for i in range(3) for k in range(i, 3))
 
 
@@ -70,8 +69,8 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     nodes = looked_at(given if asked is None else asked)
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
-    digits = ceil(rung.bits * log10(2)) + _MORE_DIGITS
-    with mp.workprec(rung.bits + _SPARE_BITS):
+    digits = truth_digits(rung.bits, _MORE_DIGITS)
+    with mp.workprec(working_bits(rung.bits)):
         here = _motion(scene, digits)
         moved = [_Response.of(scene, here, _motion(s, digits)) for s in _moved(scene, rung)]
         total = _mean_square(moved, len(_numbers(scene)))

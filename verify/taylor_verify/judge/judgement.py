@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import ceil, fsum, inf, log10
+from math import fsum, inf
 from typing import Any
 
 import numpy as np
@@ -13,18 +13,19 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.judge.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, Floor, floor
 from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import Errors, state_errors
-from taylor_verify.judge.gates import FACTOR, Finding, index_of_largest, judge
+from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.shift import Shift, time_shifts
 from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import MAIN
+from taylor_verify.records.quantities import GATE_FACTOR, MAIN
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
@@ -34,12 +35,6 @@ from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-
-# The truth is asked for this many digits beyond the rung's own: its error is then below a
-# thousandth of a unit of roundoff, where the narrowest bound is some units.
-_MORE_DIGITS = 3
-# Differences of exactly held numbers lose no more than their leading bits at this precision.
-_SPARE_BITS = 96
 
 
 class NotPassed(AssertionError):
@@ -147,13 +142,13 @@ def _unfinished(trajectory: Trajectory) -> Reason:
 def _compare(run: _Run, exact: Solution) -> Judgement:
     problem, trajectory = run.problem, run.trajectory
     given, bits = problem.given, problem.rung.bits
-    digits = ceil(bits * log10(2)) + _MORE_DIGITS
+    digits = truth_digits(bits)
     costs = Costs()
     with costs.of(TRUTH):
         truth = exact.motion(given.clock.elapsed, digits)
-        start = exact.motion([Fraction(0)], digits + _MORE_DIGITS)
-    answer = trajectory.motion(bits + _SPARE_BITS)
-    with mp.workprec(bits + _SPARE_BITS):
+        start = exact.motion([Fraction(0)], digits + MORE_DIGITS)
+    answer = trajectory.motion(working_bits(bits))
+    with mp.workprec(working_bits(bits)):
         with costs.of(CONDITION):
             base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
         with costs.of(ERRORS):
@@ -252,7 +247,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         final=float(errors.doubles[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
-        bound=float(FACTOR * attainable[worst]),
+        bound=float(GATE_FACTOR * attainable[worst]),
         reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

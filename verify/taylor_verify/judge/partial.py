@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import ceil, log10
 from typing import Any, Final
 
 import numpy as np
@@ -17,14 +16,15 @@ from mpmath import mp, mpf
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.angular_shift import angular_shift
+from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, floor
 from taylor_verify.judge.errors import Errors, norms, state_errors
-from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
+from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import angular_velocity
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
@@ -37,7 +37,6 @@ Quantities = Mapping[str, np.ndarray[Any, Any]]
 Gated = tuple[Verdict, GateRecord]
 
 _GUARD_DIGITS: Final = 6
-_SPARE_BITS: Final = 96
 # The names that a sensitivity has for the quantities of a state.
 _BLOCKS: Final = {"momentum": "omega"}
 
@@ -72,7 +71,7 @@ def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
 
 
 def _truth(problem: Problem) -> Motion:
-    digits = ceil(problem.rung.bits * log10(2)) + _GUARD_DIGITS
+    digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
     return solution(problem.given).motion(problem.given.clock.elapsed, digits)
 
 
@@ -94,7 +93,7 @@ def _states_apart(
 ) -> list[Gated]:
     """Attitude and centre against the truth, and nothing that is conserved."""
     given, rung = problem.given, problem.rung
-    with mp.workprec(rung.bits + _SPARE_BITS):
+    with mp.workprec(working_bits(rung.bits)):
         base = floor(given, problem.scene, rung.unit_roundoff, 0)
         rows = []
         for errors in state_errors(given, truth, Motion(filled, truth.radius)):
@@ -119,13 +118,13 @@ class _Omega:
 
 
 def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gated:
-    with mp.workprec(problem.rung.bits + _SPARE_BITS):
+    with mp.workprec(working_bits(problem.rung.bits)):
         exact = _omega(problem, truth)
         values = norms(solver.quantities["omega"] - exact.rows) / exact.scale
         errors = Errors("omega", "max|omega|", values, truth.radius, {"omega": exact.scale})
         terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
         row, gate = _row(problem, solver, errors, exact.attainable, terms)
-        digits = ceil(problem.rung.bits * log10(2)) + _GUARD_DIGITS
+        digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
         shift = angular_shift(problem.given, solver.quantities["omega"], digits)
         if shift is None:
             return row, gate
@@ -153,7 +152,7 @@ def _row(
         final=float(values[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
-        bound=float(FACTOR * attainable[worst]),
+        bound=float(GATE_FACTOR * attainable[worst]),
         reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

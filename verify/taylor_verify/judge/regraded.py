@@ -14,10 +14,10 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.judge.errors import Errors
-from taylor_verify.judge.gates import FACTOR, index_of_largest, judge
+from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.reason import Cause, InputShare, Reason
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -99,7 +99,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
         verdict=finding.status,
         max=float(side.errors[worst]),
         at=float(times[worst]),
-        bound=float(FACTOR * attainable[worst]),
+        bound=float(GATE_FACTOR * attainable[worst]),
         reason=finding.reason.with_remark(Cause.NOT_FINITE, flaw) if flaw else finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

@@ -10,7 +10,7 @@ from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, rati
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.publish.runs import Run, is_scored, runs
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -21,7 +21,8 @@ _WHAT: Final = (
 )
 _MODEL: Final = (
     "It is a model of random roundings and no bound: a run of few steps may be lucky and stay far below "
-    "it, and the largest of hundreds of samples may lie somewhat above. A gate stands at ten times it."
+    "it, and the largest of hundreds of samples may lie somewhat above. A gate stands at "
+    f"{GATE_FACTOR} times it."
 )
 
 

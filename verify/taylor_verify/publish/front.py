@@ -11,7 +11,7 @@ from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts
 from taylor_verify.publish.runs import Run, gravest, is_scored, runs
-from taylor_verify.records.quantities import STATES, place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
 from taylor_verify.records.verdict import Verdict
 
 _WHAT = (
@@ -28,7 +28,7 @@ _READING = (
     "*Attainable* is the error that would remain if each step were rounded perfectly: such roundings "
     "add up like a random walk, and the motion itself magnifies them. *Error over attainable* near "
     "1 says that the solver does all that its arithmetic allows.",
-    "A quantity *passes* if no sample's error exceeds ten times what is attainable there. Only "
+    f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. Only "
     "**pass** is good: the [other verdicts](tables/README.md#how-to-read-a-cell) each have a meaning.",
     "A conserved energy or momentum certifies no motion: a wrong solution may conserve both.",
 )

@@ -24,6 +24,11 @@ INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
 UNIT_QUATERNION: Final = "unit quaternion"
 
+# A gate allows this many times the roundoff floor, which is the root mean square of a random sum. Ten
+# leaves room for a solver that rounds a few times a step and for the tail of the distribution, and no room
+# for one step in a hundred done wrongly.
+GATE_FACTOR: Final = 10
+
 # The columns of a trajectory file, group by group. r12 is row 1, column 2; q0 is the scalar.
 COLUMNS: Final[Mapping[str, tuple[str, ...]]] = {
     "omega": ("w1", "w2", "w3"),

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import ceil, inf, isnan, log10
-from typing import Final
+from math import inf, isnan
 
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import largest, state_errors
 from taylor_verify.models.problem import Problem
@@ -21,8 +21,6 @@ from taylor_verify.solvers.trajectory import Trajectory
 
 # As the judge has them: the truth is a thousandth of a unit of roundoff wide, differences lose no
 # more than their leading bits.
-_MORE_DIGITS: Final = 3
-_SPARE_BITS: Final = 96
 
 
 @dataclass(frozen=True)
@@ -53,8 +51,8 @@ class Truth:
 
     def __init__(self, problem: Problem) -> None:
         bits = problem.rung.bits
-        self._given, self._bits = problem.given, bits + _SPARE_BITS
-        self._digits = ceil(bits * log10(2)) + _MORE_DIGITS
+        self._given, self._bits = problem.given, working_bits(bits)
+        self._digits = truth_digits(bits)
         try:
             self._motion, self._start = self._evaluate(closed=True)
         except Unsettled:
@@ -64,7 +62,7 @@ class Truth:
         """The motion at the samples and at the start; beside a degenerate orbit, by Taylor series."""
         exact = solution(self._given) if closed else TaylorSolution(self._given)
         motion = exact.motion(self._given.clock.elapsed, self._digits)
-        return motion, exact.motion([Fraction(0)], self._digits + _MORE_DIGITS)
+        return motion, exact.motion([Fraction(0)], self._digits + MORE_DIGITS)
 
     def accuracy(self, trajectory: Trajectory) -> Accuracy:
         """Of a trajectory that finished."""

@@ -18,9 +18,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import state_errors
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.models.problem import NotRepresentable, pose
-from taylor_verify.records.quantities import FORMATS
+from taylor_verify.records.quantities import FORMATS, GATE_FACTOR
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
@@ -51,13 +50,13 @@ def least_error(scene: Scene, rung: Rung) -> float | None:
 def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
     """The rungs on which rounding alone leaves far more than an error, each with that in words.
 
-    The floor is a model of random roundings: as the judge's gates leave FACTOR above it, so it takes
-    FACTOR here before a rung is given up unmeasured.
+    The floor is a model of random roundings: as the judge's gates leave GATE_FACTOR above it, so it takes
+    GATE_FACTOR here before a rung is given up unmeasured.
     """
     found = {}
     for rung in dict.fromkeys(rungs):
         least = least_error(scene, rung)
-        if least is not None and least > FACTOR * error:
+        if least is not None and least > GATE_FACTOR * error:
             found[rung] = f"on {rung.name} rounding alone leaves {_figure(least)}"
     return found
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, inf, isfinite, log10
+from math import inf, isfinite
 from typing import Any, Final
 
 import numpy as np
@@ -20,6 +20,7 @@ from mpmath import mp
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import largest, state_errors
 from taylor_verify.judge.provenance import provenance
@@ -34,8 +35,6 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.trade.families import QUARTERS, Family, at_quarters, families, family, period_of
 
 # As the judge has them.
-_MORE_DIGITS: Final = 3
-_SPARE_BITS: Final = 96
 # Of a truth that says only how large the motion is.
 _DIGITS_OF_SCALES: Final = 15
 # From here on nothing is left, and a longer run would tell nothing new.
@@ -167,8 +166,8 @@ def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
     if trajectory.outcome is not Outcome.FINISHED:
         return [inf] * len(given.clock.instants)
     truth = _truth(problem)
-    with mp.workprec(rung.bits + _SPARE_BITS):
-        states = state_errors(given, truth, trajectory.motion(rung.bits + _SPARE_BITS))
+    with mp.workprec(working_bits(rung.bits)):
+        states = state_errors(given, truth, trajectory.motion(working_bits(rung.bits)))
         bounds = [one.values + one.truth_radius for one in states]
         return [float(largest(row)) for row in zip(*bounds, strict=True)]
 
@@ -202,7 +201,7 @@ def _with_floor(one: Reach, asked: Scene, truth: Motion) -> Reach:
 
 
 def _truth(problem: Problem) -> Motion:
-    digits = ceil(problem.rung.bits * log10(2)) + _MORE_DIGITS
+    digits = truth_digits(problem.rung.bits)
     return solution(problem.given).motion(problem.given.clock.elapsed, digits)
 
 

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from math import ceil, inf, isfinite, log10
+from math import inf, isfinite
 from typing import Any, Final
 
 from mpmath import mp
 
 from taylor_verify.controls.traps.trap import Case, Gate
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.gates import FACTOR
+from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
-from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.quantities import FORMATS, GATE_FACTOR, INITIAL
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
@@ -34,7 +34,7 @@ MOMENTS: Final = (1, 2, 3)
 GENERIC: Final = (0.71875, -0.40625, 0.90625)
 
 # A truth of so many digits is beyond question beside an error of double precision.
-_DIGITS: Final = ceil(53 * log10(2)) + 10
+_DIGITS: Final = truth_digits(FORMATS["f64"], 10)
 
 
 def free(name: str, omega: Sequence[float], end: float, samples: int = 11, start: int = 0) -> Scene:
@@ -68,7 +68,7 @@ def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> Case:
 
 
 def _gate(verdict: Verdict) -> Gate:
-    over = None if verdict.ratio is None else verdict.ratio / FACTOR
+    over = None if verdict.ratio is None else verdict.ratio / GATE_FACTOR
     return Gate(verdict.verdict.value, over)
 
 

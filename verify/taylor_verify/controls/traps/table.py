@@ -10,8 +10,8 @@ from taylor_verify.controls.traps.clock import CLOCK
 from taylor_verify.controls.traps.numbers import NUMBERS
 from taylor_verify.controls.traps.outcomes import OUTCOMES
 from taylor_verify.controls.traps.trap import Trap
-from taylor_verify.judge.gates import FACTOR
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.quantities import GATE_FACTOR
 
 
 def _place(trap: Trap) -> tuple[str, int, str]:
@@ -34,4 +34,4 @@ def document(
             finished(trap.title)
     known = {package: found for package, found in versions().items() if package != "python"}
     machine = {"processor": processor(), "command": command()}
-    return {"versions": known, "machine": machine, "factor": FACTOR, "traps": rows}
+    return {"versions": known, "machine": machine, "factor": GATE_FACTOR, "traps": rows}

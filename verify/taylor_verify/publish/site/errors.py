@@ -21,7 +21,7 @@ from taylor_verify.publish.site.figure import (
     short,
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of, rungs_upwards
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.verdict import Verdict
 
 Record = Mapping[str, Any]
@@ -48,8 +48,8 @@ def against_time(records: Mapping[str, Record], palette: Palette) -> Figure | No
         title="Error against time",
         caption="Points are the errors at the samples, lines what perfect rounding of every step "
         "would leave on this orbit: Brouwer's law, carried on by the orbit. Both axes are "
-        "logarithmic; an error of zero has no place there. A gate allows ten times the line. In units of "
-        "u, the roundoff of its rung, every rung is at one height.",
+        f"logarithmic; an error of zero has no place there. A gate allows {GATE_FACTOR} times the line. In "
+        "units of u, the roundoff of its rung, every rung is at one height.",
         alt="Error of every sample against time for each rung, both logarithmic, with what is "
         "attainable as a line. The largest errors are in the table of this page.",
         drawings=drawings,
