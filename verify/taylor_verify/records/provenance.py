@@ -1,0 +1,23 @@
+"""The origin of a document: the versions, the machine and the command that made it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """The versions of all packages that take part, the processor's name and the command line."""
+
+    versions: dict[str, str] = field(default_factory=dict)
+    processor: str = ""
+    command: str = ""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The machine that a measurement was made on; no number but a time depends on it."""
+
+    processor: str = ""
+    command: str = ""
+    python: str = ""

@@ -1,0 +1,69 @@
+"""The growth of errors over decades of time, measured on ensembles of starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from taylor_verify.records.provenance import Provenance
+
+
+@dataclass(frozen=True)
+class GrowthGate:
+    """The gate on the growth of a conserved quantity, or of the phase."""
+
+    verdict: str
+    law: str
+    chance: float
+    false_alarm: float
+    because: str
+
+
+@dataclass(frozen=True)
+class GrowthOfQuantity:
+    """One quantity of an ensemble.
+
+    ``rms`` are root mean squares over the starts at each of the ensemble's instants, ``in_walks`` the last
+    over that of a walk whose every step is one roundoff. ``exponent`` lies between ``low`` and ``high`` at
+    the confidence ``level``; ``late`` are the same three numbers of the second half of the decades.
+    """
+
+    quantity: str
+    rms: tuple[float, ...]
+    in_walks: float | None
+    exponent: float
+    low: float
+    high: float
+    level: float
+    lanes: int
+    word: str
+    late: tuple[float, float, float]
+    late_word: str
+    gate: GrowthGate | None = None
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """One scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
+
+    scene: str
+    digest: str
+    solver: str
+    rung: str
+    periods: float
+    lanes: int
+    seed: int
+    period: float
+    lost: int
+    counts: tuple[float, ...]
+    steps: tuple[float, ...]
+    quantities: tuple[GrowthOfQuantity, ...]
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class GrowthStudy:
+    """All ensembles; ``left_out`` names those that this machine has no rung for."""
+
+    runs: tuple[Ensemble, ...]
+    left_out: tuple[str, ...]
+    provenance: Provenance

@@ -1,0 +1,60 @@
+"""The cost of each thing that a scene may ask for, as a multiple of the barest form of its model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from taylor_verify.records.provenance import Provenance
+
+# A median, and the ends of its interval; None where there were too few rounds for an interval.
+Interval = tuple[float, float | None, float | None]
+
+
+@dataclass(frozen=True)
+class PriceRow:
+    """One variant on one rung: its equations, and what a step and a unit of time cost."""
+
+    rung: str
+    variant: str
+    against: str
+    what: str
+    states: int
+    parameters: int
+    sums: int
+    products: int
+    quotients: int
+    order: int
+    steps_per_time: float
+    step_ratio: Interval
+    time_ratio: Interval
+    microseconds: float
+    error: float
+
+
+@dataclass(frozen=True)
+class PriceAtEqualError:
+    """The time of a variant over that of the barest form, where both achieve one error."""
+
+    variant: str
+    against: str
+    ratio: float | None
+
+
+@dataclass(frozen=True)
+class PriceMethod:
+    """The rounds of each rung, and the error at which costs are compared."""
+
+    rounds: dict[str, int]
+    seed: int
+    least_seconds: float
+    equal_error: float
+
+
+@dataclass(frozen=True)
+class PricesStudy:
+    """All variants on all rungs."""
+
+    rows: tuple[PriceRow, ...]
+    equal: tuple[PriceAtEqualError, ...]
+    method: PriceMethod
+    provenance: Provenance
