@@ -154,7 +154,7 @@ def test_scene_file_says_why_it_is_there() -> None:
 
 def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
-    rows = hunt.document([found_of("euler-a", 1.5), found_of("euler-b", 2.5)], 60.0, 3)
+    rows = hunt.study([found_of("euler-a", 1.5), found_of("euler-b", 2.5)], 60.0, 3)
     worst.write(tmp_path, rows)
     page = worst.pages(tmp_path)[worst.PAGE]
     assert page.index("euler-b") < page.index("euler-a")

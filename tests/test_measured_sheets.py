@@ -78,24 +78,24 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
 
 def test_traps_have_a_row_for_every_case() -> None:
     """What heyoka reported, how wrong it was, and each gate's verdict."""
-    rows = stored(traps.TRAPS)["traps"]
+    rows = traps.load(REPORTS).traps
     found = read(measured.traps(rows))
-    cases = [(row, case) for row in rows for case in row["cases"]]
+    cases = [(row, case) for row in rows for case in row.cases]
     assert len(found) == len(cases)
     for cells, (row, case) in zip(found, cases, strict=True):
-        assert (cells["trap"], cells["reports"]) == (row["key"], " ".join(case["said"].split()))
-        assert number(cells["error"]) == case["error"]
-        for name, gate in case["gates"].items():
-            assert cells[f"{name}_verdict"] == gate["verdict"]
-            assert number(cells[f"{name}_over_bound"]) == gate["over_bound"]
+        assert (cells["trap"], cells["reports"]) == (row.key, " ".join(case.said.split()))
+        assert number(cells["error"]) == case.error
+        for name, gate in case.gates.items():
+            assert cells[f"{name}_verdict"] == gate.verdict
+            assert number(cells[f"{name}_over_bound"]) == gate.over_bound
 
 
 def test_worst_has_a_row_for_every_family() -> None:
     """With its scene and its ratio."""
-    document = stored(worst.WORST)
-    found = read(measured.worst(document))
+    study = worst.load(REPORTS)
+    found = read(measured.worst(study))
     assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
-        (row["name"], row["ratio"], row["scene"]) for row in document["families"]
+        (row.name, row.ratio, row.scene) for row in study.families
     ]
 
 

@@ -15,10 +15,11 @@ import heyoka as hy
 import pytest
 
 from taylor_verify.controls.traps.measured import GENERIC, free
-from taylor_verify.controls.traps.table import TRAPS, document
-from taylor_verify.controls.traps.trap import Case, Trap, shown
+from taylor_verify.controls.traps.table import TRAPS, study
+from taylor_verify.controls.traps.trap import Trap, shown
 from taylor_verify.models.problem import pose
 from taylor_verify.publish import traps as published
+from taylor_verify.records.studies.traps import TrapCase, TrapRow, TrapsStudy
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor
@@ -36,17 +37,17 @@ needs_sympy = pytest.mark.skipif(
 
 
 @lru_cache
-def cases(key: str) -> tuple[Case, ...]:
+def cases(key: str) -> tuple[TrapCase, ...]:
     """The cases of a trap, measured once for all tests."""
     return tuple(NAMED[key].measured())
 
 
-def case(key: str, name: str) -> Case:
+def case(key: str, name: str) -> TrapCase:
     (found,) = (found for found in cases(key) if found.case == name)
     return found
 
 
-def on_rung(key: str, name: str, on: str) -> Case:
+def on_rung(key: str, name: str, on: str) -> TrapCase:
     """The same for a rung that not every machine has."""
     if missing := Plain().unavailable(rung(on)):
         pytest.skip(missing)
@@ -338,21 +339,21 @@ def test_silent_is_what_reports_no_failure(trap: Trap) -> None:
 
 
 @lru_cache
-def fresh() -> published.Stored:
+def fresh() -> TrapsStudy:
     """The rows of all traps as they are read back, by way of a file."""
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder:
         remembered = [replace(trap, cases=as_measured(trap.key)) for trap in TRAPS]
-        published.publish(Path(folder), document(remembered))
+        published.publish(Path(folder), study(remembered))
         return published.load(Path(folder))
 
 
-def as_measured(key: str) -> Callable[[], list[Case]]:
+def as_measured(key: str) -> Callable[[], list[TrapCase]]:
     return lambda: list(cases(key))
 
 
-def stored(key: str) -> published.Trap:
+def stored(key: str) -> TrapRow:
     (found,) = (trap for trap in fresh().traps if trap.key == key)
     return found
 
@@ -399,7 +400,7 @@ def test_committed_rows_say_what_is_measured_now() -> None:
     assert {name: known.get(name) for name in judged(made)} == judged(made)
 
 
-def judged(traps: Sequence[published.Trap]) -> dict[tuple[str, str], object]:
+def judged(traps: Sequence[TrapRow]) -> dict[tuple[str, str], object]:
     """Of each case what the driver says and what the gates say of the plain answer."""
     return {
         (t.key, c.case): (c.driver, {name: gate.verdict for name, gate in c.gates.items()})
@@ -434,5 +435,7 @@ def test_rows_that_are_no_rows_are_refused(tmp_path: Path) -> None:
     file = tmp_path / published.TRAPS
     file.parent.mkdir()
     file.write_text(json.dumps({"versions": {}, "traps": [{"key": "T1"}]}), encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected the rows of a run of the traps.*traps\.json"):
+    with pytest.raises(
+        ValueError, match=r"expected title, got no such key @ traps\[0\] @ .*traps\.json"
+    ):
         published.load(tmp_path)

@@ -14,11 +14,13 @@ from dataclasses import dataclass
 from decimal import Decimal
 from math import log
 from time import monotonic
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.worst import WorstOfFamily, WorstStudy
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.faults import Refused
@@ -136,28 +138,28 @@ def _counts(verdict: Verdict) -> bool:
     return is_asked and verdict.quantity != INITIAL
 
 
-def document(found: Iterable[Found], seconds: float, seed: int) -> dict[str, Any]:
-    """The rows that the published table is made from."""
-    return {
-        "factor": GATE_FACTOR,
-        "rung": RUNG,
-        "seconds": seconds,
-        "seed": seed,
-        "provenance": {"versions": versions(), "processor": processor(), "command": command()},
-        "families": [
-            {
-                "name": one.family.name,
-                "what": one.family.what,
-                "judged": one.judged,
-                "ratio": one.worst.ratio,
-                "quantity": one.worst.verdict.quantity,
-                "verdict": one.worst.verdict.verdict.value,
-                "max": one.worst.verdict.max,
-                "scene": f"extremes/worst/{one.family.name}",
-            }
+def study(found: Iterable[Found], seconds: float, seed: int) -> WorstStudy:
+    """Return the rows that the published table is made from."""
+    return WorstStudy(
+        factor=GATE_FACTOR,
+        rung=RUNG,
+        seconds=seconds,
+        seed=seed,
+        provenance=Provenance(versions(), processor(), command()),
+        families=tuple(
+            WorstOfFamily(
+                name=one.family.name,
+                what=one.family.what,
+                judged=one.judged,
+                ratio=one.worst.ratio,
+                quantity=one.worst.verdict.quantity,
+                verdict=one.worst.verdict.verdict,
+                max=one.worst.verdict.max,
+                scene=f"extremes/worst/{one.family.name}",
+            )
             for one in found
-        ],
-    }
+        ),
+    )
 
 
 # The families.

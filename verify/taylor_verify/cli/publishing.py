@@ -108,7 +108,7 @@ def controls(folder: Path) -> Answer:
 
     finished = _counting(len(DEFECTS) + len(table.TRAPS))
     seen = sight.document(sight.sights(DEFECTS, finished))
-    trapped = table.document(table.TRAPS, finished)
+    trapped = table.study(table.TRAPS, finished)
     return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
 
 
@@ -184,7 +184,7 @@ def paper(folder: Path) -> Answer:
 
 def worst(folder: Path, seconds: float, seed: int) -> Answer:
     """The worst error over attainable in each family; its scenes take the place of those kept."""
-    from taylor_verify.hunt import FAMILIES, document, hunt
+    from taylor_verify.hunt import FAMILIES, hunt, study
     from taylor_verify.publish import worst as pages
     from taylor_verify.scenes.library import WORST, cases_directory
 
@@ -193,7 +193,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
     found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}
     kept = pages.keep(cases_directory() / WORST, scenes)
-    return files_written([*pages.write(folder, document(found, seconds, seed)), *kept])
+    return files_written([*pages.write(folder, study(found, seconds, seed)), *kept])
 
 
 def site(folder: str, target: str) -> Answer:

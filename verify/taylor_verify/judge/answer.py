@@ -27,7 +27,8 @@ from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.models.problem import NotRepresentable, adopt
-from taylor_verify.records.answers import Convention, FileRead, whole
+from taylor_verify.records.answers import Convention, FileRead
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
@@ -87,8 +88,8 @@ class FileJudgement(Judgement):
         return {
             "verdicts": [verdict.row() for verdict in self.verdicts],
             "summary": summary(self.verdicts),
-            "conventions": [whole(self._convention(finding)) for finding in self.conventions],
-            "file": whole(file),
+            "conventions": [complete(self._convention(finding)) for finding in self.conventions],
+            "file": complete(file),
         }
 
     def _convention(self, found: Finding) -> Convention:

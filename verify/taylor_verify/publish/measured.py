@@ -11,6 +11,9 @@ from itertools import zip_longest
 from typing import Any, Final
 
 from taylor_verify.publish.sheets import sheet
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.studies.traps import TrapCase, TrapRow
+from taylor_verify.records.studies.worst import WorstStudy
 
 Row = Mapping[str, Any]
 
@@ -114,31 +117,32 @@ def _priced(row: Row, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
     return {**row, **intervals, "ratio_at_equal_error": equal}
 
 
-def traps(rows: Iterable[Row]) -> str:
-    """A row for every case of every trap, with the verdict of each gate that was asked."""
-    return sheet(_TRAPS, (_trapped(row, case) for row in rows for case in row["cases"]))
+def traps(rows: Iterable[TrapRow]) -> str:
+    """Return a row for every case of every trap, with the verdict of each gate that was asked."""
+    return sheet(_TRAPS, (_trapped(row, case) for row in rows for case in row.cases))
 
 
-def _trapped(row: Row, case: Row) -> dict[str, Any]:
+def _trapped(row: TrapRow, case: TrapCase) -> dict[str, Any]:
     gates = {
-        f"{name}_{field}": case["gates"].get(name, {}).get(field)
+        f"{name}_{field}": getattr(case.gates.get(name), field, None)
         for name in _GATED
         for field in ("verdict", "over_bound")
     }
     return {
-        "trap": row["key"],
-        **{name: row[name] for name in ("title", "cause", "documented", "script")},
-        "silent": "yes" if row["silent"] else "no",
-        "reports": case["said"],
-        **{name: case[name] for name in ("case", "error", "driver", "driver_error", "steps")},
+        "trap": row.key,
+        **{name: getattr(row, name) for name in ("title", "cause", "documented", "script")},
+        "silent": "yes" if row.silent else "no",
+        "reports": case.said,
+        **{n: getattr(case, n) for n in ("case", "error", "driver", "driver_error", "steps")},
         **gates,
     }
 
 
-def worst(stored: Row) -> str:
-    """A row for every family."""
-    shared = {name: stored[name] for name in ("rung", "factor")}
-    return sheet(_WORST, ({**row, **shared, "family": row["name"]} for row in stored["families"]))
+def worst(study: WorstStudy) -> str:
+    """Return a row for every family."""
+    shared = {"rung": study.rung, "factor": study.factor}
+    rows = ({**complete(row), **shared, "family": row.name} for row in study.families)
+    return sheet(_WORST, rows)
 
 
 def claims(rows: Sequence[Row]) -> str:

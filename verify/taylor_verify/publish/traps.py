@@ -1,21 +1,22 @@
 """The table of traps: plain calls of heyoka beside this suite's driver, from stored rows alone.
 
-Stored in data/traps.json: words, the code that was run, and what was measured in each case.
+TrapsStudy in data/traps.json: words, the code that was run, and what was measured in each case.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, measured
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, prose, table
 from taylor_verify.publish.page import traced
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete, plain, read
+from taylor_verify.records.studies.traps import TrapCase, TrapRow, TrapsStudy
 
 TRAPS: Final = f"{data.FOLDER}/traps.json"
 PAGE: Final = "tables/traps.md"
@@ -50,103 +51,42 @@ _HOW: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Gate:
-    """A gate on the plain answer: its verdict, and the largest error over its bound."""
-
-    verdict: str
-    over_bound: float | None
-
-
-@dataclass(frozen=True)
-class Case:
-    """One measured use; see controls.traps.trap.Case."""
-
-    case: str
-    said: str
-    error: float | None
-    driver: str
-    driver_error: float | None
-    steps: int | None
-    gates: Mapping[str, Gate]
-
-
-@dataclass(frozen=True)
-class Trap:
-    """One entry; see controls.traps.trap.Trap. ``where`` is an address, ``code`` as it was run."""
-
-    key: str
-    title: str
-    code: str
-    plain: str
-    driver: str
-    cause: str
-    silent: bool
-    documented: str
-    where: str
-    remark: str
-    script: str
-    cases: tuple[Case, ...]
-
-
-@dataclass(frozen=True)
-class Stored:
-    """All entries, the versions that they were measured with, and the machine where it is known."""
-
-    versions: Mapping[str, str]
-    traps: tuple[Trap, ...]
-    machine: Mapping[str, str] = field(default_factory=dict)
-
-
 # The files.
 
 
-def publish(folder: Path, document: Mapping[str, Any]) -> list[Path]:
-    """Store the rows of a run of the traps in ``folder``/data, and make the page of them.
+def publish(folder: Path, study: TrapsStudy) -> list[Path]:
+    """Store the traps in ``folder``/data, and make the page of them.
 
     Raises OSError for a folder that cannot be written.
     """
-    text = data.laid_out({**_MADE_BY, **document})
+    text = data.laid_out({**_MADE_BY, **complete(study)})
     stored = replace_files(folder, {TRAPS: text})
     return [*stored, *replace_files(folder, pages(folder))]
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The page and its sheet by their paths below ``folder``; none where nothing is stored.
+    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
 
     Raises OSError and ValueError as `load` does.
     """
     if not (folder / TRAPS).exists():
         return {}
-    found = load(folder)
-    sheet = measured.traps(asdict(trap) for trap in found.traps)
-    return {PAGE: page(found), SHEET: sheet}
+    study = load(folder)
+    return {PAGE: page(study), SHEET: measured.traps(study.traps)}
 
 
-def load(folder: Path) -> Stored:
-    """What ``folder``/data/traps.json has.
+def load(folder: Path) -> TrapsStudy:
+    """Return the traps of ``folder``/data/traps.json.
 
     Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
-    file = folder / TRAPS
-    stored = data.read_document(file)
-    with data.expecting("the rows of a run of the traps", file):
-        traps = tuple(_trap(row) for row in stored["traps"])
-        return Stored(stored["versions"], traps, stored.get("machine", {}))
-
-
-def _trap(row: Mapping[str, Any]) -> Trap:
-    return Trap(**{**row, "cases": tuple(_case(case) for case in row["cases"])})
-
-
-def _case(row: Mapping[str, Any]) -> Case:
-    return Case(**{**row, "gates": {name: Gate(**gate) for name, gate in row["gates"].items()}})
+    return read(folder / TRAPS, TrapsStudy)
 
 
 # The page.
 
 
-def page(stored: Stored) -> str:
+def page(stored: TrapsStudy) -> str:
     """What it proves, every trap in one line, every trap in numbers, and what the gates see."""
     traps = stored.traps
     blocks = [
@@ -165,12 +105,12 @@ def page(stored: Stored) -> str:
         "## To remake this",
         f"`taylor-verify publish --controls` makes all of these calls again and writes "
         f"[traps.json](../{TRAPS}), from which this page and its [CSV](traps.csv) are made. "
-        f"{traced({'versions': stored.versions, **stored.machine})}",
+        f"{traced({'versions': stored.versions, **plain(stored.machine)})}",
     ]
     return "\n\n".join(blocks) + "\n"
 
 
-def _in_short(traps: Iterable[Trap]) -> str:
+def _in_short(traps: Iterable[TrapRow]) -> str:
     columns = [
         Column("trap"),
         Column("what happens"),
@@ -182,7 +122,7 @@ def _in_short(traps: Iterable[Trap]) -> str:
     return table(columns, [_line(trap) for trap in traps])
 
 
-def _line(trap: Trap) -> list[str]:
+def _line(trap: TrapRow) -> list[str]:
     worst = worst_of(trap)
     if worst is None:
         return [bold(trap.key), prose(trap.title), "not measured", NOTHING, NOTHING, _cause(trap)]
@@ -196,24 +136,24 @@ def _line(trap: Trap) -> list[str]:
     ]
 
 
-def _cause(trap: Trap) -> str:
+def _cause(trap: TrapRow) -> str:
     script = f" ([script](../{SCRIPTS}/{trap.script}.py))" if trap.script else ""
     return f"{prose(trap.cause)}{script}"
 
 
-def worst_of(trap: Trap) -> Case | None:
+def worst_of(trap: TrapRow) -> TrapCase | None:
     """The case in which the plain call falls farthest behind the driver; None without cases."""
     return max(trap.cases, key=_behind, default=None)
 
 
-def _behind(case: Case) -> float:
+def _behind(case: TrapCase) -> float:
     """The error over the driver's; infinite where only the driver has an answer."""
     if case.error is None:
         return -1.0 if case.driver_error is None else math.inf
     return case.error / max(case.driver_error or 0.0, _NO_ERROR)
 
 
-def _seen(traps: Iterable[Trap]) -> str:
+def _seen(traps: Iterable[TrapRow]) -> str:
     columns = [
         Column("trap"),
         Column("case"),
@@ -234,7 +174,7 @@ def _seen(traps: Iterable[Trap]) -> str:
     return f"{legend}\n\n{table(columns, rows)}"
 
 
-def _gate(case: Case, quantity: str) -> str:
+def _gate(case: TrapCase, quantity: str) -> str:
     gate = case.gates.get(quantity)
     if gate is None:
         return NOTHING
@@ -247,13 +187,13 @@ def _gate(case: Case, quantity: str) -> str:
     return bold(INFINITE if gate.over_bound is None else figure(gate.over_bound))
 
 
-def _entries(traps: Iterable[Trap]) -> list[str]:
+def _entries(traps: Iterable[TrapRow]) -> list[str]:
     """Code that several traps share is shown with the first of them."""
     first: dict[str, str] = {}
     return [_entry(trap, first.setdefault(trap.code, trap.key)) for trap in traps]
 
 
-def _entry(trap: Trap, shown_at: str) -> str:
+def _entry(trap: TrapRow, shown_at: str) -> str:
     silence = "silent" if trap.silent else "reported"
     blocks = [
         f"### {trap.key}: {prose(trap.title)}",
@@ -274,13 +214,13 @@ def _entry(trap: Trap, shown_at: str) -> str:
     return "\n\n".join(blocks)
 
 
-def _documented(trap: Trap) -> list[str]:
+def _documented(trap: TrapRow) -> list[str]:
     if not trap.documented:
         return []
     return [f"heyoka's [documentation]({trap.where}): *{prose(trap.documented)}*."]
 
 
-def _cases(trap: Trap) -> str:
+def _cases(trap: TrapRow) -> str:
     if not trap.cases:
         return ""
     columns = [
@@ -308,13 +248,13 @@ def _cases(trap: Trap) -> str:
 # What the rows prove.
 
 
-def proven(traps: Sequence[Trap]) -> list[str]:
+def proven(traps: Sequence[TrapRow]) -> list[str]:
     """Sentences, each true of these rows; one that is true of none is not said."""
     told = [_silently(traps), _conserving(traps), _unseen(traps), _seen_by_state(traps)]
     return [sentence for sentence in told if sentence]
 
 
-def _silently(traps: Sequence[Trap]) -> str:
+def _silently(traps: Sequence[TrapRow]) -> str:
     silent = [trap.key for trap in traps if trap.silent and trap.cases]
     if not silent:
         return ""
@@ -325,7 +265,7 @@ def _silently(traps: Sequence[Trap]) -> str:
     )
 
 
-def conserving(traps: Iterable[Trap]) -> list[tuple[Trap, Case]]:
+def conserving(traps: Iterable[TrapRow]) -> list[tuple[TrapRow, TrapCase]]:
     """Answers that every gate on a conserved quantity passes."""
     return [
         (trap, case)
@@ -337,7 +277,7 @@ def conserving(traps: Iterable[Trap]) -> list[tuple[Trap, Case]]:
     ]
 
 
-def _conserving(traps: Iterable[Trap]) -> str:
+def _conserving(traps: Iterable[TrapRow]) -> str:
     wrong = [
         (trap, case)
         for trap, case in conserving(traps)
@@ -355,7 +295,7 @@ def _conserving(traps: Iterable[Trap]) -> str:
     )
 
 
-def _unseen(traps: Iterable[Trap]) -> str:
+def _unseen(traps: Iterable[TrapRow]) -> str:
     """What passes the gate of the state too."""
     lost = [
         (trap, case)
@@ -377,7 +317,7 @@ def _unseen(traps: Iterable[Trap]) -> str:
     )
 
 
-def _seen_by_state(traps: Iterable[Trap]) -> str:
+def _seen_by_state(traps: Iterable[TrapRow]) -> str:
     seen = sorted(
         {
             t.key

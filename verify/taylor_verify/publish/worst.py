@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, measured
 from taylor_verify.publish.cells import figure
 from taylor_verify.publish.markdown import Column, code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.studies.worst import WorstOfFamily, WorstStudy
 
 WORST: Final = f"{data.FOLDER}/worst.json"
 PAGE: Final = "tables/worst.md"
@@ -30,13 +32,11 @@ _KEPT: Final = (
     "`taylor-verify run extremes`."
 )
 
-Row = Mapping[str, Any]
 
-
-def write(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
-    """Store what was found below ``folder``, and make its page. Raises OSError."""
+def write(folder: Path | str, study: WorstStudy) -> list[Path]:
+    """Store a search below ``folder``, and make its page. Raises OSError."""
     place = Path(folder)
-    stored = replace_files(place, {WORST: data.laid_out({**_MADE_BY, **document})})
+    stored = replace_files(place, {WORST: data.laid_out({**_MADE_BY, **complete(study)})})
     return [*stored, *replace_files(place, pages(place))]
 
 
@@ -54,34 +54,38 @@ def pages(folder: Path) -> dict[str, str]:
     file = folder / WORST
     if not file.exists():
         return {}
-    stored = data.read_document(file)
-    with data.expecting("the worst of every family", file):
-        return {PAGE: page(stored), SHEET: measured.worst(stored)}
+    study = load(folder)
+    return {PAGE: page(study), SHEET: measured.worst(study)}
 
 
-def page(stored: Mapping[str, Any]) -> str:
-    """The worst of each family, and how it was looked for."""
-    factor, rung = f"{stored['factor']:g}", stored["rung"]
-    families = sorted(stored["families"], key=lambda row: -row["ratio"])
-    judged = sum(row["judged"] for row in families)
+def load(folder: Path) -> WorstStudy:
+    """Return the search that is stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / WORST, WorstStudy)
+
+
+def page(study: WorstStudy) -> str:
+    """Return the page of the worst of each family, and of the search."""
+    factor, rung = f"{study.factor:g}", study.rung
+    families = sorted(study.families, key=lambda row: -row.ratio)
+    judged = sum(row.judged for row in families)
     blocks = [
         f"{MADE_BY}\n# The worst that a search has found",
         _WHAT.format(factor=factor, rung=code(rung)),
-        f"Of {judged} scenes the worst is {code(families[0]['scene'])}: "
-        f"{figure(families[0]['ratio'])} in {code(families[0]['quantity'])}.",
+        f"Of {judged} scenes the worst is {code(families[0].scene)}: "
+        f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),
         _KEPT,
         "## To remake this",
-        f"`taylor-verify publish --worst --seconds {stored['seconds']:g} --seed {stored['seed']}` hunts "
+        f"`taylor-verify publish --worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
         "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
         "find worse ones: the scenes that were found are the fact, and not that there are no others. "
         f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST}).",
-        traced(stored.get("provenance", {})),
+        traced(complete(study.provenance)),
     ]
     return "\n\n".join(blocks) + "\n"
 
 
-def _table(families: Sequence[Row]) -> str:
+def _table(families: Sequence[WorstOfFamily]) -> str:
     columns = [
         Column("family"),
         Column("scenes", True),
@@ -93,13 +97,13 @@ def _table(families: Sequence[Row]) -> str:
     ]
     rows = [
         [
-            prose(row["what"]),
-            str(row["judged"]),
-            figure(row["ratio"]),
-            code(row["quantity"]),
-            figure(row["max"]),
-            row["verdict"],
-            code(row["scene"]),
+            prose(row.what),
+            str(row.judged),
+            figure(row.ratio),
+            code(row.quantity),
+            figure(row.max),
+            row.verdict.value,
+            code(row.scene),
         ]
         for row in families
     ]

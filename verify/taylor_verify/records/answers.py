@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 from msgspec import Meta
 
-from taylor_verify.records.json_text import Count, Size, plain
+from taylor_verify.records.json_text import Count, Size
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -98,8 +98,3 @@ class Answer:
     baseline: AgainstBaseline | None = None
     conventions: tuple[Convention, ...] = ()
     file: FileRead | None = None
-
-
-def whole(document: Any) -> dict[str, Any]:
-    """Return a document with all of its keys, those that are empty too."""
-    return {name: plain(value) for name, value in vars(document).items()}

@@ -48,6 +48,17 @@ def plain(document: Any) -> Any:
     return finite(document)
 
 
+def complete(document: Any) -> Any:
+    """Return a typed document as dicts, lists and values, with all of its fields."""
+    if is_dataclass(document) and not isinstance(document, type):
+        return {f.name: complete(getattr(document, f.name)) for f in fields(document)}
+    if isinstance(document, (tuple, list)):
+        return [complete(item) for item in document]
+    if isinstance(document, Mapping):
+        return {key: complete(value) for key, value in document.items()}
+    return document.value if isinstance(document, Enum) else finite(document)
+
+
 def finite(value: Any) -> Any:
     """Return the value; None for a float that is not finite."""
     return None if isinstance(value, float) and not isfinite(value) else value

@@ -6,7 +6,8 @@ from math import log
 from typing import Final
 
 from taylor_verify.controls.traps.measured import GENERIC, compared, free
-from taylor_verify.controls.traps.trap import Case, Cause, Trap
+from taylor_verify.controls.traps.trap import Cause, Trap
+from taylor_verify.records.studies.traps import TrapCase
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.taylor.plain.body import Plain, euler_equations, free_body
 
@@ -16,7 +17,7 @@ _TURNS: Final = 10.0
 _WIDEST: Final = "mp237"
 
 
-def _literals() -> list[Case]:
+def _literals() -> list[TrapCase]:
     """Moments as doubles on every rung; then, at the widest, as numbers of the rung."""
     rungs = [rung for rung in ("f64", "f80", "f128", _WIDEST) if _has(rung)]
     cases = [compared(free(rung, GENERIC, _TURNS), rung) for rung in rungs]
@@ -28,22 +29,22 @@ def _has(rung: str) -> bool:
     return not Plain().unavailable(rung_named(rung))
 
 
-def _of_size(*sizes: float) -> list[Case]:
+def _of_size(*sizes: float) -> list[TrapCase]:
     """The generic spin made faster or slower, over the same turns."""
     return [
         compared(free(f"omega of size {size:g}", _sized(size), _TURNS / size)) for size in sizes
     ]
 
 
-def _small() -> list[Case]:
+def _small() -> list[TrapCase]:
     return _of_size(1.0, 1e-5, 1e-8, 1e-10)
 
 
-def _tiny() -> list[Case]:
+def _tiny() -> list[TrapCase]:
     return _of_size(1e-16, 1e-40)
 
 
-def _large() -> list[Case]:
+def _large() -> list[TrapCase]:
     return _of_size(1e14, 1e15, 1e20)
 
 
@@ -56,7 +57,7 @@ def first_tumble(d: float) -> float:
     return log(1 / d) / _RATE
 
 
-def _tumbles() -> list[Case]:
+def _tumbles() -> list[TrapCase]:
     """In doubles at many distances; then on wide rungs, with moments of their own types."""
     asked = [(d, "f64") for d in (1e-4, 1e-6, 1e-8, 1e-12, 1e-16, 1e-20, 1e-40)]
     asked += [(d, rung) for d, rung in ((1e-20, "f128"), (1e-80, _WIDEST)) if _has(rung)]
@@ -68,7 +69,7 @@ def _tumbles() -> list[Case]:
     ]
 
 
-def _returns() -> list[Case]:
+def _returns() -> list[TrapCase]:
     """A body that has come back to the unstable spin: a motion that no double determines."""
     return [compared(free("d = 1e-15, back twice", (1e-15, 1.0, 0.0), 300.0, samples=41))]
 

@@ -15,7 +15,8 @@ from taylor_verify.controls.traps.measured import (
     free,
     typed_equations,
 )
-from taylor_verify.controls.traps.trap import Case, Cause, Trap
+from taylor_verify.controls.traps.trap import Cause, Trap
+from taylor_verify.records.studies.traps import TrapCase
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import exact_value, held_exactly
 from taylor_verify.solvers.taylor.plain import clock as plain
@@ -24,7 +25,7 @@ _DURATION: Final = 100.0
 _DIGITS: Final = 30
 
 
-def _starting_late() -> list[Case]:
+def _starting_late() -> list[TrapCase]:
     cases = []
     for start in (0, 10**6, 10**10, 10**15):
         outcome, x = plain.driven(float(start), _DURATION)
@@ -32,11 +33,11 @@ def _starting_late() -> list[Case]:
             truth = mp.sin(held_exactly(Fraction(_DURATION)))
             error = float(abs(held_exactly(exact_value(x)) - truth))
         said, driven = driver_on(free("", GENERIC, _DURATION, start=start))
-        cases.append(Case(f"start at {start:g}", outcome.name, error, said, driven))
+        cases.append(TrapCase(f"start at {start:g}", outcome.name, error, said, driven))
     return cases
 
 
-def _until_late() -> list[Case]:
+def _until_late() -> list[TrapCase]:
     cases = []
     for start in (10**10, 10**16):
         wanted = Fraction(3, 10)
@@ -46,22 +47,22 @@ def _until_late() -> list[Case]:
         scene = replace(scene, clock=Clock(Fraction(start), (start + wanted,)))
         said, driven = driver_on(scene)
         case = f"from {start:g} for 0.3"
-        cases.append(Case(case, outcome.name, error_at(state, wanted), said, driven, steps))
+        cases.append(TrapCase(case, outcome.name, error_at(state, wanted), said, driven, steps))
     return cases
 
 
-def _beyond() -> list[Case]:
+def _beyond() -> list[TrapCase]:
     state = plain.beyond(typed_equations(), GENERIC, 10.0, _DURATION)
     said, driven = driver_on(free("", GENERIC, _DURATION))
     where = "output over [0, 10], asked at 100"
-    return [Case(where, "three numbers", error_at(state, Fraction(_DURATION)), said, driven)]
+    return [TrapCase(where, "three numbers", error_at(state, Fraction(_DURATION)), said, driven)]
 
 
-def _kept() -> list[Case]:
+def _kept() -> list[TrapCase]:
     state = plain.kept(typed_equations(), GENERIC, 1.0, 2.0)
     said, driven = driver_on(free("", GENERIC, 2.0, samples=3))
     what = "output at 1, kept while that at 2 is asked for"
-    return [Case(what, "three numbers", error_at(state, Fraction(1)), said, driven)]
+    return [TrapCase(what, "three numbers", error_at(state, Fraction(1)), said, driven)]
 
 
 _DENSE: Final = "notebooks/Dense%20output.html"

@@ -13,12 +13,12 @@ from typing import Any, Final
 
 from mpmath import mp
 
-from taylor_verify.controls.traps.trap import Case, Gate
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
 from taylor_verify.records.quantities import FORMATS, GATE_FACTOR, INITIAL
+from taylor_verify.records.studies.traps import TrapCase, TrapGate
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
@@ -49,14 +49,14 @@ def free(name: str, omega: Sequence[float], end: float, samples: int = 11, start
     return Scene(name, name, "euler", frozenset(), body, spin, clock)
 
 
-def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> Case:
+def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> TrapCase:
     """The plain call and the driver on one scene, both as the judge finds them."""
     problem = adopt(scene, rung_named(rung), scene.clock.instants)
     plain = Plain(typed=typed)
     trajectory = plain.solve(problem)
     judged = judgement(problem, plain, trajectory).verdicts
     driver, driver_error = driver_on(scene, rung)
-    return Case(
+    return TrapCase(
         scene.name,
         said=trajectory.detail,
         error=judged[0].max,
@@ -67,9 +67,9 @@ def compared(scene: Scene, rung: str = "f64", typed: bool = False) -> Case:
     )
 
 
-def _gate(verdict: Verdict) -> Gate:
+def _gate(verdict: Verdict) -> TrapGate:
     over = None if verdict.ratio is None else verdict.ratio / GATE_FACTOR
-    return Gate(verdict.verdict.value, over)
+    return TrapGate(verdict.verdict.value, over)
 
 
 def driver_on(scene: Scene, rung: str = "f64") -> tuple[str, float | None]:

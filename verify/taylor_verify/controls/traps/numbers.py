@@ -9,7 +9,8 @@ from typing import Any, Final
 
 from mpmath import mp
 
-from taylor_verify.controls.traps.trap import Case, Cause, Trap
+from taylor_verify.controls.traps.trap import Cause, Trap
+from taylor_verify.records.studies.traps import TrapCase
 from taylor_verify.scenes.precision import exact_value, held_exactly, power_of_two
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
@@ -36,7 +37,7 @@ def _held_norm(vector: tuple[Fraction, ...]) -> Any:
         return mp.norm([held_exactly(entry) for entry in vector])
 
 
-def _norms() -> list[Case]:
+def _norms() -> list[TrapCase]:
     vector = arithmetic(rung_named(_WIDE)).array(_VECTOR)
     number, tenth = vector[0], held_exactly(_TENTH)
     with mp.workprec(_BITS):
@@ -49,21 +50,21 @@ def _norms() -> list[Case]:
         printed = mp.mpf(digits)
     driver = "numbers leave heyoka exactly, and mpmath computes with them"
     return [
-        Case(
+        TrapCase(
             "numpy.linalg.norm of a vector of 237 bits",
             f"a number of type {type(found).__name__}",
             _relative(held_exactly(exact_value(found)), length),
             driver,
             _relative(_held_norm(exact), length),
         ),
-        Case(
+        TrapCase(
             "math.sqrt of a number of 237 bits",
             f"a number of type {type(root_found).__name__}",
             _relative(held_exactly(exact_value(root_found)), root),
             driver,
             _relative(_root(exact[0]), root),
         ),
-        Case(
+        TrapCase(
             "'%.40e' of a number of 237 bits",
             f"{len(digits.partition('e')[0]) - 1} digits",
             _relative(printed, tenth),
@@ -78,7 +79,7 @@ def _root(value: Fraction) -> Any:
         return mp.sqrt(held_exactly(value))
 
 
-def _to_real128() -> list[Case]:
+def _to_real128() -> list[TrapCase]:
     """Numbers of 200 bits, which lie between two of 113; the nearer one is asked for.
 
     No case where heyoka has no real128.
@@ -97,7 +98,7 @@ def _to_real128() -> list[Case]:
         worst = max(worst, float(abs(found - value) / value))
         worst_driver = max(worst_driver, float(abs(driven - value) / value))
     return [
-        Case(
+        TrapCase(
             f"{_DRAWS} numbers of {_DRAWN_BITS} bits, drawn at random",
             f"not the nearest real128 for {wrong} of {_DRAWS}",
             worst,
@@ -107,7 +108,7 @@ def _to_real128() -> list[Case]:
     ]
 
 
-def _sympy() -> list[Case]:
+def _sympy() -> list[TrapCase]:
     """One case where SymPy is installed, none where it is not."""
     if find_spec("sympy") is None:
         return []
@@ -116,7 +117,7 @@ def _sympy() -> list[Case]:
     literal = expression.strip("()").partition(" ")[0]
     with mp.workdps(50):
         return [
-            Case(
+            TrapCase(
                 "sympy.Float('0.1', 50) times a symbol",
                 f"the expression {expression}",
                 _relative(mp.mpf(literal), mp.mpf(digits)),
@@ -126,13 +127,13 @@ def _sympy() -> list[Case]:
         ]
 
 
-def _equality() -> list[Case]:
+def _equality() -> list[TrapCase]:
     half = Fraction(1, 2)
     number = arithmetic(rung_named(_WIDE)).number(half)
     found = plain.equal(number, held_exactly(half))
     driven = arithmetic(rung_named(_WIDE)).exact(number) == half
     return [
-        Case(
+        TrapCase(
             "1/2 as a real and as a number of mpmath",
             f"equal: {found}",
             None,

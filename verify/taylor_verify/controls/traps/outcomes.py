@@ -15,7 +15,8 @@ from taylor_verify.controls.traps.measured import (
     free,
     typed_equations,
 )
-from taylor_verify.controls.traps.trap import Case, Cause, Trap
+from taylor_verify.controls.traps.trap import Cause, Trap
+from taylor_verify.records.studies.traps import TrapCase
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.reader import read
 from taylor_verify.solvers.taylor.driver import at_tolerance
@@ -50,13 +51,13 @@ def _refusal(text: str) -> str:
     return "accepted"
 
 
-def _lanes() -> list[Case]:
+def _lanes() -> list[TrapCase]:
     w = np.array([[value] * _LANES for value in GENERIC])
     w[0, -1] = np.nan
     outcomes, times, states = plain.lanes(typed_equations(), w, _END)
     driver, driver_error = driver_on(free("", GENERIC, _END))
     healthy = [
-        Case(
+        TrapCase(
             f"lane {lane + 1} of {_LANES}, sound; asked until {_END:g}",
             f"{outcomes[lane].name}, at t = {times[lane]:.3g}",
             error_at(states[:, lane], Fraction(_END)),
@@ -65,30 +66,30 @@ def _lanes() -> list[Case]:
         )
         for lane in range(_LANES - 1)
     ]
-    broken = Case(
+    broken = TrapCase(
         f"lane {_LANES}, omega = (NaN, ...)", outcomes[-1].name, None, _refusal(_NAN_SCENE)
     )
     return [*healthy, broken]
 
 
-def _not_finite() -> list[Case]:
+def _not_finite() -> list[TrapCase]:
     ta, (outcome, *_) = plain.decay(float("nan"), 1.0)
     said = f"{outcome.name}; time {ta.time}, state {ta.state[0]}"
-    return [Case("x' = -x from NaN", said, None, _refusal(_NAN_SCENE))]
+    return [TrapCase("x' = -x from NaN", said, None, _refusal(_NAN_SCENE))]
 
 
-def _blown_up() -> list[Case]:
+def _blown_up() -> list[TrapCase]:
     ta, (outcome, min_h, _, steps, *_) = plain.blow_up(1.0, 2.0)
     said = f"{outcome.name} at t = {ta.time:.17g} after steps down to {min_h:.2g}"
     driver = "no such equation: energy bounds every omega and impulse, and loads are constant"
-    return [Case("x' = x^2 from 1, until 2", said, None, driver, steps=steps)]
+    return [TrapCase("x' = x^2 from 1, until 2", said, None, driver, steps=steps)]
 
 
-def _stopped() -> list[Case]:
+def _stopped() -> list[TrapCase]:
     ta, (outcome, _, _, steps, *_) = plain.decay(1.0, _END, max_steps=3)
     driver, _ = driver_on(free("", GENERIC, 1e12))
     return [
-        Case(
+        TrapCase(
             f"x' = -x until {_END:g}, at most 3 steps",
             f"{outcome.name}, at t = {ta.time:.3g}",
             abs(ta.state[0] / exp(-_END) - 1),
@@ -98,10 +99,10 @@ def _stopped() -> list[Case]:
     ]
 
 
-def _without_return() -> list[Case]:
+def _without_return() -> list[TrapCase]:
     ta, (outcome, *_) = plain.decay(1.0, _END, callback=lambda ta: None)
     return [
-        Case(
+        TrapCase(
             "a callback that returns nothing",
             f"{outcome.name}, at t = {ta.time:.3g}",
             abs(ta.state[0] / exp(-_END) - 1),
@@ -110,7 +111,7 @@ def _without_return() -> list[Case]:
     ]
 
 
-def _truth_of_outcomes() -> list[Case]:
+def _truth_of_outcomes() -> list[TrapCase]:
     found = {}
     _, (outcome, *_) = plain.decay(1.0, 1.0)
     found[outcome.name] = bool(outcome)
@@ -118,45 +119,45 @@ def _truth_of_outcomes() -> list[Case]:
     found[outcome.name] = bool(outcome)
     said = ", ".join(f"{name} is {value}" for name, value in found.items())
     driver = "each outcome is looked up, and an unknown one is no success"
-    return [Case("if outcome: ...", said, None, driver)]
+    return [TrapCase("if outcome: ...", said, None, driver)]
 
 
-def _clamped() -> list[Case]:
+def _clamped() -> list[TrapCase]:
     _, (outcome, min_h, max_h, steps, *_) = plain.decay(1.0, 1.0, max_delta_t=0.125)
     said = f"{outcome.name}; smallest step {min_h:g}, largest {max_h:g}"
-    return [Case("steps of at most 0.125, until 1", said, None, "reads neither", steps=steps)]
+    return [TrapCase("steps of at most 0.125, until 1", said, None, "reads neither", steps=steps)]
 
 
-def _zero_tolerance() -> list[Case]:
+def _zero_tolerance() -> list[TrapCase]:
     try:
         driver = at_tolerance("0").setting
     except ValueError as refusal:
         driver = f"refused: {refusal}"
-    return [Case("tol=0.0", f"tol = {plain.tolerance_of_zero():.3g}", None, driver)]
+    return [TrapCase("tol=0.0", f"tol = {plain.tolerance_of_zero():.3g}", None, driver)]
 
 
-def _held_back() -> list[Case]:
+def _held_back() -> list[TrapCase]:
     at = plain.interrupted(_SOON, _LONG)
     case = f"Ctrl-C after {_SOON:g} s of a run until {_LONG:g}"
     driver = "returns to Python between its stretches, at most 24 of a run"
-    return [Case(case, f"KeyboardInterrupt at t = {at:g}", None, driver)]
+    return [TrapCase(case, f"KeyboardInterrupt at t = {at:g}", None, driver)]
 
 
-def _forgotten() -> list[Case]:
+def _forgotten() -> list[TrapCase]:
     outcome, state = body.unset(GENERIC, _END)
     driver, driver_error = driver_on(free("", GENERIC, _END))
     error = error_at(state, Fraction(_END))
-    return [Case("three parameters, none given", outcome.name, error, driver, driver_error)]
+    return [TrapCase("three parameters, none given", outcome.name, error, driver, driver_error)]
 
 
-def _stored_code() -> list[Case]:
+def _stored_code() -> list[TrapCase]:
     driver = "one folder for each type of processor"
-    return [Case("what compiled code is stored under", plain.cache_key(), None, driver)]
+    return [TrapCase("what compiled code is stored under", plain.cache_key(), None, driver)]
 
 
-def _never_found() -> list[Case]:
+def _never_found() -> list[TrapCase]:
     found = f"{plain.stored_by(processes=3)} pieces of code on disk"
-    return [Case("one system in MPFR, compiled by three processes", found, None, "none")]
+    return [TrapCase("one system in MPFR, compiled by three processes", found, None, "none")]
 
 
 OUTCOMES: Final = (

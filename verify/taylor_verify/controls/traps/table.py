@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.controls.traps.bodies import BODIES
 from taylor_verify.controls.traps.clock import CLOCK
@@ -11,7 +11,9 @@ from taylor_verify.controls.traps.numbers import NUMBERS
 from taylor_verify.controls.traps.outcomes import OUTCOMES
 from taylor_verify.controls.traps.trap import Trap
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.provenance import Machine
 from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.studies.traps import TrapsStudy
 
 
 def _place(trap: Trap) -> tuple[str, int, str]:
@@ -23,15 +25,14 @@ def _place(trap: Trap) -> tuple[str, int, str]:
 TRAPS: Final = tuple(sorted((*BODIES, *NUMBERS, *CLOCK, *OUTCOMES), key=_place))
 
 
-def document(
+def study(
     traps: Iterable[Trap] = TRAPS, finished: Callable[[str], None] | None = None
-) -> dict[str, Any]:
-    """Measure every trap; ``finished`` is told the title of each as it ends."""
+) -> TrapsStudy:
+    """Measure every trap; ``finished`` is called with the title of each as it ends."""
     rows = []
     for trap in traps:
         rows.append(trap.row())
         if finished is not None:
             finished(trap.title)
     known = {package: found for package, found in versions().items() if package != "python"}
-    machine = {"processor": processor(), "command": command()}
-    return {"versions": known, "machine": machine, "factor": GATE_FACTOR, "traps": rows}
+    return TrapsStudy(known, Machine(processor(), command()), GATE_FACTOR, tuple(rows))

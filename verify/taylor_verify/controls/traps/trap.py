@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 import inspect
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
-from math import isfinite
 from typing import Any, Final
 
+from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 
 DOCS: Final = "https://bluescarni.github.io/heyoka.py"
@@ -29,36 +29,6 @@ class Cause(StrEnum):
 
 
 @dataclass(frozen=True)
-class Gate:
-    """What a gate says of the plain answer: its verdict, and the largest error over its bound."""
-
-    verdict: str
-    over_bound: float | None
-
-
-@dataclass(frozen=True)
-class Case:
-    """One measured use of the plain call, and of the driver on the same question.
-
-    ``said`` is what heyoka reports and ``driver`` what the driver does. ``error`` and ``driver_error``
-    are relative to the size of the true answer; None where nothing is returned that could have one.
-    ``gates`` are the judge's on the plain answer, by quantity.
-    """
-
-    case: str
-    said: str
-    error: float | None
-    driver: str
-    driver_error: float | None = None
-    steps: int | None = None
-    gates: Mapping[str, Gate] = field(default_factory=dict)
-
-    def row(self) -> dict[str, Any]:
-        """As JSON holds it: an error that is not finite is told by ``said`` alone."""
-        return {name: _finite(value) for name, value in asdict(self).items()}
-
-
-@dataclass(frozen=True)
 class Trap:
     """``calls`` are the functions that are published, ``cases`` measures them anew.
 
@@ -70,7 +40,7 @@ class Trap:
     key: str
     title: str
     calls: Sequence[Callable[..., Any]]
-    cases: Callable[[], list[Case]]
+    cases: Callable[[], list[TrapCase]]
     plain: str
     driver: str
     cause: Cause
@@ -80,27 +50,27 @@ class Trap:
     remark: str = ""
     script: str = ""
 
-    def measured(self) -> list[Case]:
+    def measured(self) -> list[TrapCase]:
         """Return the cases, measured without heyoka's own disk cache, as the driver works."""
         heyoka_cache_off()
         return self.cases()
 
-    def row(self) -> dict[str, Any]:
-        """Words and numbers: what the page is made from."""
-        return {
-            "key": self.key,
-            "title": self.title,
-            "code": "\n\n\n".join(shown(call) for call in self.calls),
-            "plain": self.plain,
-            "driver": self.driver,
-            "cause": self.cause.value,
-            "silent": self.silent,
-            "documented": self.documented,
-            "where": f"{DOCS}/{self.where}" if self.where else "",
-            "remark": self.remark,
-            "script": self.script,
-            "cases": [case.row() for case in self.measured()],
-        }
+    def row(self) -> TrapRow:
+        """Return the words and the measured cases, which the page is made from."""
+        return TrapRow(
+            key=self.key,
+            title=self.title,
+            code="\n\n\n".join(shown(call) for call in self.calls),
+            plain=self.plain,
+            driver=self.driver,
+            cause=self.cause.value,
+            silent=self.silent,
+            documented=self.documented,
+            where=f"{DOCS}/{self.where}" if self.where else "",
+            remark=self.remark,
+            script=self.script,
+            cases=tuple(self.measured()),
+        )
 
 
 def shown(function: Callable[..., Any]) -> str:
@@ -118,7 +88,3 @@ def _without_hints(arguments: ast.arguments) -> str:
         argument.annotation = None
     # As the formatter has it, which looks into pages too.
     return ast.unparse(arguments).replace("'", '"')
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not isfinite(value) else value
