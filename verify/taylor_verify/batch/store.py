@@ -24,10 +24,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from platformdirs import user_cache_path
 
-from taylor_verify.folder_lock import Occupied, alone_in
+from taylor_verify.batch.lock import Occupied, alone_in
 
 if TYPE_CHECKING:
-    from taylor_verify.job import Job
+    from taylor_verify.batch.job import Job
     from taylor_verify.judge.judgement import Judgement
 
 _SUFFIX: Final = ".judged"
@@ -41,17 +41,17 @@ class Unfinished:
     folder: Path
 
     def recall(self, job: Job) -> list[Judgement] | None:
-        """The judgements of a job that was finished before; None if it is to be run.
+        """Return the judgements of a job that was finished before; None if it is to be run.
 
         A file that was damaged since is removed, with a warning.
         """
         file = self._file(job)
         try:
-            return _read(file.read_bytes())
+            return from_bytes(file.read_bytes())
         except OSError:
             return None
         except (LookupError, TypeError, ValueError):
-            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.scene, file)
+            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.name, file)
             with suppress(OSError):
                 file.unlink()
             return None
@@ -61,7 +61,7 @@ class Unfinished:
         with suppress(OSError):
             handle, name = tempfile.mkstemp(dir=self.folder)
             with open(handle, "wb") as file:
-                file.write(_written(judgements))
+                file.write(to_bytes(judgements))
             os.replace(name, self._file(job))
 
     def forget(self) -> None:
@@ -70,9 +70,10 @@ class Unfinished:
 
     def _file(self, job: Job) -> Path:
         from taylor_verify.judge.provenance import versions
-        from taylor_verify.scenes.reader import load
+        from taylor_verify.scenes.reader import as_scene
 
-        depends = (load(job.scene).digest, job, _programs(job.solver), versions(), _package())
+        question = (as_scene(job.scene).digest, *_words(job))
+        depends = (question, _programs(job.solver), versions(), _package())
         return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
 
 
@@ -83,7 +84,7 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
     None where the user's cache cannot be written, and where the same run is going on elsewhere.
     """
     place = os.path.abspath(out) if out is not None else None
-    run = _digest(repr((list(asked), os.getcwd(), place)).encode())
+    run = _digest(repr(([_words(job) for job in asked], os.getcwd(), place)).encode())
     store = Unfinished(user_cache_path("taylor-verify") / "unfinished" / run[:32])
     with ExitStack() as stack:
         try:
@@ -100,7 +101,8 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
 # The files.
 
 
-def _written(judgements: Sequence[Judgement]) -> bytes:
+def to_bytes(judgements: Sequence[Judgement]) -> bytes:
+    """Return the content of a file: the digest of the rest, then JSON."""
     rows = [
         {
             "verdicts": [vars(verdict) for verdict in judgement.verdicts],
@@ -114,8 +116,8 @@ def _written(judgements: Sequence[Judgement]) -> bytes:
     return _digest(text).encode() + b"\n" + text
 
 
-def _read(content: bytes) -> list[Judgement]:
-    """The judgements as they were; LookupError, TypeError or ValueError for any other content."""
+def from_bytes(content: bytes) -> list[Judgement]:
+    """Return the judgements as they were; LookupError, TypeError or ValueError for any other content."""
     from taylor_verify.judge.judgement import Judgement
 
     digest, _, text = content.partition(b"\n")
@@ -151,6 +153,11 @@ def _with_tuples(document: dict[str, Any]) -> dict[str, Any]:
 # What a judgement depends on.
 
 
+def _words(job: Job) -> tuple[str, str, tuple[str, ...]]:
+    """Return the scene's name, the solver and the rungs. A Scene itself has no fixed order in its text."""
+    return job.name, job.solver, job.rungs
+
+
 def _programs(solver: str) -> list[str]:
     """The digests of the files that a command names: a program that has changed is another solver."""
     from taylor_verify.solvers.registry import PROCESS
@@ -166,7 +173,7 @@ def _programs(solver: str) -> list[str]:
 def _package() -> str:
     """A digest of this package's own text: a judgement of other code is no judgement of this one."""
     digest = hashlib.sha256()
-    package = Path(__file__).parent
+    package = Path(__file__).parents[1]
     for file in sorted(package.rglob("*.py")):
         digest.update(str(file.relative_to(package)).encode() + file.read_bytes())
     return digest.hexdigest()
