@@ -88,9 +88,10 @@ def run_many(
     from taylor_verify.batch.selection import Selection, select
     from taylor_verify.solvers.registry import check_name
 
-    if jobs is not None and (executor is not None or not jobs >= 1):
-        got = "jobs and an executor" if executor is not None else str(jobs)
-        raise ValueError(f"expected jobs of at least 1, or an executor, got {got}")
+    if jobs is not None and not jobs >= 1:
+        raise ValueError(f"expected jobs of at least 1, got {jobs}")
+    if jobs is not None and executor is not None:
+        raise ValueError("expected jobs or an executor, which has its own number, got both")
     check_name(solver)
     if isinstance(scenes, Selection) and rungs is not None:
         raise ValueError("expected rungs within the Selection, got others besides @ rungs")

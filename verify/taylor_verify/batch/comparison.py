@@ -83,18 +83,6 @@ def compare_with_baseline(results: Judgements | Judgement, file: str | PathLike[
     return read_baseline(file).compare_as_baseline(results)
 
 
-def compare_with_published(
-    results: Judgements | Judgement, folder: str | PathLike[str]
-) -> Comparison:
-    """Compare a result with a report folder, as `taylor-verify run --against DIR` does.
-
-    Raises what `batch.report.read_report` raises.
-    """
-    from taylor_verify.batch.report import read_report
-
-    return read_report(folder).compare_as_published(results)
-
-
 def read_baseline(file: str | PathLike[str]) -> Earlier:
     """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
 
