@@ -135,9 +135,12 @@ def batch_stands_below_the_verbs(module: str, source: str) -> Iterator[str]:
 
 
 def processes_have_their_place(module: str, source: str) -> Iterator[str]:
-    """Executors and processes are made in batch; trade times what a new process does."""
+    """Executors and processes are made in batch; trade times a new process, heyoka has threads."""
     placed = within(
-        module, "taylor_verify.batch", "taylor_verify.trade.cold", "taylor_verify.trade.measurement"
+        module,
+        "taylor_verify.batch",
+        *("taylor_verify.trade.cold", "taylor_verify.trade.measurement"),
+        "taylor_verify.solvers.taylor.ensemble",
     )
     for target, line, for_types_only in imports(source):
         if within(target, "concurrent", "multiprocessing") and not placed and not for_types_only:
