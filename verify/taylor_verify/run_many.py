@@ -75,7 +75,9 @@ def run_many(
     batch.report.ReportNotWritten
         An OSError, if all was run and ``out`` could not be written; it has the ``results``.
 
-    All but the last three come before anything runs. Every process imports the script that calls this:
+    Notes
+    -----
+    All errors but the last three are raised before anything runs. Every process imports the script that calls this:
     there the call stands under ``if __name__ == "__main__":``.
     """
     from contextlib import nullcontext

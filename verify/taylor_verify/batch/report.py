@@ -26,7 +26,7 @@ class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the re
 
 
 def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
-    """Write verdicts, records, tables and a front page, as `taylor-verify run --out DIR` does.
+    """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
 
     Returns the files. What the folder held of an earlier run is replaced, as a whole or not at all. Raises
     OSError for a folder that cannot be written, and ValueError for two unlike records of one run.
@@ -62,7 +62,11 @@ def write_junit(
     results: Judgements | Judgement,
     comparison: Comparison | None = None,
 ) -> None:
-    """Write the verdicts as JUnit XML, green only where the exit status is 0. Raises OSError."""
+    """Write the verdicts of results as JUnit XML, in place of an earlier file.
+
+    What came as expected is left out. With the ``comparison`` with a baseline, a regression is a failure of
+    its row. The file is green only where the exit statuses are 0. Raises OSError.
+    """
     from taylor_verify.publish.ci.junit import junit
     from taylor_verify.publish.replacement import replace_files
 
