@@ -169,6 +169,21 @@ def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
     assert numbers[0] == numbers[2] != numbers[1]
 
 
+def test_the_number_of_processes_is_that_of_jobs(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """`--jobs` reaches the pool; what is below one is a wrong call."""
+    asked: list[object] = []
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all",
+        lambda jobs, progress, workers, *_: asked.append(workers) or [],
+    )
+    assert main(["run", "euler/rest", "euler/generic", "--jobs", "3"]) == 3
+    assert main(["run", "euler/rest", "--jobs", "0"]) == 2
+    assert asked == [3]
+    assert "expected a number of at least 1, got 0 @ --jobs" in capsys.readouterr().err
+
+
 def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
@@ -176,7 +191,7 @@ def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
     asked: list[Any] = []
 
     def judge(jobs: list[Job], progress: object, *others: object) -> list[Any]:
-        # No number of processes, no executor, nothing resumed, no folder to write to.
+        # No number of processes, no executor, nothing resumed, and no folder to write to.
         assert not any(others)
         (how,) = {(job.solver, job.rungs) for job in jobs}
         asked.append((tuple(job.name for job in jobs), *how))

@@ -77,8 +77,8 @@ def run_many(
 
     Notes
     -----
-    All errors but the last three are raised before anything runs. Every process imports the script that calls this:
-    there the call stands under ``if __name__ == "__main__":``.
+    All errors but the last three are raised before anything runs. Every process imports the script that
+    calls this: there the call stands under ``if __name__ == "__main__":``.
     """
     from contextlib import nullcontext
     from pathlib import Path

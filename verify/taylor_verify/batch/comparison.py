@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The outcome: ``compared`` rows, and how they departed from the earlier ones.
+    """Rows that were ``compared`` with earlier ones, and their departures.
 
     ``failures`` fail the comparison: the regressions from a baseline, or whatever left the rounding class
-    of a published row. ``undecided`` rows were asked another question before, and ``changes`` are told and
-    fail nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
+    of a published row. ``undecided`` rows were asked another question before, and ``changes`` fail
+    nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
     asked for again. The truth value is ``passed``.
     """
 
@@ -34,7 +34,7 @@ class Comparison:
 
     @property
     def exit_status(self) -> int:
-        """1 for a failure, 3 where something or all could not be compared, else 0."""
+        """Exit status: 1 for a failure, 3 where something or all could not be compared, else 0."""
         if self.failures:
             return 1
         return 3 if self.undecided or not self.compared else 0
@@ -64,14 +64,16 @@ class Earlier:
     def compare_as_baseline(self, results: Judgements | Judgement) -> Comparison:
         """Find regressions: errors beyond what rounding explains, worse verdicts, rows that are gone."""
         before = _asked_again(self.verdicts, results)
-        held = baseline.hold(before, results.verdicts)
-        return Comparison(held.compared, held.regressions, held.undecided, held.changes, before)
+        report = baseline.hold(before, results.verdicts)
+        return Comparison(
+            report.compared, report.regressions, report.undecided, report.changes, before
+        )
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
         before = _asked_again(self.verdicts, results)
-        found = rounding_class.compare(before, results.verdicts)
-        return Comparison(found.compared, found.departures, (), (), before)
+        report = rounding_class.compare(before, results.verdicts)
+        return Comparison(report.compared, report.departures, (), (), before)
 
 
 def compare_with_baseline(results: Judgements | Judgement, file: str | PathLike[str]) -> Comparison:

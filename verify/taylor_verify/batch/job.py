@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Job:
-    """One scene on several rungs by one solver: the rungs share the condition of the orbit.
+    """A scene on several rungs by one solver: the rungs share the condition of the orbit.
 
     ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory.
     """

@@ -113,15 +113,15 @@ class Judgements(Sequence[Judgement]):
 
     def document(self) -> dict[str, Any]:
         """Return the document of `taylor-verify run --json`."""
-        found: dict[str, Any] = {
+        document: dict[str, Any] = {
             "verdicts": [self.agreement.row(verdict) for verdict in self.verdicts],
             "summary": self.summary,
         }
         if self.agreement.expected:
-            found["expected"] = self.agreement.document(self.verdicts)
+            document["expected"] = self.agreement.document(self.verdicts)
         if self.selection.left_out:
-            found["left_out"] = self.left_out
-        return found
+            document["left_out"] = self.left_out
+        return document
 
     @property
     def left_out(self) -> list[dict[str, str]]:

@@ -1,4 +1,4 @@
-"""Jobs judged on any executor: each kept as it ends, so that an interrupted run can go on."""
+"""Jobs judged on any executor: each stored as it ends, so that an interrupted run can go on."""
 
 from __future__ import annotations
 
@@ -52,29 +52,29 @@ def judge_all(
     """
     ended = 0
 
-    def tell(job: Job | None) -> None:
+    def report(job: Job | None) -> None:
         nonlocal ended
         ended += job is not None
         if progress is not None:
             progress(ended, len(jobs), job)
 
-    tell(None)
+    report(None)
     if len(jobs) == 1 and executor is None:
         judgements = run_job(jobs[0])
-        tell(jobs[0])
+        report(jobs[0])
         return judgements
     with unfinished(jobs, out, resume) as store:
 
         def keep(job: Job, judgements: list[Judgement]) -> None:
             if store:
                 store.keep(job, judgements)
-            tell(job)
+            report(job)
 
         stored = [store.recall(job) if store else None for job in jobs]
         waiting = [job for job, known in zip(jobs, stored, strict=True) if known is None]
         for job, known in zip(jobs, stored, strict=True):
             if known is not None:
-                tell(job)
+                report(job)
         try:
             made = iter(
                 run_all(run_job, waiting, executor, workers=workers, expense=_expense, ended=keep)

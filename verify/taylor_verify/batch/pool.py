@@ -1,4 +1,4 @@
-"""An executor of worker processes on this machine that ends at once, whenever it is told to.
+"""An executor of worker processes on this machine that can be ended at once, at any moment.
 
 A thread waits for each process, on a pipe of their own. A process that is lost, or ended in the middle of
 a result, is the end of its pipe and blocks nobody; `concurrent.futures.ProcessPoolExecutor` has one
@@ -87,7 +87,7 @@ class LocalPool(Executor):
 
 
 class _Worker:
-    """One process and this side of its pipe."""
+    """A worker process and this side of its pipe."""
 
     def __init__(self, context: SpawnContext) -> None:
         self._pipe, theirs = context.Pipe()

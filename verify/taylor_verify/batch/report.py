@@ -28,7 +28,7 @@ class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the re
 def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
     """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
 
-    Returns the files. What the folder held of an earlier run is replaced, as a whole or not at all. Raises
+    Returns the files. What an earlier run left there is replaced, as a whole or not at all. Raises
     OSError for a folder that cannot be written, and ValueError for two unlike records of one run.
     """
     from taylor_verify.publish import report
@@ -103,11 +103,11 @@ def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
 
 
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
-    """Return what a CI is told of rows besides their verdicts: unexpected answers, and regressions."""
-    found = _unexpected(results) if isinstance(results, Judgements) else []
+    """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
+    remarked = _unexpected(results) if isinstance(results, Judgements) else []
     if comparison is not None:
-        found += _regressions(comparison, [*results.verdicts, *comparison.before])
-    return found
+        remarked += _regressions(comparison, [*results.verdicts, *comparison.before])
+    return remarked
 
 
 def _unexpected(results: Judgements) -> list[Remark]:

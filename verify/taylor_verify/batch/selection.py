@@ -28,7 +28,7 @@ class Selection:
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful of the scenes and yet well-posed, with the name of the scene."""
+        """Doubtful points of scenes that are well-posed all the same, with the name of each scene."""
         return [f"{warning} @ {scene.name}" for scene in self.scenes for warning in scene.warnings]
 
     @property
@@ -89,7 +89,7 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     from taylor_verify.scenes.reader import as_scene
 
     asked = [*scenes]
-    found: dict[str, Scene] = {}
+    read: dict[str, Scene] = {}
     faults: list[str] = []
     for one in asked:
         try:
@@ -98,10 +98,10 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
             faults += [f"{one} is refused:"] if len(asked) > 1 else []
             faults += error.faults
         else:
-            found.setdefault(scene.name, scene)
+            read.setdefault(scene.name, scene)
     if faults:
         raise Refused(faults)
-    return tuple(found.values())
+    return tuple(read.values())
 
 
 def _word(scene: Scene | str | PathLike[str]) -> Scene | str:

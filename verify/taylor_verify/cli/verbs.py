@@ -50,13 +50,20 @@ def run(options: argparse.Namespace) -> Answer:
     selection = select(options.scenes or None, rungs)
     for warning in selection.warnings:
         say(f"warning: {warning}")
+    if options.jobs is not None and not options.jobs >= 1:
+        raise WrongCall(f"expected a number of at least 1, got {options.jobs} @ --jobs")
     folder = writable(options.out) if options.out is not None else None
     published = _published(options.against) if options.against is not None else None
     asked = outputs(options)
     try:
         with advancing() as progress:
             results = run_many(
-                selection, options.solver, resume=options.resume, out=folder, progress=progress
+                selection,
+                options.solver,
+                jobs=options.jobs,
+                resume=options.resume,
+                out=folder,
+                progress=progress,
             )
     except Occupied as error:
         raise WrongCall(f"{error} (--out)") from error
