@@ -7,6 +7,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -31,8 +32,15 @@ def unpicklable() -> Any:
     return lambda: None
 
 
-def environment(name: str) -> str | None:
-    return os.environ.get(name)
+def environment() -> dict[str, str]:
+    return dict(os.environ)
+
+
+def threads() -> int:
+    import numpy as np
+
+    np.ones((300, 300)) @ np.ones((300, 300))
+    return len(os.listdir("/proc/self/task"))
 
 
 def ignores_interrupts() -> bool:
@@ -96,11 +104,19 @@ def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
     assert pool.submit(len, "abc").result() == 3
 
 
-def test_a_worker_has_one_thread_and_is_deaf_to_interrupts(pool: LocalPool) -> None:
-    """Libraries of linear algebra start no further threads, unless the caller's environment says so."""
-    asked = os.environ.get("OPENBLAS_NUM_THREADS", "1")
-    assert pool.submit(environment, "OPENBLAS_NUM_THREADS").result() == asked
+def test_a_worker_is_deaf_to_interrupts(pool: LocalPool) -> None:
+    """Ctrl-C goes to every process of a terminal, and is their parent's affair."""
     assert pool.submit(ignores_interrupts).result()
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's list of threads")
+def test_a_worker_computes_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside it is the one that watches the parent; a solver's program inherits nothing of it."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    with LocalPool(1) as pool:
+        assert pool.submit(threads).result() == 2
+        assert not {name for name in pool.submit(environment).result() if "THREADS" in name}
 
 
 @pytest.mark.parametrize(

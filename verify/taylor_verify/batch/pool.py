@@ -16,6 +16,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext
 from queue import SimpleQueue
@@ -23,7 +24,7 @@ from typing import Any, Final, TypeVar
 
 Result = TypeVar("Result")
 
-# Each worker has one core: libraries that read these start no threads for the others.
+# Each worker has one core: a library of linear algebra that reads these starts no threads for the others.
 _ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 # Seconds that a worker has to end before it is killed.
 _GRACE: Final = 2.0
@@ -150,11 +151,19 @@ def _serve(pipe: Connection) -> None:
     """Do what comes down the pipe until the pipe ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    for name in _ONE_THREAD:
-        os.environ.setdefault(name, "1")
+    _load_numpy_with_one_thread()
     with suppress(EOFError, OSError):
         while True:
             pipe.send_bytes(_answer(pipe.recv_bytes()))
+
+
+def _load_numpy_with_one_thread() -> None:
+    """Have numpy's library start no threads; the environment is left as it was, for programs of solvers."""
+    added = [name for name in _ONE_THREAD if name not in os.environ]
+    os.environ.update(dict.fromkeys(added, "1"))
+    import_module("numpy")
+    for name in added:
+        del os.environ[name]
 
 
 def _answer(request: bytes) -> bytes:
