@@ -85,7 +85,7 @@ def test_an_error_of_the_work_is_raised_as_it_was(pool: LocalPool) -> None:
 
 @pytest.mark.parametrize(
     ("work", "argument", "text"),
-    [(refuse, ("two parts",), "TwoParts: one two"), (unpicklable, (), "pickle")],
+    [(refuse, ("two parts",), "TwoParts: one two"), (unpicklable, (), "lambda")],
 )
 def test_what_cannot_be_pickled_is_an_error_with_a_text(
     pool: LocalPool, work: Any, argument: tuple[str, ...], text: str
@@ -99,7 +99,7 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
 
 def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
     """A lambda cannot be pickled, and its future says so."""
-    with pytest.raises(Exception, match="pickle"):
+    with pytest.raises(Exception, match="lambda"):
         pool.submit(lambda: 1).result(timeout=20)
     assert pool.submit(len, "abc").result() == 3
 

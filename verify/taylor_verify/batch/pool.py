@@ -1,8 +1,8 @@
 """An executor of worker processes on this machine that can be ended at once, at any moment.
 
 A thread waits for each process, on a pipe of their own. A process that is lost, or ended in the middle of
-a result, is the end of its pipe and blocks nobody; `concurrent.futures.ProcessPoolExecutor` has one
-pipe for all, and no public way out of half a result before Python 3.14.
+a result, is the end of its pipe and blocks nobody. `concurrent.futures.ProcessPoolExecutor` has one pipe
+for all, and waits for ever for the rest of a result whose process was ended.
 """
 
 from __future__ import annotations
