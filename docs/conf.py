@@ -21,13 +21,15 @@ author = "The taylor-verify authors"
 copyright = author
 version = release = version_of(project)
 
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["_build"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 # The scenes and the glossary are linked to by heading, as on the pages of a repository.
 myst_heading_anchors = 3
 # A transcript is text: a lexer that stumbles over it says nothing about the page.
 highlight_language = "text"
+# Docstrings with headings are numpydoc's; the colon of a plain one begins no section.
+napoleon_google_docstring = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_class_signature = "mixed"

@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.cli import main, verbs
+from taylor_verify.batch.job import Job
+from taylor_verify.cli import main
 from taylor_verify.judge.baseline import hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.report import load as load_report
@@ -282,11 +283,12 @@ def baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ]
     write(tmp_path, made, [])
 
-    def judged(scenes: Any, *_: Any) -> list[Any]:
+    def judged(jobs: list[Job], *_: Any) -> list[Any]:
+        scenes = {job.name for job in jobs}
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
         return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
 
-    monkeypatch.setattr(verbs, "_judge", judged)
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
     return tmp_path / "data" / "verdicts.json"
 
 
@@ -342,8 +344,7 @@ def test_a_baseline_excuses_no_failure(
     """What failed before and fails again is no regression, and exit 1 all the same."""
     failed = row(60.0, verdict=Status.FAIL)
     monkeypatch.setattr(
-        verbs,
-        "_judge",
+        "taylor_verify.batch.judging.judge_all",
         lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}})],
     )
     baseline.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")
@@ -356,7 +357,9 @@ def test_a_file_that_is_no_baseline_is_a_wrong_call(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, spoiled: str
 ) -> None:
     """Exit 2 with a message that names --baseline, before any work."""
-    monkeypatch.setattr(verbs, "_judge", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("the work was begun")
+    )
     file = tmp_path / "baseline.json"
     if spoiled == "folder":
         file.mkdir()

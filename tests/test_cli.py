@@ -19,7 +19,8 @@ from mpmath import mp
 from samples import LISTED_INSTANTS
 
 import taylor_verify
-from taylor_verify.cli import main, verbs
+from taylor_verify.batch.job import Job
+from taylor_verify.cli import main
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import LADDER
@@ -168,19 +169,35 @@ def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
     assert numbers[0] == numbers[2] != numbers[1]
 
 
+def test_the_number_of_processes_is_that_of_jobs(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """`--jobs` reaches the pool; what is below one is a wrong call."""
+    asked: list[object] = []
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all",
+        lambda jobs, progress, workers, *_: asked.append(workers) or [],
+    )
+    assert main(["run", "euler/rest", "euler/generic", "--jobs", "3"]) == 3
+    assert main(["run", "euler/rest", "--jobs", "0"]) == 2
+    assert asked == [3]
+    assert "expected a number of at least 1, got 0 @ --jobs" in capsys.readouterr().err
+
+
 def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
     """`run` alone asks for every shipped scene on f32 f64 f80 f128 mp237, a named one for f64."""
     asked: list[Any] = []
 
-    def judge(scenes: list[str], solver: str, rungs: list[str], *others: object) -> list[Any]:
-        # Nothing left out, nothing resumed, no folder to write to.
+    def judge(jobs: list[Job], progress: object, *others: object) -> list[Any]:
+        # No number of processes, no executor, nothing resumed, and no folder to write to.
         assert not any(others)
-        asked.append((tuple(scenes), solver, tuple(rungs)))
+        (how,) = {(job.solver, job.rungs) for job in jobs}
+        asked.append((tuple(job.name for job in jobs), *how))
         return []
 
-    monkeypatch.setattr(verbs, "_judge", judge)
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judge)
     # Nothing is judged here, and that is no pass.
     assert main(["run", "--json"]) == 3
     assert main(["run", "--json", "euler/generic"]) == 3
@@ -204,7 +221,7 @@ def test_the_exit_status_is_that_of_the_gravest_verdict(
     found = taylor_verify.run(str(short))
     marred = replace(found.verdicts[0], verdict=Status(status))
     judgement = replace(found, verdicts=(*found.verdicts, marred))
-    monkeypatch.setattr(verbs, "_judge", lambda *_: [judgement])
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [judgement])
     assert main(["run", str(short)]) == code
     assert status in capsys.readouterr().out
 
@@ -261,7 +278,7 @@ def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
         print("noise from Python")
         return []
 
-    monkeypatch.setattr(verbs, "_judge", noisy)
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", noisy)
     assert main(["run", "euler/generic", "--json"]) == 3
     out, error = capfd.readouterr()
     assert set(json.loads(out)) == {"verdicts", "summary"}
@@ -325,7 +342,9 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
 ) -> None:
     """Exit 2 with one line that names --out; no run is started, nothing is made."""
     (tmp_path / "a-file").write_text("mine")
-    monkeypatch.setattr(verbs, "_judge", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("the work was begun")
+    )
     folder = str(tmp_path / place) if place else ""
     assert main(["run", "euler/generic", "--out", folder]) == 2
     out, error = capsys.readouterr()

@@ -108,7 +108,7 @@ def test_every_path_that_is_named_exists(page: Path) -> None:
     assert [path for path in paths if not (ROOT / path).exists()] == []
 
 
-@pytest.mark.parametrize("page", ["command-line.md", "errors.md"])
+@pytest.mark.parametrize("page", ["command-line.md", "errors.md", "many-runs.md"])
 def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
     """The blocks that a page executes print what it shows."""
     assert any(block.language in {"console", "python"} for block in blocks(text_of(page)))

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 import taylor_verify
-from taylor_verify.cli import main, verbs
-from taylor_verify.expected import Held, hold
+from taylor_verify.batch.expectations import Agreement, compare_with_expectations
+from taylor_verify.batch.selection import select
+from taylor_verify.cli import main
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -117,7 +118,7 @@ def test_faults_are_reported_all_at_once() -> None:
 def test_only_what_was_expected_is_met(wanted: str, came: Status) -> None:
     """For every expectation and every verdict: equal is green, anything else fails, a pass too."""
     verdict = row(came)
-    held = hold([verdict], expecting(wanted))
+    held = compare_with_expectations([verdict], expecting(wanted))
     agrees = came.value == wanted
     assert (held.met(verdict) is not None) is agrees
     assert held.exit_status([verdict]) == (0 if agrees else 1)
@@ -132,13 +133,13 @@ def test_only_what_was_expected_is_met(wanted: str, came: Status) -> None:
 @pytest.mark.parametrize("came", list(Status))
 def test_a_row_that_is_not_listed_must_pass(came: Status) -> None:
     """Without an entry every verdict but `pass` is a mismatch, unless the machine has no such rung."""
-    status = hold([row(came)], Expectations()).exit_status([row(came)])
+    status = compare_with_expectations([row(came)], Expectations()).exit_status([row(came)])
     assert status == (0 if came in (Status.PASS, Status.UNAVAILABLE) else 1)
 
 
 def test_a_row_that_is_listed_must_come() -> None:
     """An entry for a quantity that the run has no row for is a mismatch that names it."""
-    held = hold([row()], expecting("vacuous", "attitude"))
+    held = compare_with_expectations([row()], expecting("vacuous", "attitude"))
     (mismatch,) = held.mismatches
     text = "expected vacuous (so it is), got no row @ extremes/euler-a f64 attitude"
     assert str(mismatch) == text
@@ -147,7 +148,7 @@ def test_a_row_that_is_listed_must_come() -> None:
 
 def test_an_entry_waits_for_its_own_rung() -> None:
     """An entry of a rung that was not run says nothing."""
-    assert hold([row(rung="f32")], expecting("vacuous")).mismatches == ()
+    assert compare_with_expectations([row(rung="f32")], expecting("vacuous")).mismatches == ()
 
 
 @pytest.mark.parametrize(
@@ -159,8 +160,8 @@ def test_an_entry_waits_for_its_own_rung() -> None:
 def test_nothing_else_is_held_to_it(came: Status, changed: dict[str, str]) -> None:
     """For all other scenes and solvers the exit status is that of the verdicts, and rows are as ever."""
     verdict = row(came, **changed)
-    held = hold([verdict], expecting("vacuous"))
-    assert held == Held()
+    held = compare_with_expectations([verdict], expecting("vacuous"))
+    assert held == Agreement()
     assert held.exit_status([verdict]) == exit_status([verdict])
     assert "expected" not in held.row(verdict)
 
@@ -177,7 +178,7 @@ def long_separatrix() -> Any:
 @pytest.fixture
 def solved(monkeypatch: pytest.MonkeyPatch, long_separatrix: Any) -> Any:
     """`run` finds that judgement made."""
-    monkeypatch.setattr(verbs, "_judge", lambda *_: [long_separatrix])
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [long_separatrix])
     return long_separatrix
 
 
@@ -206,7 +207,7 @@ def test_an_unexpected_pass_fails(
     start, omega, *others = solved.verdicts
     passed = replace(omega, verdict=Status.PASS)
     marred = replace(solved, verdicts=(start, passed, *others))
-    monkeypatch.setattr(verbs, "_judge", lambda *_: [marred])
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [marred])
     assert main(["run", LONG]) == 1
     text = capsys.readouterr().out
     assert "not as expected  expected vacuous" in text
@@ -221,7 +222,7 @@ def test_an_unforeseen_verdict_fails(
     start, omega, T, *others = solved.verdicts
     marred = replace(T, verdict=Status.VACUOUS)
     found = replace(solved, verdicts=(start, omega, marred, *others))
-    monkeypatch.setattr(verbs, "_judge", lambda *_: [found])
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [found])
     assert main(["run", LONG]) == 1
     assert f"expected pass, got vacuous @ {LONG} f64 T" in capsys.readouterr().out
 
@@ -235,7 +236,7 @@ def test_what_came_as_expected_leaves_a_junit_file_green(
     assert main(["run", LONG, "--junit", str(file)]) == 0
     assert 'failures="0"' in file.read_text()
     assert "<error" not in file.read_text()
-    monkeypatch.setattr("taylor_verify.expected.shipped", Expectations)
+    monkeypatch.setattr("taylor_verify.batch.expectations.shipped", Expectations)
     assert main(["run", LONG, "--junit", str(file)]) == 1
     assert "expected pass, got vacuous" in file.read_text()
     capsys.readouterr()
@@ -250,31 +251,34 @@ def test_a_folder_stands_for_its_scenes(monkeypatch: pytest.MonkeyPatch, capsys:
     The judge of this test judges nothing, and that is no pass.
     """
     asked: list[Any] = []
-    monkeypatch.setattr(verbs, "_judge", lambda *call: asked.append(call) or [])
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all",
+        lambda jobs, *_: asked.append([(job.name, job.rungs) for job in jobs]) or [],
+    )
     assert main(["run", "extremes"]) == 3
     names = library.named("extremes")
-    assert asked.pop() == (list(names), "taylor", ["f64"], {}, False, None)
+    assert asked.pop() == [(name, ("f64",)) for name in names]
     (scene, rung), why = next(iter(shipped().left_out.items()))
     assert main(["run", "extremes", "--rung", rung]) == 3
-    assert (scene, rung) in asked.pop()[3]
+    assert scene not in dict(asked.pop())
     assert f"not run: {scene} on {rung}: {why}" in capsys.readouterr().err
     assert main(["run", scene, "--rung", rung]) == 3
-    assert asked.pop() == ([scene], "taylor", [rung], {}, False, None)
+    assert asked.pop() == [(scene, (rung,))]
     assert main(["run", "extremes", scene, "--rung", rung]) == 3
-    assert (scene, rung) not in asked.pop()[3]
+    assert dict(asked.pop())[scene] == (rung,)
 
 
-def test_what_is_left_out_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_left_out_is_not_run() -> None:
     """No job holds a run that is left out, and a scene with no rung left has no job."""
-    made: list[Any] = []
-    monkeypatch.setattr(
-        "taylor_verify.standard.run_all", lambda jobs, _, **how: made.extend(jobs) or []
-    )
-    verbs._judge(["a", "b"], "taylor", ["f64", "mp237"], [("a", "mp237"), ("b", "f64")])
-    assert [(job.scene, job.rungs) for job in made] == [("a", ("f64",)), ("b", ("mp237",))]
-    made.clear()
-    verbs._judge(["a"], "taylor", ["f64"], [("a", "f64")])
-    assert made == []
+    without = {("euler/rest", "mp237"): "why", ("euler/generic", "f64"): "why"}
+    both = select(["euler/rest", "euler/generic"], ["f64", "mp237"])
+    made = replace(both, left_out=without).jobs("taylor")
+    assert [(job.name, job.rungs) for job in made] == [
+        ("euler/rest", ("f64",)),
+        ("euler/generic", ("mp237",)),
+    ]
+    alone = replace(select(["euler/rest"], ["mp237"]), left_out=without)
+    assert alone.jobs("taylor") == alone.scenes_run == []
 
 
 def test_other_folders_leave_nothing_out() -> None:

@@ -165,12 +165,12 @@ def test_the_command_fails_at_a_mismatch(
     scene = "extremes/euler-needle"
     asked: list[str] = []
 
-    def answered(jobs: list[Any], finished: Any) -> list[Any]:
-        asked.extend(job.scene for job in jobs)
+    def answered(jobs: list[Any], *_: Any) -> list[Any]:
+        asked.extend(job.name for job in jobs)
         found = passed(scene, "f64", "omega", verdict=verdict)
         return [SimpleNamespace(verdicts=(found,))]
 
-    monkeypatch.setattr("taylor_verify.standard.run_all", answered)
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", answered)
     call = ["publish", "--extremes", "--from", str(tmp_path), "--json"]
     assert main(call) == status
     captured = capsys.readouterr()

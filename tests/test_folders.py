@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from samples import THREE_INSTANTS
 
+from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main
-from taylor_verify.folder_lock import LOCK, Occupied, alone_in
 
 Captured = pytest.CaptureFixture[str]
 
@@ -58,7 +58,7 @@ def test_a_second_holder_is_refused_and_the_next_is_not(tmp_path: Path) -> None:
 def test_the_lock_of_a_killed_process_is_free(tmp_path: Path) -> None:
     """Its file is left behind, and is in nobody's way."""
     script = (
-        "import sys, time\nfrom pathlib import Path\nfrom taylor_verify.folder_lock import alone_in\n"
+        "import sys, time\nfrom pathlib import Path\nfrom taylor_verify.batch.lock import alone_in\n"
         "with alone_in(Path(sys.argv[1])):\n    print(flush=True)\n    time.sleep(600)\n"
     )
     command = [sys.executable, "-c", script, str(tmp_path)]

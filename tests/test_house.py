@@ -123,6 +123,33 @@ def publish_reads_records(module: str, source: str) -> Iterator[str]:
         yield from _beyond(readable, module, source, for_types=["taylor_verify.scenes"])
 
 
+# What lies above batch, and would make a circle of it; publish is written to from one module.
+ABOVE_BATCH: Final = {"cli", "trade", "growth", "controls", "claims"}
+
+
+def batch_stands_below_the_verbs(module: str, source: str) -> Iterator[str]:
+    """batch imports nothing of the rooms above it, and publish in batch.report alone."""
+    if room(module) != "batch":
+        return
+    above = ABOVE_BATCH if module == "taylor_verify.batch.report" else ABOVE_BATCH | {"publish"}
+    for target, line, _ in imports(source):
+        if within(target, *(f"taylor_verify.{name}" for name in above)):
+            yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
+
+
+def processes_have_their_place(module: str, source: str) -> Iterator[str]:
+    """Executors and processes are made in batch; trade times a new process, heyoka has threads."""
+    placed = within(
+        module,
+        "taylor_verify.batch",
+        *("taylor_verify.trade.cold", "taylor_verify.trade.measurement"),
+        "taylor_verify.solvers.taylor.ensemble",
+    )
+    for target, line, for_types_only in imports(source):
+        if within(target, "concurrent", "multiprocessing") and not placed and not for_types_only:
+            yield f"expected processes in batch only, got {target} @ {module}:{line}"
+
+
 def stands_in_its_own_environment(module: str, source: str) -> Iterator[str]:
     """A program in solvers/outside imports nothing of taylor_verify: its environment lacks it."""
     if within(module, "taylor_verify.solvers.outside"):
@@ -200,6 +227,8 @@ RULES: Final = (
     scenes_stand_alone,
     publish_reads_records,
     heyoka_has_its_place,
+    batch_stands_below_the_verbs,
+    processes_have_their_place,
     is_silent,
     stands_in_its_own_environment,
     imports_in_full,
@@ -366,6 +395,25 @@ PLANTED = [
     ),
     (heyoka_has_its_place, "taylor_verify.judge.errors", "import heyoka as hy", "heyoka"),
     (heyoka_has_its_place, "taylor_verify.solvers.scipy", "from heyoka import par", "heyoka.par"),
+    (
+        batch_stands_below_the_verbs,
+        "taylor_verify.batch.judging",
+        "from taylor_verify.cli.progress import advancing",
+        "cli",
+    ),
+    (
+        batch_stands_below_the_verbs,
+        "taylor_verify.batch.judgements",
+        "def f():\n from taylor_verify.publish import report",
+        "publish",
+    ),
+    (
+        processes_have_their_place,
+        "taylor_verify.portrait",
+        "from concurrent.futures import ProcessPoolExecutor",
+        "ProcessPoolExecutor",
+    ),
+    (processes_have_their_place, "taylor_verify.hunt", "import multiprocessing", "multiprocessing"),
     (is_silent, "taylor_verify.judge.errors", "print(1)", "print()"),
     (is_silent, "taylor_verify.run", "from rich.console import Console", "rich.console"),
     (is_silent, "taylor_verify.run", "import sys\nsys.stderr.write('')", "sys.stderr"),
@@ -407,6 +455,12 @@ def test_every_rule_has_a_planted_fault() -> None:
         (
             "taylor_verify.publish.plots",
             "if TYPE_CHECKING:\n from taylor_verify.scenes.scene import Scene",
+        ),
+        ("taylor_verify.batch.report", "from taylor_verify.publish.report import write"),
+        ("taylor_verify.batch.pool", "import multiprocessing"),
+        (
+            "taylor_verify.run_many",
+            "if TYPE_CHECKING:\n from concurrent.futures import Executor",
         ),
         ("taylor_verify.judge.errors", "from taylor_verify.modelscope import x"),
         ("taylor_verify.cli", "from rich.console import Console\nprint(1)"),

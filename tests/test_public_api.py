@@ -14,11 +14,11 @@ from typing import Any
 import pytest
 
 import taylor_verify
+from taylor_verify.batch.failure import Failed
 from taylor_verify.claims.claim import Finding
 from taylor_verify.cli import main
 from taylor_verify.explanation import explanation
 from taylor_verify.models.problem import Problem
-from taylor_verify.parallel import Failed
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung, rung
@@ -193,7 +193,7 @@ def test_many_runs_refuse_a_wrong_call(
     changed: dict[str, Any], error: type[Exception], expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What cannot be run is an error of the call, before anything runs."""
-    monkeypatch.setattr("taylor_verify.standard.run_all", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("it ran"))
     with pytest.raises(error, match=expected) as raised:
         taylor_verify.run_many(**{"scenes": SCENES, **changed})
     assert not isinstance(raised.value, Failed)

@@ -17,11 +17,12 @@ from typing import Any
 import pytest
 
 import taylor_verify
+from taylor_verify.batch.documents import document as document_of
+from taylor_verify.batch.failure import Failed
 from taylor_verify.cli import main
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.parallel import Failed, _document
 from taylor_verify.publish import reference_files
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.reference import DIGITS, reference, references
@@ -335,7 +336,7 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
         raise error
 
     with pytest.raises(Failed, match=text):
-        _document(broken, "euler/rest")
+        document_of(broken, "euler/rest")
 
 
 def test_documents_come_in_the_order_asked_for() -> None:

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from taylor_verify.cli import main, verbs
+from taylor_verify.batch.job import Job
+from taylor_verify.cli import main
 from taylor_verify.judge import rounding_class
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.report import load, write
@@ -256,11 +257,12 @@ def published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ]
     write(tmp_path, made, [])
 
-    def judged(scenes: Any, *_: Any) -> list[Any]:
+    def judged(jobs: list[Job], *_: Any) -> list[Any]:
+        scenes = {job.name for job in jobs}
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
         return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
 
-    monkeypatch.setattr(verbs, "_judge", judged)
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
     return tmp_path
 
 
@@ -311,7 +313,7 @@ def test_a_comparison_of_nothing_is_undecided(
     published: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit 3 where no published row was compared: nothing was shown."""
-    monkeypatch.setattr(verbs, "_judge", lambda *_: [])
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [])
     call = ["run", "euler/generic", "--rung", "f32", "--against", str(published)]
     assert main(call) == 3
 
@@ -320,7 +322,9 @@ def test_a_folder_without_verdicts_is_a_wrong_call(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Exit 2 with a message that names --against, before any work."""
-    monkeypatch.setattr(verbs, "_judge", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("the work was begun")
+    )
     assert main(["run", "euler/generic", "--against", str(tmp_path)]) == 2
     assert "--against" in capsys.readouterr().err
     (tmp_path / "data").mkdir()

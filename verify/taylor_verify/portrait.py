@@ -18,6 +18,7 @@ from typing import Any, Final
 from flint import acb, ctx, fmpz_poly
 from mpmath import mp, mpf
 
+from taylor_verify.batch.documents import documents
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.ellipsoid import formed_to
 from taylor_verify.exact.kirchhoff.displaced import centred
@@ -27,7 +28,6 @@ from taylor_verify.exact.printed import decimal_text, document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.explanation import explanation
-from taylor_verify.parallel import documents
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

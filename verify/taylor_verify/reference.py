@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, Final
 
+from taylor_verify.batch.documents import documents
 from taylor_verify.exact.printed import decimal_text, document
 from taylor_verify.exact.route import solution
-from taylor_verify.parallel import documents
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured

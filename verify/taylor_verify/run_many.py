@@ -1,4 +1,4 @@
-"""Many scenes solved and judged, on all cores."""
+"""Many scenes solved and judged, on all cores or on any executor."""
 
 from __future__ import annotations
 
@@ -6,41 +6,107 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from concurrent.futures import Executor
     from os import PathLike
 
-    from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.batch.judgements import Judgements
+    from taylor_verify.batch.judging import Progress
+    from taylor_verify.batch.selection import Selection
+    from taylor_verify.scenes.scene import Scene
 
 
 def run_many(
-    scenes: Iterable[str | PathLike[str]],
+    scenes: Selection | Iterable[Scene | str | PathLike[str]] | None = None,
     solver: str = "taylor",
-    rungs: Iterable[str] = ("f64",),
+    rungs: Iterable[str] | None = None,
     jobs: int | None = None,
-) -> list[Judgement]:
-    """Solve many scenes on some rungs and judge the answers, in ``jobs`` processes.
+    executor: Executor | None = None,
+    resume: bool = False,
+    out: str | PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Judgements:
+    """Solve many scenes on some rungs and judge the answers.
 
-    A scene is a path or the name of a shipped scene, the solver the name of one, the rungs ``f32 f64 f80
-    f128 mpN``. There are as many processes as cores unless ``jobs`` says how many. The judgements are in
-    the order of the scenes, and of the rungs within each. Every process imports the script that calls
-    this: there the call stands under ``if __name__ == "__main__":``.
+    Parameters
+    ----------
+    scenes
+        Scenes, paths, names of shipped scenes, or folders of these (``extremes``); a scene named twice
+        is run once. None is the standard set. A `batch.selection.Selection` says what will be run, what is
+        left out, and what is doubtful, before anything runs.
+    solver
+        The name of a solver, such as ``taylor`` or ``process:./mine``.
+    rungs
+        ``f32 f64 f80 f128 mpN``. None is f64, and all five of the ladder for the standard set.
+    jobs
+        The number of processes on this machine; as many as cores unless given. A single scene runs in
+        this process.
+    executor
+        A `concurrent.futures.Executor` that takes the place of those processes. Only its ``submit`` is
+        called, and it is left open. Scenes and judgements are pickled where it has processes. Threads of
+        one process take turns, because the arithmetic has one working precision for a process.
+    resume
+        Go on from the scenes that the same call, in the same folder, had finished before it was
+        interrupted.
+    out
+        A folder into which verdicts, records and tables are written. No other run may write to it
+        meanwhile.
+    progress
+        Called as ``progress(finished, total, job)`` at the start, with None for the job, and as each scene
+        ends. ``str(job)`` names the scene and its rungs.
 
-    Raises scenes.faults.Refused for the first scene that cannot be read, ValueError for what is no
-    solver, no rung or no number of processes, and parallel.Failed for a run that broke: all but the last
-    before anything runs.
+    Returns
+    -------
+    batch.judgements.Judgements
+        A sequence of Judgement, in the order of the scenes and of the rungs within each. Errors
+        and bounds are in the unit of each Verdict, times in that of the scene.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For scenes that cannot be read, with every fault of all of them.
+    ValueError
+        For what is no solver, no rung, or no number of processes.
+    batch.lock.Occupied
+        If another run writes to ``out``.
+    batch.failure.Failed
+        For a run that broke, or whose process was lost; the text names scene and rung.
+    batch.judging.Interrupted
+        A KeyboardInterrupt that says how many scenes are stored for ``resume``.
+    batch.report.ReportNotWritten
+        An OSError, if all was run and ``out`` could not be written; it has the ``results``.
+
+    Notes
+    -----
+    All errors but the last three are raised before anything runs. Every process imports the script that
+    calls this: there the call stands under ``if __name__ == "__main__":``.
     """
-    import os
+    from contextlib import nullcontext
+    from pathlib import Path
 
-    from taylor_verify.job import jobs as jobs_of
-    from taylor_verify.scenes.precision import rung
-    from taylor_verify.scenes.reader import load
+    from taylor_verify.batch.judgements import Judgements
+    from taylor_verify.batch.judging import judge_all
+    from taylor_verify.batch.lock import alone_in
+    from taylor_verify.batch.report import ReportNotWritten, write_report
+    from taylor_verify.batch.selection import Selection, select
     from taylor_verify.solvers.registry import check_name
-    from taylor_verify.standard import run_all
 
     if jobs is not None and not jobs >= 1:
         raise ValueError(f"expected jobs of at least 1, got {jobs}")
+    if jobs is not None and executor is not None:
+        raise ValueError("expected jobs or an executor, which has its own number, got both")
     check_name(solver)
-    names = [os.fspath(scene) for scene in scenes]
-    for name in names:
-        load(name)
-    asked = jobs_of(names, solver, [rung(name).name for name in dict.fromkeys(rungs)])
-    return run_all(asked, lambda job: None, jobs) if asked else []
+    if isinstance(scenes, Selection) and rungs is not None:
+        raise ValueError("expected rungs within the Selection, got others besides @ rungs")
+    selection = scenes if isinstance(scenes, Selection) else select(scenes, rungs)
+    folder = Path(out) if out is not None else None
+    with alone_in(folder) if folder is not None else nullcontext():
+        asked = selection.jobs(solver)
+        judgements = judge_all(asked, progress, jobs, executor, resume, folder)
+        results = Judgements(tuple(judgements), selection, solver)
+        if folder is not None:
+            try:
+                write_report(folder, results)
+            except (OSError, ValueError) as error:
+                message = f"expected to write the reports, got {error} @ {folder}"
+                raise ReportNotWritten(message, results) from error
+    return results

@@ -73,7 +73,7 @@ def _told(error: Exception) -> str:
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
     if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name or __name__):
         return f"expected the package {error.name} (`make verify` sets all up), got none"
-    from taylor_verify.parallel import Failed, fault
+    from taylor_verify.batch.failure import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)
 

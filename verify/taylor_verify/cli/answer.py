@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 PASS, FAIL, WRONG_CALL, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 130
+# The graver first: a call that went wrong has shown nothing at all.
+_GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
 
 
 class WrongCall(Exception):  # noqa: N818 (it names what was done)
@@ -20,6 +22,11 @@ class Answer(NamedTuple):
     document: dict[str, Any] | list[dict[str, Any]]
     text: Callable[[], str]
     messages: Sequence[str] = ()
+
+
+def graver(*statuses: int) -> int:
+    """Return the gravest of some exit statuses."""
+    return min(statuses, key=_GRAVITY.index)
 
 
 def files_written(paths: Iterable[Path]) -> Answer:

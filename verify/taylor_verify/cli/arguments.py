@@ -140,6 +140,9 @@ def _add_run(found: Any) -> None:
         metavar="R",
         help="f32 f64 f80 f128 mpN; default: f64 for named scenes, all five for the standard set",
     )
+    verb.add_argument(
+        "--jobs", type=int, metavar="N", help="processes for several scenes; default: one a core"
+    )
     verb.add_argument("--out", metavar="DIR", help="write verdicts, records and tables there")
     verb.add_argument(
         "--resume",

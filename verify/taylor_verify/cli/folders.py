@@ -24,15 +24,15 @@ def alone_in(folder: Path | None, option: str = "--out") -> Iterator[None]:
 
     Raises WrongCall if another run is there, or if the folder cannot be written.
     """
-    from taylor_verify import folder_lock
+    from taylor_verify.batch import lock
 
     if folder is None:
         yield
         return
     with ExitStack() as stack:
         try:
-            stack.enter_context(folder_lock.alone_in(folder))
-        except folder_lock.Occupied as error:
+            stack.enter_context(lock.alone_in(folder))
+        except lock.Occupied as error:
             raise WrongCall(f"{error} ({option})") from error
         except OSError as error:
             raise _cannot_be_written(str(folder), option, error) from error

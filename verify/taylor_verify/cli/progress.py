@@ -15,7 +15,8 @@ from taylor_verify.cli.streams import say
 from taylor_verify.scenes.names import escaped
 
 if TYPE_CHECKING:
-    from taylor_verify.job import Job
+    from taylor_verify.batch.job import Job
+    from taylor_verify.batch.judging import Progress
 
 # Nobody needs to be told that something takes less than this, in seconds.
 _PATIENCE = 1.0
@@ -24,36 +25,32 @@ PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 
 
 @contextmanager
-def advancing(total: int) -> Iterator[Callable[[Job], None]]:
-    """A bar that advances as jobs end; a line for each where stderr is no terminal."""
+def advancing() -> Iterator[Progress]:
+    """Show a bar that advances as jobs end; a line for each where stderr is no terminal."""
     if not sys.stderr.isatty():
-        yield _counting(total)
+        yield _say_progress
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-    from rich.progress import TimeElapsedColumn as Elapsed
+    from rich import progress as bars
 
     from taylor_verify.cli.console import EscapingConsole
 
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
-    console = EscapingConsole(stderr=True)
-    with Progress(*columns, Elapsed(), console=console, transient=True) as bar:
-        task = bar.add_task("compiling and solving", total=total)
+    columns = (
+        bars.TextColumn("{task.description}", markup=False),
+        *(bars.BarColumn(), bars.MofNCompleteColumn(), bars.TimeElapsedColumn()),
+    )
+    with bars.Progress(*columns, console=EscapingConsole(stderr=True), transient=True) as bar:
+        task = bar.add_task("compiling and solving")
 
-        def finished(job: Job) -> None:
-            bar.update(task, advance=1, description=escaped(job.scene))
+        def advance(finished: int, total: int, job: Job | None) -> None:
+            name = None if job is None else escaped(job.name)
+            bar.update(task, completed=finished, total=total, description=name)
 
-        yield finished
+        yield advance
 
 
-def _counting(total: int) -> Callable[[Job], None]:
-    done = 0
-
-    def finished(job: Job) -> None:
-        nonlocal done
-        done += 1
-        say(f"{done}/{total} {job.scene} on {' '.join(job.rungs)}")
-
-    return finished
+def _say_progress(finished: int, total: int, job: Job | None) -> None:
+    if job is not None:
+        say(f"{finished}/{total} {job}")
 
 
 @contextmanager

@@ -138,34 +138,20 @@ def reach(folder: Path) -> Answer:
 
 
 def extremes(folder: Path) -> Answer:
-    """What becomes of the extremes on float64; fails where an answer is not the one foreseen."""
+    """Run the extremes on float64; fail where an answer is not the expected one."""
+    from taylor_verify.batch.report import extremes_document
+    from taylor_verify.batch.selection import select
     from taylor_verify.cli.progress import advancing
-    from taylor_verify.expected import hold
-    from taylor_verify.job import jobs
     from taylor_verify.publish import extremes as pages
-    from taylor_verify.scenes import library
-    from taylor_verify.scenes.expected import left_out
-    from taylor_verify.scenes.reader import load
-    from taylor_verify.solvers.registry import TAYLOR
-    from taylor_verify.standard import run_all
+    from taylor_verify.run_many import run_many
+    from taylor_verify.scenes.library import EXTREMES
 
-    without = left_out([library.EXTREMES], [_ON])
-    scenes = [one for one in library.named(library.EXTREMES) if (one, _ON) not in without]
-    with advancing(len(scenes)) as finished:
-        results = run_all(jobs(scenes, TAYLOR, [_ON]), finished)
-    verdicts = [verdict for result in results for verdict in result.verdicts]
-    held = hold(verdicts)
-    document = pages.document(
-        verdicts,
-        expected={row: pages.Expected(e.verdict, e.why) for row, e in held.expected.items()},
-        mismatches=[str(mismatch) for mismatch in held.mismatches],
-        titles={scene: load(scene).title for scene in scenes},
-        left_out=[{"scene": s, "rung": r, "why": why} for (s, r), why in without.items()],
-    )
+    with advancing() as progress:
+        results = run_many(select([EXTREMES], [_ON]), progress=progress)
+    document = extremes_document(results)
     answer = files_written(pages.write(folder, document))
-    # What was not foreseen is published too, where it stands out.
-    status = held.exit_status(verdicts)
-    return answer._replace(status=status, messages=document["mismatches"])
+    # An unexpected answer is published too, where it stands out.
+    return answer._replace(status=results.exit_status, messages=document["mismatches"])
 
 
 def paper(folder: Path) -> Answer:

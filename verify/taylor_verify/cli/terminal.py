@@ -17,7 +17,7 @@ from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import gravest
 
 if TYPE_CHECKING:
-    from taylor_verify.expected import Held
+    from taylor_verify.batch.expectations import Agreement
     from taylor_verify.judge.answer import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
@@ -46,7 +46,7 @@ def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) ->
 # run
 
 
-def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
+def verdicts_text(verdicts: Sequence[Verdict], held: Agreement) -> str:
     """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
     from taylor_verify.records.verdict import summary
 
@@ -78,7 +78,7 @@ def verdicts_text(verdicts: Sequence[Verdict], held: Held) -> str:
     return text_of(console)
 
 
-def _as_expected(verdicts: Sequence[Verdict], held: Held) -> str:
+def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
     """How many of the rows that are no pass are what the extremes are expected to answer."""
     met = sum(held.met(verdict) is not None for verdict in verdicts)
     wrong = len(held.mismatches)

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall
-from taylor_verify.cli.folders import IN_A_CHECKOUT, alone_in, writable
+from taylor_verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, graver
+from taylor_verify.cli.folders import IN_A_CHECKOUT, writable
 from taylor_verify.cli.streams import say
 
 if TYPE_CHECKING:
     from fractions import Fraction
-    from pathlib import Path
 
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.records.verdict import Verdict
+    from taylor_verify.batch.comparison import Earlier
+    from taylor_verify.batch.judgements import Judgements
+    from taylor_verify.cli.ci import Outputs
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.file import TrajectoryFile
 
@@ -37,84 +37,85 @@ def list_all(options: argparse.Namespace) -> Answer:
 
 
 def run(options: argparse.Namespace) -> Answer:
-    """The whole chain for some scenes, or for the standard set."""
-    from taylor_verify.records.quantities import LADDER
-    from taylor_verify.scenes.expected import left_out
-    from taylor_verify.scenes.library import named, names
+    """Run the whole chain for some scenes, or for the standard set."""
+    from taylor_verify.batch.lock import Occupied
+    from taylor_verify.batch.report import ReportNotWritten
+    from taylor_verify.batch.selection import select
+    from taylor_verify.cli.ci import outputs
+    from taylor_verify.cli.progress import advancing
+    from taylor_verify.run_many import run_many
 
-    rungs = known_rungs(options.rung or (["f64"] if options.scenes else LADDER))
+    rungs = known_rungs(options.rung) if options.rung else None
     _known_solver(options.solver)
-    without = left_out(options.scenes, rungs)
-    options.scenes = [name for word in options.scenes for name in named(word)]
-    scenes = list(dict.fromkeys(options.scenes)) or list(names())
-    read_scenes(scenes)
+    selection = select(options.scenes or None, rungs)
+    for warning in selection.warnings:
+        say(f"warning: {warning}")
+    if options.jobs is not None and not options.jobs >= 1:
+        raise WrongCall(f"expected a number of at least 1, got {options.jobs} @ --jobs")
     folder = writable(options.out) if options.out is not None else None
-    with alone_in(folder):
-        return _run(options, scenes, rungs, without, folder)
-
-
-def _run(
-    options: argparse.Namespace,
-    scenes: Sequence[str],
-    rungs: Sequence[str],
-    without: Mapping[tuple[str, str], str],
-    folder: Path | None,
-) -> Answer:
-    """Run scenes that are known to be sound, into a folder that nobody else writes to."""
-    from taylor_verify.cli.ci import outputs, tell
-    from taylor_verify.cli.terminal import verdicts_text
-    from taylor_verify.expected import hold
-    from taylor_verify.records.verdict import summary
-
-    published = _published(options, rungs) if options.against is not None else None
+    published = _published(options.against) if options.against is not None else None
     asked = outputs(options)
-    results = _judge(scenes, options.solver, rungs, without, options.resume, folder)
-    verdicts = [verdict for result in results for verdict in result.verdicts]
-    held = hold(verdicts)
-    status, messages = held.exit_status(verdicts), []
-    if status == WRONG_CALL:
-        messages.append(f"nothing was judged: {held.unjudged(verdicts)}")
-    if folder is not None:
-        try:
-            messages.append(_write_reports(folder, results))
-        except (OSError, ValueError) as error:
-            # A run that took hours is shown in any case.
-            messages.append(f"expected to write the reports, got {error} @ --out {folder}")
-            status = WRONG_CALL
-    found: dict[str, Any] = {
-        "verdicts": [held.row(v) for v in verdicts],
-        "summary": summary(verdicts),
-    }
-    if held.expected:
-        found["expected"] = held.document(verdicts)
-    if without:
-        found["left_out"] = [{"scene": s, "rung": r, "why": w} for (s, r), w in without.items()]
+    try:
+        with advancing() as progress:
+            results = run_many(
+                selection,
+                options.solver,
+                jobs=options.jobs,
+                resume=options.resume,
+                out=folder,
+                progress=progress,
+            )
+    except Occupied as error:
+        raise WrongCall(f"{error} (--out)") from error
+    except ReportNotWritten as error:
+        # A run that took hours is shown in any case.
+        return _run_answer(error.results, asked, published, f"{error} (--out)", WRONG_CALL)
+    written = f"wrote {folder / 'tables'} and {folder / 'data'}" if folder is not None else ""
+    return _run_answer(results, asked, published, written)
+
+
+def _run_answer(
+    results: Judgements,
+    asked: Outputs,
+    published: Earlier | None,
+    written: str,
+    status: int = PASS,
+) -> Answer:
+    """Return the answer of a run, with what comparisons and files add to it."""
+    from taylor_verify.cli.ci import tell
+    from taylor_verify.cli.terminal import verdicts_text
+    from taylor_verify.judge.costs import sentence
+
+    status = graver(status, results.exit_status)
+    messages = [f"nothing was judged: {results.unjudged}"] * (results.exit_status == WRONG_CALL)
+    messages += [written] * bool(written)
+    document = results.document()
     if published is not None:
-        found["against"], told = _held_against(options.against, published, verdicts)
-        messages += told
-        status = _status_against(found["against"], status)
-    again = _asked_again(asked.baseline or (), options, rungs)
-    to_ci = tell(asked, verdicts, status, again, held)
-    text = partial(verdicts_text, verdicts, held)
-    not_run = [f"not run: {scene} on {rung}: {why}" for (scene, rung), why in without.items()]
-    messages += [*to_ci.messages, *not_run, *_dearest(scenes, results)]
-    return Answer(to_ci.status, {**found, **to_ci.document}, text, messages)
+        comparison = published.compare_as_published(results)
+        departures = [str(departure) for departure in comparison.failures]
+        rows = f"{comparison.compared} rows compared with {published.source}"
+        messages += [*departures, f"{rows}: {len(departures)} departures from their rounding class"]
+        document["against"] = {
+            "folder": published.source,
+            "compared": comparison.compared,
+            "departures": departures,
+        }
+        status = graver(status, comparison.exit_status)
+    to_ci = tell(asked, results, status)
+    messages += to_ci.messages
+    messages += [f"not run: {o['scene']} on {o['rung']}: {o['why']}" for o in results.left_out]
+    if len(results.selection.scenes) > 1 and results.costs:
+        messages.append(sentence(results.costs))
+    text = partial(verdicts_text, results.verdicts, results.agreement)
+    return Answer(to_ci.status, {**document, **to_ci.document}, text, messages)
 
 
-def _dearest(scenes: Sequence[str], results: Iterable[Judgement]) -> list[str]:
-    """Where the time of a set of scenes went."""
-    from taylor_verify.judge.costs import sentence, total
-
-    spent = total(result.costs for result in results)
-    return [sentence(spent)] if len(scenes) > 1 and spent else []
-
-
-def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdict]:
-    """What the folder of --against has of the solver, the rungs and, where named, the scenes."""
-    from taylor_verify.publish import report
+def _published(folder: str) -> Earlier:
+    """Return the verdicts of the folder of --against."""
+    from taylor_verify.batch.report import read_report
 
     try:
-        verdicts = report.load(options.against)
+        return read_report(folder)
     except FileNotFoundError as error:
         raise WrongCall(
             f"expected a folder of `run --out`, got no such file @ --against {error.filename}; "
@@ -122,37 +123,6 @@ def _published(options: argparse.Namespace, rungs: Sequence[str]) -> list[Verdic
         ) from error
     except ValueError as error:
         raise WrongCall(f"{error} (--against)") from error
-    return _asked_again(verdicts, options, rungs)
-
-
-def _asked_again(
-    verdicts: Iterable[Verdict], options: argparse.Namespace, rungs: Sequence[str]
-) -> list[Verdict]:
-    """The rows of the solver, the rungs and, where named, the scenes of this call."""
-    asked = [v for v in verdicts if v.solver == options.solver and v.rung in rungs]
-    return [v for v in asked if not options.scenes or v.scene in options.scenes]
-
-
-def _held_against(
-    folder: str, published: Iterable[Verdict], made: Iterable[Verdict]
-) -> tuple[dict[str, Any], list[str]]:
-    """The comparison as a document, and as messages: every departure, then how many rows."""
-    from taylor_verify.judge.rounding_class import compare
-
-    comparison = compare(published, made)
-    told = [str(departure) for departure in comparison.departures]
-    document = {"folder": folder, "compared": comparison.compared, "departures": told}
-    rows = f"{comparison.compared} rows compared with {folder}"
-    return document, [*told, f"{rows}: {len(told)} departures from their rounding class"]
-
-
-def _status_against(found: Mapping[str, Any], status: int) -> int:
-    """The graver of the run's own status and that of the comparison, undecided if it had no row."""
-    if status == WRONG_CALL:
-        return status
-    if found["departures"]:
-        return FAIL
-    return status if found["compared"] else status or UNDECIDED
 
 
 def exact(options: argparse.Namespace) -> Answer:
@@ -214,14 +184,9 @@ def check(options: argparse.Namespace) -> Answer:
     with working(f"check {options.file}"):
         judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
     text = partial(check_text, judged, scene.name, name)
-    again = [v for v in asked.baseline or () if _run_of(v) == _run_of(judged.verdicts[0])]
-    to_ci = tell(asked, judged.verdicts, exit_status(judged.verdicts), again)
+    to_ci = tell(asked, judged, exit_status(judged.verdicts))
     document = {**judged.document(), **to_ci.document}
     return Answer(to_ci.status, document, text, to_ci.messages)
-
-
-def _run_of(verdict: Verdict) -> tuple[str, ...]:
-    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
 
 
 def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:
@@ -259,29 +224,6 @@ def explain(options: argparse.Namespace) -> Answer:
 # What the verbs share.
 
 
-def _judge(
-    scenes: Sequence[str],
-    solver: str,
-    rungs: Sequence[str],
-    left_out: Iterable[tuple[str, str]] = (),
-    resume: bool = False,
-    out: Path | None = None,
-) -> list[Judgement]:
-    from taylor_verify.cli.progress import advancing
-    from taylor_verify.job import jobs
-    from taylor_verify.standard import run_all
-
-    without = set(left_out)
-    asked = [
-        job
-        for scene in scenes
-        for job in jobs([scene], solver, [r for r in rungs if (scene, r) not in without])
-        if job.rungs
-    ]
-    with advancing(len(asked)) as finished:
-        return run_all(asked, finished, resume=resume, out=out)
-
-
 def _no_text() -> str:
     """The messages have said it."""
     return ""
@@ -306,23 +248,18 @@ def _known_solver(name: str) -> None:
 
 
 def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
-    """Every scene, read before any work begins; the faults of all of them are reported at once."""
+    """Read every scene before any work begins; the faults of all of them are reported at once."""
+    from taylor_verify.batch.selection import read_all
     from taylor_verify.scenes.faults import Refused
-    from taylor_verify.scenes.reader import load
 
-    scenes, faults = [], []
-    for name in names:
-        try:
-            scenes.append(load(name))
-        except Refused as error:
-            heading = f"{name} is refused:\n" if len(names) > 1 else ""
-            faults.append(f"{heading}{error}")
-    if faults:
-        raise WrongCall("\n".join(faults))
+    try:
+        scenes = read_all(names)
+    except Refused as error:
+        raise WrongCall(str(error)) from error
     for scene in scenes if warn else ():
         for warning in scene.warnings:
             say(f"warning: {warning} @ {scene.name}")
-    return scenes
+    return [*scenes]
 
 
 def read_time(text: str) -> Fraction:
@@ -332,14 +269,3 @@ def read_time(text: str) -> Fraction:
         return exact_number(text)
     except ValueError as error:
         raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
-
-
-def _write_reports(folder: Path, results: Sequence[Judgement]) -> str:
-    """Verdicts, records and tables; returns where they are."""
-    from taylor_verify.publish import report
-
-    verdicts = [verdict for result in results for verdict in result.verdicts]
-    records = [result.record for result in results if result.record is not None]
-    report.write(folder, verdicts, records)
-    report.publish(folder)
-    return f"wrote {folder / report.TABLES} and {folder / 'data'}"

@@ -17,6 +17,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.batch.runs import run_all
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
@@ -25,7 +26,6 @@ from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import largest, state_errors
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
-from taylor_verify.parallel import available_cores, on_all_cores
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
@@ -80,11 +80,11 @@ def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
     found = families()
     asked = [Member(one.name, value) for one in found for value in one.values]
 
-    def tell(member: Member) -> None:
+    def tell(member: Member, _: object) -> None:
         if finished is not None:
-            finished(member.label)
+            finished(str(member))
 
-    reaches = on_all_cores(_measured, asked, _expense, tell, available_cores())
+    reaches = run_all(_measured, asked, expense=_expense, ended=tell)
     return {
         "families": [_described(one) for one in found],
         "rows": [one.row() for member in reaches for one in member],
@@ -95,13 +95,12 @@ def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Member:
-    """One value of one family, by name: what a process is sent."""
+    """One value of one family, by name: small enough to be sent to a process."""
 
     family: str
     value: str
 
-    @property
-    def label(self) -> str:
+    def __str__(self) -> str:
         return family(self.family).label(self.value)
 
 

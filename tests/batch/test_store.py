@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from taylor_verify import standard
-from taylor_verify import unfinished as module
-from taylor_verify.job import Job, jobs
+from taylor_verify.batch import judging
+from taylor_verify.batch import store as module
+from taylor_verify.batch.job import Job, jobs
+from taylor_verify.batch.store import unfinished
 from taylor_verify.run import run
 from taylor_verify.solvers.solver import Callback
-from taylor_verify.unfinished import unfinished
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
 
@@ -191,13 +191,19 @@ def test_a_damaged_entry_is_run_again_with_a_warning(
         assert store is not None
         file = store._file(ASKED[1])
         file.write_bytes(damage(file.read_bytes()))
-        judged: list[str] = []
-        monkeypatch.setattr(standard, "_run", lambda job: judged.append(job.scene) or [])
-        for job in ASKED:
-            standard._run_or_recall(store, job)
+    judged: list[str] = []
+
+    def run_all(work: Any, asked: list[Job], *_: Any, **__: Any) -> list[Any]:
+        judged.extend(job.name for job in asked)
+        return [[] for job in asked]
+
+    monkeypatch.setattr(judging, "run_all", run_all)
+    found = judging.judge_all(ASKED, resume=True)
+    assert [each.verdicts[0].scene for each in found] == ["euler/rest"]
     assert judged == ["euler/generic"]
     (warning,) = caplog.messages
-    assert warning == (f"taylor-verify: warning: damaged, and run again: euler/generic @ {file}")
+    assert warning == f"taylor-verify: warning: damaged, and run again: euler/generic @ {file}"
+    assert not file.exists()
 
 
 def test_a_cache_that_cannot_be_written_keeps_nothing(
@@ -213,7 +219,7 @@ def test_a_cache_that_cannot_be_written_keeps_nothing(
 def test_a_finished_run_leaves_nothing(cache: Path) -> None:
     """Neither its entries nor its folder nor its lock."""
     asked = jobs(["euler/rest", "euler/spherical"], "taylor", ["f64"])
-    standard.run_all(asked, lambda job: None, workers=1)
+    judging.judge_all(asked, workers=1)
     assert [file for file in cache.rglob("*") if file.is_file()] == []
 
 
@@ -221,7 +227,7 @@ def test_a_finished_run_leaves_nothing(cache: Path) -> None:
 _IN_THE_MIDDLE = """
 import sys, time
 from pathlib import Path
-from taylor_verify.parallel import on_all_cores
+from taylor_verify.batch.runs import run_all
 
 MARK = Path(sys.argv[1])
 
@@ -232,7 +238,7 @@ def work(size):
     return bytes(size)
 
 
-def finished(size):
+def finished(size, result):
     while not MARK.exists():
         time.sleep(0.001)
     time.sleep(float(sys.argv[2]))
@@ -241,7 +247,7 @@ def finished(size):
 
 if __name__ == "__main__":
     try:
-        on_all_cores(work, [0, 200_000_000], lambda size: size, finished, 2)
+        run_all(work, [0, 200_000_000], workers=2, expense=lambda size: size, ended=finished)
     except KeyboardInterrupt:
         print("interrupted")
 """

@@ -58,7 +58,7 @@ def _locked(folder: Path) -> int:
 
 
 def _lock(handle: int) -> bool:
-    """False if another has it; a filesystem or a system without locks has none to wait for."""
+    """Return False if another has it; a filesystem or a system without locks has none to wait for."""
     try:
         import fcntl
 
@@ -71,7 +71,7 @@ def _lock(handle: int) -> bool:
 
 
 def _is_in_place(handle: int, file: Path) -> bool:
-    """Its holder before may have removed the file after it was opened here."""
+    """Return False if its former holder removed the file after it was opened here."""
     try:
         return os.path.samestat(os.fstat(handle), os.stat(file))
     except FileNotFoundError:

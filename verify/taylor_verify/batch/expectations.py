@@ -1,7 +1,7 @@
-"""Verdicts held against what was expected of them: the extremes have answers that are no `pass`.
+"""Verdicts compared with what is expected of the extremes, whose right answers are not all `pass`.
 
-A verdict keeps its word. What is decided here is whether it was foreseen: a foreseen one changes no
-exit status, and what was foreseen and did not come, or came unforeseen, is a mismatch and fails.
+A verdict keeps its word. An expected one changes no exit status. A verdict that was expected and did not
+come, or came unexpected, is a mismatch and fails.
 """
 
 from __future__ import annotations
@@ -33,21 +33,21 @@ class Mismatch:
 
 
 @dataclass(frozen=True)
-class Held:
-    """``expected`` has every row that was held to the file, ``mismatches`` those that differ."""
+class Agreement:
+    """``expected`` has every row that the file speaks of, ``mismatches`` those that differ from it."""
 
     expected: Mapping[Row, Expectation] = field(default_factory=dict)
     mismatches: tuple[Mismatch, ...] = ()
 
     def met(self, verdict: Verdict) -> Expectation | None:
-        """What was expected of a row that is no pass and has come as expected; None for all others."""
-        found = self.expected.get(_row(verdict))
-        if found is None or verdict.verdict is Status.PASS:
+        """Return the expectation of a row that is no pass and came as expected; None for all others."""
+        expectation = self.expected.get(_row(verdict))
+        if expectation is None or verdict.verdict is Status.PASS:
             return None
-        return found if found.verdict == verdict.verdict.value else None
+        return expectation if expectation.verdict == verdict.verdict.value else None
 
     def exit_status(self, verdicts: Sequence[Verdict]) -> int:
-        """1 for a mismatch; else that of the rows which are not as the file foresees.
+        """Return 1 for a mismatch; else the status of the rows that did not come as expected.
 
         Where nothing was judged: 2 if a package is missing, 0 if the machine lacks every number format
         that was asked for, 3 otherwise.
@@ -62,37 +62,39 @@ class Held:
         return 0 if outcomes == {Outcome.NO_FORMAT.value} else 3
 
     def unjudged(self, verdicts: Sequence[Verdict]) -> str:
-        """The reasons why nothing was judged; empty where something was, or came as expected."""
+        """Return the reasons why nothing was judged; empty where something was, or came as expected."""
         if any(v.verdict is not Status.UNAVAILABLE or self.met(v) for v in verdicts):
             return ""
         return "; ".join(dict.fromkeys(v.because for v in verdicts)) or "no run was asked for"
 
     def row(self, verdict: Verdict) -> dict[str, Any]:
-        """The row as JSON holds it, with what was expected of it where it was held to the file."""
-        found = self.expected.get(_row(verdict))
-        if found is None:
+        """Return the row as JSON has it, with what was expected of it where the file speaks of it."""
+        expectation = self.expected.get(_row(verdict))
+        if expectation is None:
             return verdict.row()
-        is_met = found.verdict == verdict.verdict.value
-        told = {"verdict": found.verdict, "why": found.why, "met": is_met}
-        return {**verdict.row(), "expected": told}
+        is_met = expectation.verdict == verdict.verdict.value
+        expected = {"verdict": expectation.verdict, "why": expectation.why, "met": is_met}
+        return {**verdict.row(), "expected": expected}
 
     def document(self, verdicts: Sequence[Verdict]) -> dict[str, Any]:
-        """How many answers besides `pass` came as expected, and every mismatch in a sentence."""
+        """Return the number of answers besides `pass` that came as expected, and every mismatch."""
         met = sum(self.met(verdict) is not None for verdict in verdicts)
         return {"met": met, "mismatches": [str(mismatch) for mismatch in self.mismatches]}
 
 
-def hold(verdicts: Sequence[Verdict], expectations: Expectations | None = None) -> Held:
-    """Every run of an extreme by the shipped solver held to the shipped file, or to another.
+def compare_with_expectations(
+    verdicts: Sequence[Verdict], expectations: Expectations | None = None
+) -> Agreement:
+    """Compare every run of an extreme by the shipped solver with the shipped file, or with another.
 
-    A run that this machine has no number type for is held to nothing, as no other one is.
+    A run that this machine has no number type for, and every other run, is compared with nothing.
     """
     runs: dict[tuple[str, str], dict[str, Verdict]] = {}
     for verdict in verdicts:
         if is_extreme(verdict.scene) and (verdict.solver, verdict.setting) == (TAYLOR, ""):
             runs.setdefault((verdict.scene, verdict.rung), {})[verdict.quantity] = verdict
     if not runs:
-        return Held()
+        return Agreement()
     expectations = expectations or shipped()
     expected: dict[Row, Expectation] = {}
     mismatches: list[Mismatch] = []
@@ -106,7 +108,7 @@ def hold(verdicts: Sequence[Verdict], expectations: Expectations | None = None) 
             got = found[quantity].verdict.value if quantity in found else "no row"
             if got != wanted.verdict:
                 mismatches.append(Mismatch(row, wanted, got))
-    return Held(expected, tuple(mismatches))
+    return Agreement(expected, tuple(mismatches))
 
 
 def _row(verdict: Verdict) -> Row:

@@ -25,13 +25,13 @@ from typing import TYPE_CHECKING, Final
 from msgspec import to_builtins
 from platformdirs import user_cache_path
 
-from taylor_verify.folder_lock import Occupied, alone_in
+from taylor_verify.batch.lock import Occupied, alone_in
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.record import Record
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
-    from taylor_verify.job import Job
+    from taylor_verify.batch.job import Job
     from taylor_verify.judge.judgement import Judgement
 
 _SUFFIX: Final = ".judged"
@@ -45,17 +45,17 @@ class Unfinished:
     folder: Path
 
     def recall(self, job: Job) -> list[Judgement] | None:
-        """The judgements of a job that was finished before; None if it is to be run.
+        """Return the judgements of a job that was finished before; None if it is to be run.
 
         A file that was damaged since is removed, with a warning.
         """
         file = self._file(job)
         try:
-            return _read(file.read_bytes())
+            return from_bytes(file.read_bytes())
         except OSError:
             return None
         except ValueError:
-            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.scene, file)
+            _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.name, file)
             with suppress(OSError):
                 file.unlink()
             return None
@@ -65,7 +65,7 @@ class Unfinished:
         with suppress(OSError):
             handle, name = tempfile.mkstemp(dir=self.folder)
             with open(handle, "wb") as file:
-                file.write(_written(judgements))
+                file.write(to_bytes(judgements))
             os.replace(name, self._file(job))
 
     def forget(self) -> None:
@@ -74,9 +74,10 @@ class Unfinished:
 
     def _file(self, job: Job) -> Path:
         from taylor_verify.judge.provenance import versions
-        from taylor_verify.scenes.reader import load
+        from taylor_verify.scenes.reader import as_scene
 
-        depends = (load(job.scene).digest, job, _programs(job.solver), versions(), _package())
+        question = (as_scene(job.scene).digest, *_words(job))
+        depends = (question, _programs(job.solver), versions(), _package())
         return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
 
 
@@ -87,7 +88,7 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
     None where the user's cache cannot be written, and where the same run is going on elsewhere.
     """
     place = os.path.abspath(out) if out is not None else None
-    run = _digest(repr((list(asked), os.getcwd(), place)).encode())
+    run = _digest(repr(([_words(job) for job in asked], os.getcwd(), place)).encode())
     store = Unfinished(user_cache_path("taylor-verify") / "unfinished" / run[:32])
     with ExitStack() as stack:
         try:
@@ -113,14 +114,15 @@ class _Stored:
     costs: dict[str, float]
 
 
-def _written(judgements: Sequence[Judgement]) -> bytes:
+def to_bytes(judgements: Sequence[Judgement]) -> bytes:
+    """Return the content of a file: the digest of the rest, then JSON."""
     rows = [_Stored(j.verdicts, j.record, dict(j.costs)) for j in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
     text = json.dumps(to_builtins(rows)).encode()
     return _digest(text).encode() + b"\n" + text
 
 
-def _read(content: bytes) -> list[Judgement]:
+def from_bytes(content: bytes) -> list[Judgement]:
     """Return the judgements as they were; ValueError for any other content."""
     from taylor_verify.judge.judgement import Judgement
 
@@ -132,6 +134,11 @@ def _read(content: bytes) -> list[Judgement]:
 
 
 # What a judgement depends on.
+
+
+def _words(job: Job) -> tuple[str, str, tuple[str, ...]]:
+    """Return the scene's name, the solver and the rungs. A Scene itself has no fixed order in its text."""
+    return job.name, job.solver, job.rungs
 
 
 def _programs(solver: str) -> list[str]:
@@ -149,7 +156,7 @@ def _programs(solver: str) -> list[str]:
 def _package() -> str:
     """A digest of this package's own text: a judgement of other code is no judgement of this one."""
     digest = hashlib.sha256()
-    package = Path(__file__).parent
+    package = Path(__file__).parents[1]
     for file in sorted(package.rglob("*.py")):
         digest.update(str(file.relative_to(package)).encode() + file.read_bytes())
     return digest.hexdigest()

@@ -1,0 +1,156 @@
+"""A result compared with earlier verdicts, and written for a CI, without the command line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+import taylor_verify
+from taylor_verify.batch.comparison import compare_with_baseline, read_baseline
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.batch.report import (
+    compare_with_published,
+    extremes_document,
+    read_report,
+    remarks,
+    shown_verdicts,
+    write_junit,
+    write_report,
+)
+from taylor_verify.batch.selection import select
+from taylor_verify.judge.judgement import NotPassed
+from taylor_verify.records.status import Status
+
+SCENES = ["euler/rest", "euler/generic"]
+LONG = "extremes/euler-separatrix-long"
+
+
+@pytest.fixture(scope="module")
+def results() -> Judgements:
+    """Two scenes on f64, run one after the other."""
+    judgements = [taylor_verify.run(scene) for scene in SCENES]
+    return Judgements(tuple(judgements), select(SCENES), "taylor")
+
+
+def changed(results: Judgements, scene: str, quantity: str, **fields: Any) -> Judgements:
+    """The same result with other fields in one verdict."""
+    judgements = []
+    for judgement in results:
+        verdicts = tuple(
+            replace(v, **fields) if (v.scene, v.quantity) == (scene, quantity) else v
+            for v in judgement.verdicts
+        )
+        judgements.append(replace(judgement, verdicts=verdicts))
+    assert [v for one in judgements for v in one.verdicts] != list(results.verdicts)
+    return replace(results, judgements=tuple(judgements))
+
+
+@pytest.fixture
+def baseline(tmp_path: Path, results: Judgements) -> Path:
+    """The document of `run --json` as a file."""
+    file = tmp_path / "baseline.json"
+    file.write_text(json.dumps(results.document()), encoding="utf-8")
+    return file
+
+
+def test_a_result_is_no_regression_from_itself(baseline: Path, results: Judgements) -> None:
+    """All rows are compared, and the comparison passes."""
+    found = compare_with_baseline(results, baseline)
+    assert found.compared == len(results.verdicts)
+    assert found
+    assert found.exit_status == 0
+    found.raise_for_failure()
+
+
+def test_an_error_that_grew_is_a_regression(baseline: Path, results: Judgements) -> None:
+    """It fails by name, also where the gate itself still passes."""
+    worse = changed(results, "euler/generic", "omega", max=1e-3)
+    found = compare_with_baseline(worse, baseline)
+    (failure,) = found.failures
+    assert "euler/generic f64 omega max" in str(failure)
+    assert (found.exit_status, found.passed) == (1, False)
+    with pytest.raises(NotPassed, match="euler/generic f64 omega max"):
+        found.raise_for_failure()
+
+
+def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judgements) -> None:
+    """A scene that was not named may be missing; of another solver nothing is compared."""
+    (_, second) = results.judgements
+    one = Judgements((second,), select(["euler/generic"]), "taylor")
+    assert compare_with_baseline(one, baseline).passed
+    assert not compare_with_baseline(replace(one, selection=select(SCENES)), baseline).passed
+    other = compare_with_baseline(replace(one, solver="scipy:RK45"), baseline)
+    assert (other.compared, other.exit_status) == (0, 3)
+    with pytest.raises(NotPassed, match="no row was compared"):
+        other.raise_for_failure()
+
+
+def test_a_judgement_of_one_run_is_compared_alone(baseline: Path, results: Judgements) -> None:
+    """Of the baseline, the rows of this run count."""
+    found = compare_with_baseline(results[1], baseline)
+    assert found.passed
+    assert found.compared == len(results[1].verdicts)
+
+
+def test_what_is_no_baseline_is_refused(tmp_path: Path) -> None:
+    """A file that is half understood would let all pass."""
+    file = tmp_path / "other.json"
+    file.write_text("{}")
+    with pytest.raises(ValueError, match='expected an object with "verdicts"'):
+        read_baseline(file)
+
+
+def test_a_report_is_compared_both_ways(tmp_path: Path, results: Judgements) -> None:
+    """Against the folder it wrote a result passes; an error that shrank departs too."""
+    paths = write_report(tmp_path, results)
+    assert {tmp_path / "data" / "verdicts.json", tmp_path / "tables" / "accuracy.md"} <= set(paths)
+    assert len(read_report(tmp_path).verdicts) == len(results.verdicts)
+    found = compare_with_published(results, tmp_path)
+    assert (found.passed, found.compared) == (True, len(results.verdicts))
+    large = changed(results, "euler/generic", "omega", max=1e-3)
+    write_report(tmp_path, large)
+    (failure,) = compare_with_published(results, tmp_path).failures
+    assert "euler/generic f64 omega max" in str(failure)
+    with pytest.raises(FileNotFoundError):
+        compare_with_published(results, tmp_path / "none")
+
+
+def colour(file: Path) -> str:
+    root = ElementTree.parse(file).getroot()
+    return "green" if (root.get("failures"), root.get("errors")) == ("0", "0") else "red"
+
+
+def test_a_junit_file_is_as_red_as_the_result(
+    tmp_path: Path, baseline: Path, results: Judgements
+) -> None:
+    """A failure and a regression make it red; what came as expected does not."""
+    file = tmp_path / "junit.xml"
+    write_junit(file, results)
+    assert colour(file) == "green"
+    write_junit(file, changed(results, "euler/generic", "omega", verdict=Status.FAIL))
+    assert colour(file) == "red"
+    worse = changed(results, "euler/generic", "omega", max=1e-3)
+    write_junit(file, worse, compare_with_baseline(worse, baseline))
+    assert colour(file) == "red"
+    expected = taylor_verify.run_many([LONG])
+    write_junit(file, expected)
+    assert colour(file) == "green"
+    assert remarks(expected) == []
+    assert len(shown_verdicts(expected)) == len(expected.verdicts) - 1
+    write_junit(file, expected[0])
+    assert colour(file) == "red"
+
+
+def test_the_page_of_the_extremes_has_what_was_run() -> None:
+    """Its document has the verdicts, the titles of the scenes and what was expected of each row."""
+    found = extremes_document(taylor_verify.run_many([LONG]))
+    assert [scene["scene"] for scene in found["scenes"]] == [LONG]
+    assert found["mismatches"] == []
+    expected = {row["quantity"]: row["expected"]["verdict"] for row in found["verdicts"]}
+    assert expected["omega"] == "vacuous"
+    assert expected["T"] == "pass"

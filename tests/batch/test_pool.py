@@ -1,0 +1,160 @@
+"""The local executor: spawned processes that end at once, and whose loss is told in a sentence."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from taylor_verify.batch.pool import LocalPool, WorkerLost
+
+
+class TwoParts(Exception):
+    """An error that cannot be read back from its pickle."""
+
+    def __init__(self, first: str, second: str) -> None:
+        super().__init__(f"{first} {second}")
+
+
+def refuse(kind: str) -> None:
+    if kind == "two parts":
+        raise TwoParts("one", "two")
+    raise ValueError("expected a number, got none")
+
+
+def unpicklable() -> Any:
+    return lambda: None
+
+
+def environment() -> dict[str, str]:
+    return dict(os.environ)
+
+
+def threads() -> int:
+    import numpy as np
+
+    np.ones((300, 300)) @ np.ones((300, 300))
+    return len(os.listdir("/proc/self/task"))
+
+
+def ignores_interrupts() -> bool:
+    return signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+def end(number: int) -> None:
+    os.kill(os.getpid(), number)
+
+
+def leave(status: int) -> None:
+    os._exit(status)
+
+
+def long_result(size: int) -> bytes:
+    return bytes(size)
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[LocalPool]:
+    """One pool for the tests that leave it whole."""
+    with LocalPool(2) as pool:
+        yield pool
+
+
+def test_it_is_an_executor(pool: LocalPool) -> None:
+    """Functions with arguments run in other processes, and `map` keeps the order."""
+    assert [*pool.map(divmod, [7, 8, 9], [2, 3, 4])] == [(3, 1), (2, 2), (2, 1)]
+    processes = {pool.submit(os.getpid).result() for _ in range(4)}
+    assert os.getpid() not in processes
+    assert pool.submit(int, "ff", base=16).result() == 255
+
+
+def test_an_error_of_the_work_is_raised_as_it_was(pool: LocalPool) -> None:
+    """Its type, its text, and the place in the worker; the worker goes on."""
+    error = pool.submit(refuse, "a number").exception()
+    assert isinstance(error, ValueError)
+    assert str(error) == "expected a number, got none"
+    assert "in refuse" in error.__notes__[0]
+    assert pool.submit(len, "abc").result() == 3
+
+
+@pytest.mark.parametrize(
+    ("work", "argument", "text"),
+    [(refuse, ("two parts",), "TwoParts: one two"), (unpicklable, (), "lambda")],
+)
+def test_what_cannot_be_pickled_is_an_error_with_a_text(
+    pool: LocalPool, work: Any, argument: tuple[str, ...], text: str
+) -> None:
+    """A result or an error that cannot come back neither loses the process nor hangs."""
+    error = pool.submit(work, *argument).exception(timeout=20)
+    assert error is not None
+    assert text in str(error)
+    assert pool.submit(len, "abc").result() == 3
+
+
+def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
+    """A lambda cannot be pickled, and its future says so."""
+    with pytest.raises(Exception, match="lambda"):
+        pool.submit(lambda: 1).result(timeout=20)
+    assert pool.submit(len, "abc").result() == 3
+
+
+def test_a_worker_is_deaf_to_interrupts(pool: LocalPool) -> None:
+    """Ctrl-C goes to every process of a terminal, and is their parent's affair."""
+    assert pool.submit(ignores_interrupts).result()
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's list of threads")
+def test_a_worker_computes_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside it is the one that watches the parent; a solver's program inherits nothing of it."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    with LocalPool(1) as pool:
+        assert pool.submit(threads).result() == 2
+        assert not {name for name in pool.submit(environment).result() if "THREADS" in name}
+
+
+@pytest.mark.parametrize(
+    ("work", "argument", "text"),
+    [
+        (end, signal.SIGKILL, "a worker process was ended by signal 9 (short of memory?)"),
+        (leave, 7, "a worker process ended early, with status 7"),
+    ],
+)
+def test_a_lost_process_is_told_in_a_sentence(work: Any, argument: int, text: str) -> None:
+    """Its own future has the reason; nobody waits for an answer that cannot come."""
+    with LocalPool(1) as pool:
+        for _ in range(2):
+            error = pool.submit(work, argument).exception(timeout=20)
+            assert isinstance(error, WorkerLost)
+            assert text in str(error)
+
+
+def test_terminate_ends_workers_in_the_middle(tmp_path: Any) -> None:
+    """Work, and a result half handed over, are cut off; what waits is cancelled; no process is left."""
+    before = set(multiprocessing.active_children())
+    pool = LocalPool(2)
+    begun = [pool.submit(long_result, 400_000_000), pool.submit(time.sleep, 60)]
+    waiting = [pool.submit(time.sleep, 60) for _ in range(3)]
+    time.sleep(0.8)
+    began = time.monotonic()
+    pool.terminate()
+    # The aim is a second; the machine may be busy.
+    assert time.monotonic() - began < 5
+    assert isinstance(begun[1].exception(timeout=0), WorkerLost)
+    assert all(future.cancelled() for future in waiting)
+    assert set(multiprocessing.active_children()) <= before
+
+
+def test_shutdown_waits_for_the_work() -> None:
+    """Leaving the `with` block ends the processes after what was submitted."""
+    before = set(multiprocessing.active_children())
+    with LocalPool(1) as pool:
+        futures = [pool.submit(pow, 2, k) for k in range(5)]
+    assert [future.result(timeout=0) for future in futures] == [1, 2, 4, 8, 16]
+    assert set(multiprocessing.active_children()) <= before

@@ -1,0 +1,366 @@
+"""`run_many`: any executor gives the verdicts of `run`; its result is a sequence that can be asked."""
+
+from __future__ import annotations
+
+import json
+import sys
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+from multiprocessing import get_context
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from samples import THREE_INSTANTS
+from test_runs import Backwards
+
+import taylor_verify
+from taylor_verify.batch.job import Job
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.batch.judging import Interrupted
+from taylor_verify.batch.lock import LOCK, Occupied, alone_in
+from taylor_verify.batch.report import ReportNotWritten
+from taylor_verify.batch.selection import Selection, select
+from taylor_verify.cli import main
+from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.scenes import library
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.reader import load, read
+
+SCENES = ["euler/rest", "kirchhoff/whole-motion", "euler/generic"]
+RUNGS = ["f32", "mp120"]
+LONG = "extremes/euler-separatrix-long"
+
+
+def numbers(judgements: Any) -> list[Any]:
+    return [
+        (v.scene, v.rung, v.quantity, v.verdict, v.max, v.bound)
+        for judgement in judgements
+        for v in judgement.verdicts
+    ]
+
+
+@pytest.fixture(scope="module")
+def alone() -> list[Judgement]:
+    """Every run by itself, one after the other."""
+    return [taylor_verify.run(scene, "taylor", rung) for scene in SCENES for rung in RUNGS]
+
+
+@pytest.fixture(scope="module")
+def results(alone: list[Judgement]) -> Judgements:
+    """The same as one result."""
+    return Judgements(tuple(alone), select(SCENES, RUNGS), "taylor")
+
+
+# Executors.
+
+
+@pytest.mark.parametrize(
+    "executor",
+    [
+        lambda: ThreadPoolExecutor(3),
+        lambda: ProcessPoolExecutor(2, get_context("spawn")),
+        lambda: Backwards(len(SCENES)),
+        lambda: None,
+    ],
+    ids=["threads", "processes", "backwards", "this machine"],
+)
+def test_any_executor_gives_the_verdicts_of_run(executor: Any, alone: list[Judgement]) -> None:
+    """Equal to the last bit, in the order asked for: threads do not share a precision."""
+    told: list[tuple[int, int, str]] = []
+    with executor() or ThreadPoolExecutor() as given:
+        found = taylor_verify.run_many(
+            SCENES,
+            rungs=RUNGS,
+            executor=None if executor() is None else given,
+            progress=lambda finished, total, job: told.append((finished, total, str(job))),
+        )
+    assert numbers(found) == numbers(alone)
+    assert told[0] == (0, 3, "None")
+    assert [k for k, *_ in told] == [0, 1, 2, 3]
+    assert {name for *_, name in told[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
+
+
+def test_a_single_scene_goes_to_an_executor_that_is_given() -> None:
+    """Without one it runs in this process."""
+    submitted: list[Any] = []
+
+    class Counting(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+            submitted.append(args)
+            return super().submit(fn, *args, **kwargs)
+
+    with Counting(1) as executor:
+        assert taylor_verify.run_many(["euler/rest"], executor=executor).passed
+    assert len(submitted) == 1
+
+
+def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
+    """A Scene is sent as it is; a file of the same text gives the same numbers."""
+    file = tmp_path / "made.toml"
+    file.write_text(THREE_INSTANTS)
+    made = [read(THREE_INSTANTS, "made in memory"), load("euler/rest"), file]
+    found = taylor_verify.run_many(made, jobs=2)
+    assert [one.verdicts[0].scene for one in found] == ["made in memory", "euler/rest", str(file)]
+    assert [row[2:] for row in numbers(found[:1])] == [row[2:] for row in numbers(found[2:])]
+
+
+def test_a_run_with_an_executor_goes_on_where_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alone: list[Judgement]
+) -> None:
+    """What had ended before an interrupt is stored by the caller, and not run again."""
+    monkeypatch.setattr("taylor_verify.batch.store.user_cache_path", lambda name: tmp_path / name)
+
+    def interrupt(finished: int, total: int, job: Job | None) -> None:
+        if finished == 2:
+            raise KeyboardInterrupt
+
+    asked: dict[str, Any] = {"scenes": SCENES, "rungs": RUNGS}
+    with ThreadPoolExecutor(1) as executor:
+        with pytest.raises(Interrupted) as interrupted:
+            taylor_verify.run_many(**asked, executor=executor, progress=interrupt)
+        assert (interrupted.value.finished, interrupted.value.jobs) == (2, 3)
+        told: list[int] = []
+        submitted: list[Any] = []
+        submit = executor.submit
+        monkeypatch.setattr(
+            executor, "submit", lambda *call: submitted.append(call) or submit(*call)
+        )
+        found = taylor_verify.run_many(
+            **asked, executor=executor, resume=True, progress=lambda k, *_: told.append(k)
+        )
+    assert numbers(found) == numbers(alone)
+    assert told == [0, 1, 2, 3]
+    assert len(submitted) == 1
+    assert [file for file in tmp_path.rglob("*") if file.is_file()] == []
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"jobs": 2, "executor": Backwards(1)},
+        {"scenes": Selection((), ("f64",)), "rungs": ["f64"]},
+    ],
+)
+def test_a_call_that_says_two_things_is_refused(wrong: dict[str, Any]) -> None:
+    """A number of processes beside an executor, and rungs beside those of a Selection."""
+    with pytest.raises(ValueError, match="expected"):
+        taylor_verify.run_many(**{"scenes": ["euler/rest"], **wrong})
+
+
+# What is selected.
+
+
+def test_no_scenes_are_the_standard_set() -> None:
+    """Its rungs are the whole ladder, those of named scenes f64, unless others are asked for."""
+    assert [scene.name for scene in select().scenes] == list(library.names())
+    assert select().rungs == LADDER
+    assert select(["euler/rest"]).rungs == ("f64",)
+    assert select(None, ["f32"]).rungs == ("f32",)
+    assert select([]).scenes == ()
+    assert select().has("euler/gone", "f64")
+    assert not select(["euler/rest"]).has("euler/gone", "f64")
+
+
+def test_every_fault_of_every_scene_is_told(tmp_path: Path) -> None:
+    """The faults of two scenes are told together, each below the name of its scene."""
+    file = tmp_path / "bad.toml"
+    file.write_text(THREE_INSTANTS.replace("omega", "omgea"))
+    with pytest.raises(Refused) as refused:
+        taylor_verify.run_many(["euler/rest", file, "euler/none"])
+    text = str(refused.value)
+    assert f"{file} is refused:\n" in text
+    assert "euler/none is refused:\n" in text
+    assert "euler/rest is refused" not in text
+
+
+def test_a_doubtful_scene_is_known_before_it_runs(tmp_path: Path) -> None:
+    """A body that no solid can be is a warning of the selection, with the name of its scene."""
+    file = tmp_path / "doubtful.toml"
+    file.write_text(THREE_INSTANTS.replace("[1, 2, 3]", "[1, 2, 4]"))
+    (warning,) = select([file]).warnings
+    assert warning.endswith(f"@ {file}")
+
+
+# The result.
+
+
+def test_it_behaves_as_a_list(results: Judgements, alone: list[Judgement]) -> None:
+    """Length, indices, slices, iteration and equality."""
+    assert len(results) == 6
+    assert [*results] == alone
+    assert results[0] is alone[0]
+    assert results[-2:] == tuple(alone[-2:])
+    assert results == alone
+    assert results != alone[1:]
+    assert alone[3] in results
+    assert taylor_verify.run_many([]) == []
+
+
+def marred(results: Judgements, status: Status) -> Judgements:
+    """The same result with one verdict changed."""
+    first, *others = results.judgements
+    start, *rest = first.verdicts
+    changed = replace(first, verdicts=(replace(start, verdict=status), *rest))
+    return replace(results, judgements=(changed, *others))
+
+
+@pytest.mark.parametrize(
+    ("status", "exit_status"),
+    [
+        (Status.PASS, 0),
+        (Status.FAIL, 1),
+        (Status.UNDECIDED, 3),
+        (Status.VACUOUS, 3),
+        (Status.REFUSED, 3),
+        (Status.UNAVAILABLE, 0),
+    ],
+)
+def test_its_truth_value_is_whether_it_passed(
+    results: Judgements, status: Status, exit_status: int
+) -> None:
+    """One verdict among passes decides, as in the command; a failure is raised with its row."""
+    found = marred(results, status)
+    assert found.exit_status == exit_status
+    assert found.passed is bool(found) is (exit_status == 0)
+    if exit_status:
+        with pytest.raises(NotPassed, match=rf"^euler/rest f32 .*: {status}: "):
+            found.raise_for_failure()
+    else:
+        found.raise_for_failure()
+    assert found.summary[status.value] >= 1
+
+
+def test_nothing_judged_is_no_pass() -> None:
+    """No runs, and a machine without the number format, have an exit status and do not pass."""
+    nothing = taylor_verify.run_many([])
+    assert (nothing.exit_status, nothing.passed) == (3, False)
+    with pytest.raises(NotPassed, match="nothing was judged"):
+        nothing.raise_for_failure()
+
+
+def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A vacuous extreme passes as expected; where nobody expects it, it fails by name."""
+    found = taylor_verify.run_many([LONG])
+    assert found.summary["vacuous"] == 1
+    assert found.passed
+    assert found.document()["expected"] == {"met": 1, "mismatches": []}
+    monkeypatch.setattr("taylor_verify.batch.expectations.shipped", lambda: SimpleNamespace(
+        of_run=lambda *_: {}
+    ))  # fmt: skip
+    again = replace(found)
+    assert again.exit_status == 1
+    with pytest.raises(NotPassed, match=f"expected pass, got vacuous @ {LONG} f64 omega"):
+        again.raise_for_failure()
+
+
+def test_what_a_folder_leaves_out_is_part_of_it() -> None:
+    """The scene, the rung and the reason, as in the document."""
+    selection = select(["extremes"], ["mp237"])
+    found = Judgements((), selection, "taylor")
+    assert found.left_out
+    assert found.document()["left_out"] == found.left_out
+    jobs = {(job.name, rung) for job in selection.jobs("taylor") for rung in job.rungs}
+    assert not jobs & {(one["scene"], one["rung"]) for one in found.left_out}
+
+
+def test_the_command_prints_its_document(
+    capsys: pytest.CaptureFixture[str], alone: list[Judgement]
+) -> None:
+    """`run --json` and `document()` are one: but for times, the same keys and rows."""
+    assert main(["run", "euler/rest", "--rung", "f32", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    made = json.loads(json.dumps(taylor_verify.run_many(["euler/rest"], rungs=["f32"]).document()))
+    for document in (printed, made):
+        for row in document["verdicts"]:
+            del row["seconds"], row["provenance"]
+    assert printed == made
+
+
+def test_its_repr_is_short_and_its_table_is_escaped(results: Judgements) -> None:
+    """One line with the counts; in a notebook a row for each run, and no more than forty."""
+    assert repr(results) == (
+        f"<Judgements of 6 runs by taylor: passed; {results.summary['pass']} pass>"
+    )
+    html = results._repr_html_()
+    assert html.count("<tr>") == 7
+    assert "<td>kirchhoff/whole-motion</td><td>mp120</td>" in html
+    first, *rest = results.judgements
+    evil = replace(first.verdicts[0], scene="<script>")
+    many = replace(results, judgements=(replace(first, verdicts=(evil,)), *rest * 10))
+    assert "<script>" not in many._repr_html_()
+    assert "&lt;script&gt;" in many._repr_html_()
+    assert many._repr_html_().count("<tr>") == 41
+    assert "and 11 more runs" in many._repr_html_()
+
+
+def test_a_data_frame_has_a_row_for_each_verdict(
+    results: Judgements, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """pandas gets the fields of each verdict, and what was expected of it."""
+    monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=lambda rows: rows))
+    rows: Any = results.to_dataframe()
+    assert len(rows) == len(results.verdicts)
+    fields = {"scene", "rung", "quantity", "verdict", "max", "bound", "expected"}
+    assert all(fields <= set(row) for row in rows)
+    assert {row["expected"] for row in rows} == {None}
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ModuleNotFoundError, match=r"expected pandas .*pip install pandas"):
+        results.to_dataframe()
+
+
+# The folder of reports.
+
+
+def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
+    """The same files; no lock is left."""
+    found = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
+    assert main(["run", "euler/rest", "--out", str(tmp_path / "its")]) == 0
+    mine, its = (
+        {file.relative_to(folder) for file in folder.rglob("*") if file.is_file()}
+        for folder in (tmp_path / "mine", tmp_path / "its")
+    )
+    assert mine == its
+    assert Path(LOCK) not in mine
+    assert found.passed
+
+
+def test_a_second_run_into_one_folder_is_refused(tmp_path: Path) -> None:
+    """Before anything runs, and nothing in the folder changes."""
+    with alone_in(tmp_path), pytest.raises(Occupied, match="no other run writes to"):
+        taylor_verify.run_many(["euler/rest"], out=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_report_that_cannot_be_written_costs_no_results(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The error has the judgements."""
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("taylor_verify.publish.report.write", full)
+    with pytest.raises(ReportNotWritten, match="No space left") as raised:
+        taylor_verify.run_many(["euler/rest"], out=tmp_path / "out")
+    assert raised.value.results.passed
+
+
+def test_an_executor_is_only_asked_to_submit() -> None:
+    """Neither `map` nor `shutdown` of somebody's executor is called."""
+
+    class Minimal(Executor):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+            with ThreadPoolExecutor(1) as one:
+                return one.submit(fn, *args, **kwargs)
+
+        def map(self, *_: Any, **__: Any) -> Any:
+            pytest.fail("map was called")
+
+        def shutdown(self, *_: Any, **__: Any) -> None:
+            pytest.fail("shutdown was called")
+
+    assert taylor_verify.run_many(["euler/rest", "euler/spherical"], executor=Minimal()).passed

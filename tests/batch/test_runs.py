@@ -1,0 +1,169 @@
+"""Many pieces of work on any executor: the order asked for, one end for all, one thread at a time."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
+from multiprocessing import get_context
+from typing import Any
+
+import pytest
+
+from taylor_verify.batch.failure import Failed
+from taylor_verify.batch.runs import run_all
+
+
+class Backwards(Executor):
+    """An executor of somebody's own: it waits until ``count`` are submitted and begins with the last."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.calls: list[tuple[Future[Any], Callable[[], Any]]] = []
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.calls.append((future, lambda: fn(*args, **kwargs)))
+        if len(self.calls) == self.count:
+            threading.Thread(target=self._run).start()
+        return future
+
+    def _run(self) -> None:
+        for future, call in reversed(self.calls):
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(call())
+                except BaseException as error:
+                    future.set_exception(error)
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+ASKED = [3, 1, 4, 1, 5]
+EXECUTORS: dict[str, Callable[[], Executor]] = {
+    "threads": lambda: ThreadPoolExecutor(3),
+    "processes": lambda: ProcessPoolExecutor(2, get_context("spawn")),
+    "backwards": lambda: Backwards(len(ASKED)),
+}
+
+
+@pytest.mark.parametrize("make", EXECUTORS.values(), ids=EXECUTORS)
+def test_any_executor_gives_the_order_asked_for(make: Callable[[], Executor]) -> None:
+    """Equal pieces too are each answered and each told of, and the executor is left open."""
+    told: list[tuple[int, int]] = []
+    executor = make()
+    found = run_all(square, ASKED, executor, ended=lambda one, result: told.append((one, result)))
+    assert found == [9, 1, 16, 1, 25]
+    assert sorted(told) == sorted(zip(ASKED, found, strict=True))
+    if not isinstance(executor, Backwards):
+        assert executor.submit(square, 7).result() == 49
+        executor.shutdown()
+
+
+def test_processes_of_this_machine_give_the_order_asked_for() -> None:
+    """Without an executor there is a pool; no work needs none."""
+    assert run_all(square, ASKED, workers=2) == [9, 1, 16, 1, 25]
+    assert run_all(square, []) == []
+
+
+def test_the_dearest_begins_first() -> None:
+    """Work is submitted by expense, and the results keep their order."""
+    begun: list[int] = []
+    with ThreadPoolExecutor(1) as executor:
+
+        def work(one: int) -> int:
+            begun.append(one)
+            return one
+
+        assert run_all(work, ASKED, executor, expense=lambda one: -one) == ASKED
+    assert begun == sorted(ASKED, reverse=True)
+
+
+def test_threads_of_one_process_take_turns() -> None:
+    """mpmath and FLINT have one precision for a process: two runs at once would compute wrong numbers."""
+    inside = 0
+    most = 0
+
+    def work(one: int) -> int:
+        nonlocal inside, most
+        inside += 1
+        most = max(most, inside)
+        time.sleep(0.01)
+        inside -= 1
+        return one
+
+    with ThreadPoolExecutor(4) as one, ThreadPoolExecutor(4) as other:
+        callers = [
+            threading.Thread(target=run_all, args=(work, range(8), executor))
+            for executor in (one, other)
+        ]
+        for caller in callers:
+            caller.start()
+        for caller in callers:
+            caller.join()
+    assert most == 1
+
+
+@pytest.mark.parametrize("error", [ValueError("broken"), KeyboardInterrupt()])
+@pytest.mark.parametrize("of_work", [True, False], ids=["in the work", "in this thread"])
+def test_an_error_cancels_what_has_not_begun(error: BaseException, of_work: bool) -> None:
+    """It is raised as it is, from the work or from the caller's own function."""
+    begun: list[int] = []
+    first_has_ended = threading.Event()
+
+    def work(one: int) -> int:
+        begun.append(one)
+        if one:
+            first_has_ended.wait(20)
+        elif of_work:
+            raise error
+        return one
+
+    def ended(one: int, _: object) -> None:
+        if not of_work:
+            raise error
+
+    with ThreadPoolExecutor(1) as executor:
+        with pytest.raises(type(error)):
+            run_all(work, range(50), executor, ended=ended)
+        first_has_ended.set()
+    # The second may have begun meanwhile.
+    assert begun in ([0], [0, 1])
+
+
+class Broken(Executor):
+    """An executor that loses its processes."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_exception(BrokenExecutor("a process has gone"))
+        return future
+
+
+class Closed(Executor):
+    """An executor that somebody else shuts down."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.cancel()
+        future.set_running_or_notify_cancel()
+        return future
+
+
+@pytest.mark.parametrize(
+    ("executor", "text"),
+    [(Broken(), "3: a process has gone"), (Closed(), "3: expected a result, got .*cancelled")],
+)
+def test_an_executor_that_breaks_names_the_work(executor: Executor, text: str) -> None:
+    """Failed says which piece had no result."""
+    with pytest.raises(Failed, match=text):
+        run_all(square, [3], executor)

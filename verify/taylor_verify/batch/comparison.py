@@ -1,0 +1,107 @@
+"""Verdicts compared with earlier ones: a baseline file, or a folder of published reports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike, fspath
+from typing import TYPE_CHECKING
+
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.judge import baseline, rounding_class
+from taylor_verify.judge.judgement import Judgement, NotPassed
+
+if TYPE_CHECKING:
+    from taylor_verify.judge.rounding_class import Departure
+    from taylor_verify.records.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Rows that were ``compared`` with earlier ones, and their departures.
+
+    ``failures`` fail the comparison: the regressions from a baseline, or whatever left the rounding class
+    of a published row. ``undecided`` rows were asked another question before, and ``changes`` fail
+    nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
+    asked for again. The truth value is ``passed``.
+    """
+
+    compared: int
+    failures: tuple[Departure, ...]
+    undecided: tuple[Departure, ...]
+    changes: tuple[Departure, ...]
+    before: tuple[Verdict, ...]
+
+    @property
+    def exit_status(self) -> int:
+        """Exit status: 1 for a failure, 3 where something or all could not be compared, else 0."""
+        if self.failures:
+            return 1
+        return 3 if self.undecided or not self.compared else 0
+
+    @property
+    def passed(self) -> bool:
+        """True if rows were compared and none failed or stayed undecided."""
+        return self.exit_status == 0
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, an AssertionError with a line for each departure, unless it passed."""
+        if not self.passed:
+            lines = [str(departure) for departure in (*self.failures, *self.undecided)]
+            raise NotPassed("\n".join(lines) or "no row was compared")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """The verdicts of an earlier run, read from ``source`` before a new run begins."""
+
+    source: str
+    verdicts: tuple[Verdict, ...]
+
+    def compare_as_baseline(self, results: Judgements | Judgement) -> Comparison:
+        """Find regressions: errors beyond what rounding explains, worse verdicts, rows that are gone."""
+        before = _asked_again(self.verdicts, results)
+        report = baseline.hold(before, results.verdicts)
+        return Comparison(
+            report.compared, report.regressions, report.undecided, report.changes, before
+        )
+
+    def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
+        """Find every number that left the rounding class of its published one, upwards or downwards."""
+        before = _asked_again(self.verdicts, results)
+        report = rounding_class.compare(before, results.verdicts)
+        return Comparison(report.compared, report.departures, (), (), before)
+
+
+def compare_with_baseline(results: Judgements | Judgement, file: str | PathLike[str]) -> Comparison:
+    """Compare a result with a baseline file, as `taylor-verify run --baseline FILE` does.
+
+    Of the baseline those rows count that were asked for again: the same solver, its rungs and, where
+    scenes were named, these. Raises what `read_baseline` raises.
+    """
+    return read_baseline(file).compare_as_baseline(results)
+
+
+def read_baseline(file: str | PathLike[str]) -> Earlier:
+    """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
+
+    Raises scenes.faults.Refused for a file that cannot be read, and ValueError for one that holds
+    something else.
+    """
+    return Earlier(fspath(file), baseline.load(fspath(file)))
+
+
+def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:
+    """Return the earlier rows that the call of these results has asked for again."""
+    if isinstance(results, Judgement):
+        runs = {_run(verdict) for verdict in results.verdicts}
+        return tuple(verdict for verdict in before if _run(verdict) in runs)
+    asked = results.selection
+    return tuple(v for v in before if v.solver == results.solver and asked.has(v.scene, v.rung))
+
+
+def _run(verdict: Verdict) -> tuple[str, ...]:
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung

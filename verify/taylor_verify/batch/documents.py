@@ -1,0 +1,45 @@
+"""One document for each of many shipped scenes, made on all cores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.batch.failure import Failed, fault
+from taylor_verify.batch.runs import run_all
+
+if TYPE_CHECKING:
+    from taylor_verify.scenes.scene import Scene
+
+Document = dict[str, Any]
+
+
+def documents(
+    make: Callable[[Scene], Document],
+    names: Sequence[str],
+    expense: Callable[[str], Any],
+    finished: Callable[[str], None],
+    executor: Executor | None = None,
+) -> list[Document]:
+    """Return ``make(scene)`` for many scenes, in the order given.
+
+    ``finished`` is called with the name of each scene as it ends. Raises Failed for one that came to
+    nothing.
+    """
+    work = partial(document, make)
+    return run_all(work, names, executor, expense=expense, ended=lambda name, _: finished(name))
+
+
+def document(make: Callable[[Scene], Document], name: str) -> Document:
+    """Return ``make(scene)`` for one scene. Raises Failed with its name."""
+    from taylor_verify.exact.solution import Unsettled
+    from taylor_verify.scenes.reader import load
+
+    try:
+        return make(load(name))
+    except Exception as error:
+        # Only text is sure to pass from process to process.
+        reason = str(error) if isinstance(error, Unsettled) else fault(error)
+        raise Failed(f"{name}: {reason}") from error

@@ -1,0 +1,35 @@
+"""One unit of work of a run of many scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from taylor_verify.scenes.scene import Scene
+
+
+@dataclass(frozen=True)
+class Job:
+    """A scene on several rungs by one solver: the rungs share the condition of the orbit.
+
+    ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory.
+    """
+
+    scene: str | Scene
+    solver: str
+    rungs: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of the scene."""
+        return self.scene if isinstance(self.scene, str) else self.scene.name
+
+    def __str__(self) -> str:
+        return f"{self.name} on {' '.join(self.rungs)}"
+
+
+def jobs(scenes: Iterable[str | Scene], solver: str, rungs: Sequence[str]) -> list[Job]:
+    """Return one job for each scene, on all the rungs."""
+    return [Job(scene, solver, tuple(rungs)) for scene in scenes]

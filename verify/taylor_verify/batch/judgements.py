@@ -1,0 +1,178 @@
+"""The judgements of many runs as one result: what was judged, what was expected, what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from typing import TYPE_CHECKING, Any, Final, overload
+
+from taylor_verify.batch.expectations import Agreement, compare_with_expectations
+from taylor_verify.batch.selection import Selection
+from taylor_verify.judge.costs import total
+from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.records.record import Record
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, summary
+
+if TYPE_CHECKING:
+    import pandas
+
+# A notebook shows so many runs; `to_dataframe` has all of them.
+_MOST_SHOWN: Final = 40
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Judgements(Sequence[Judgement]):
+    """A sequence of Judgement, in the order of the scenes and of the rungs within each.
+
+    It equals a list of the same judgements. Its truth value is ``passed``.
+    """
+
+    judgements: tuple[Judgement, ...]
+    selection: Selection
+    solver: str
+
+    @overload
+    def __getitem__(self, index: int) -> Judgement: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Judgement, ...]: ...
+    def __getitem__(self, index: int | slice) -> Judgement | tuple[Judgement, ...]:
+        return self.judgements[index]
+
+    def __len__(self) -> int:
+        return len(self.judgements)
+
+    def __iter__(self) -> Iterator[Judgement]:
+        return iter(self.judgements)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and [*self] == [*other]
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    @cached_property
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Every verdict of every run."""
+        return tuple(verdict for judgement in self.judgements for verdict in judgement.verdicts)
+
+    @property
+    def records(self) -> list[Record]:
+        """The records of the runs that were compared with an exact motion."""
+        return [one.record for one in self.judgements if one.record is not None]
+
+    @cached_property
+    def agreement(self) -> Agreement:
+        """The verdicts on extremes beside what cases/extremes/EXPECTED.toml expects of them."""
+        return compare_with_expectations(self.verdicts)
+
+    @property
+    def exit_status(self) -> int:
+        """The exit status of `taylor-verify run`.
+
+        0 all is as it should be; 1 a gate failed, or an extreme was not as expected; 3 something is
+        undecided and nothing failed. Where nothing was judged: 2 if a package is missing, 0 if this machine
+        lacks every number format asked for, 3 otherwise.
+        """
+        return self.agreement.exit_status(self.verdicts)
+
+    @property
+    def unjudged(self) -> str:
+        """The reasons why nothing was judged; empty where something was."""
+        return self.agreement.unjudged(self.verdicts)
+
+    @property
+    def passed(self) -> bool:
+        """True if something was judged, and the exit status is 0."""
+        return not self.unjudged and self.exit_status == 0
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, an AssertionError, unless the result passed.
+
+        Its text has every verdict that is neither a pass nor as expected, and every mismatch.
+        """
+        if self.passed:
+            return
+        others = [v for v in self.verdicts if v.verdict is not Status.PASS and not self._is_met(v)]
+        lines = [f"{v.scene} {v.rung} {v.quantity}: {v.verdict}: {v.because}" for v in others]
+        lines += [str(mismatch) for mismatch in self.agreement.mismatches]
+        raise NotPassed("\n".join(lines) or "nothing was judged")
+
+    @property
+    def summary(self) -> dict[str, int]:
+        """The number of verdicts of each status."""
+        return summary(self.verdicts)
+
+    @property
+    def costs(self) -> dict[str, float]:
+        """Processor seconds of all runs together by stage, the largest first."""
+        return total(judgement.costs for judgement in self.judgements)
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of `taylor-verify run --json`."""
+        document: dict[str, Any] = {
+            "verdicts": [self.agreement.row(verdict) for verdict in self.verdicts],
+            "summary": self.summary,
+        }
+        if self.agreement.expected:
+            document["expected"] = self.agreement.document(self.verdicts)
+        if self.selection.left_out:
+            document["left_out"] = self.left_out
+        return document
+
+    @property
+    def left_out(self) -> list[dict[str, str]]:
+        """The runs of a folder that were not made, and why."""
+        return [
+            {"scene": scene, "rung": rung, "why": why}
+            for (scene, rung), why in self.selection.left_out.items()
+        ]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame with a row for each verdict, and the fields of a Verdict as columns.
+
+        ``expected`` is the verdict that was expected of an extreme, and None elsewhere. Raises
+        ModuleNotFoundError without pandas (``pip install pandas``).
+        """
+        try:
+            import pandas
+        except ModuleNotFoundError as error:
+            raise ModuleNotFoundError(
+                "expected pandas for to_dataframe, got none (pip install pandas)", name=error.name
+            ) from error
+        rows = [self.agreement.row(verdict) for verdict in self.verdicts]
+        return pandas.DataFrame(
+            [{**row, "expected": row.get("expected", {}).get("verdict")} for row in rows]
+        )
+
+    def __repr__(self) -> str:
+        runs = "1 run" if len(self) == 1 else f"{len(self)} runs"
+        word = "passed" if self.passed else "not passed"
+        return f"<Judgements of {runs} by {self.solver}: {word}; {_counts(self.verdicts)}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(_html_row(judgement) for judgement in self.judgements[:_MOST_SHOWN])
+        more = len(self) - _MOST_SHOWN
+        rest = f"<p>and {more} more runs: see <code>to_dataframe()</code></p>" if more > 0 else ""
+        return (
+            f"<p>{escape(repr(self)[1:-1])}</p><table><thead><tr><th>scene</th><th>rung</th>"
+            f"<th>verdicts</th></tr></thead><tbody>{rows}</tbody></table>{rest}"
+        )
+
+    def _is_met(self, verdict: Verdict) -> bool:
+        return self.agreement.met(verdict) is not None
+
+
+def _html_row(judgement: Judgement) -> str:
+    first = judgement.verdicts[0]
+    cells = (first.scene, first.rung, _counts(judgement.verdicts))
+    return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
+
+
+def _counts(verdicts: Sequence[Verdict]) -> str:
+    counts = ", ".join(f"{count} {word}" for word, count in summary(verdicts).items() if count)
+    return counts or "no verdicts"

@@ -1,0 +1,124 @@
+"""Jobs judged on any executor: each stored as it ends, so that an interrupted run can go on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from taylor_verify.batch.failure import Failed, fault
+from taylor_verify.batch.job import Job
+from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.store import unfinished
+
+if TYPE_CHECKING:
+    from taylor_verify.judge.judgement import Judgement
+
+Progress = Callable[[int, int, Job | None], None]
+"""Called with the jobs finished, all jobs, and the one that has just ended (None at the start)."""
+
+# The cost of a run in units of one state in closed form. A Taylor series costs ten times as much, and so
+# many radians as much as one more state.
+_TAYLOR = 10
+_RADIANS_PER_STATE = 1e5
+
+
+class Interrupted(KeyboardInterrupt):
+    """An interrupt of a run of which ``finished`` of ``jobs`` jobs are stored, to go on from there."""
+
+    def __init__(self, finished: int, jobs: int) -> None:
+        super().__init__()
+        self.finished, self.jobs = finished, jobs
+
+
+def judge_all(
+    jobs: Sequence[Job],
+    progress: Progress | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    resume: bool = False,
+    out: Path | None = None,
+) -> list[Judgement]:
+    """Return every job's judgements, rung by rung, in the order of the jobs.
+
+    Of several jobs each is stored as it ends, until all have, in a folder of this run into ``out``.
+    With ``resume``, what the same run had finished before an interrupt is not run again. An
+    interrupt is raised as Interrupted.
+
+    One job runs in this process, several on the ``executor``, or in as many ``workers`` as there are
+    cores: heyoka's compiled integrators and the truth's big integers both hold the interpreter. Raises
+    Failed for a job that broke, or lost its process; whatever ends this early ends the workers first.
+    """
+    ended = 0
+
+    def report(job: Job | None) -> None:
+        nonlocal ended
+        ended += job is not None
+        if progress is not None:
+            progress(ended, len(jobs), job)
+
+    report(None)
+    if len(jobs) == 1 and executor is None:
+        judgements = run_job(jobs[0])
+        report(jobs[0])
+        return judgements
+    with unfinished(jobs, out, resume) as store:
+
+        def keep(job: Job, judgements: list[Judgement]) -> None:
+            if store:
+                store.keep(job, judgements)
+            report(job)
+
+        stored = [store.recall(job) if store else None for job in jobs]
+        waiting = [job for job, known in zip(jobs, stored, strict=True) if known is None]
+        for job, known in zip(jobs, stored, strict=True):
+            if known is not None:
+                report(job)
+        try:
+            made = iter(
+                run_all(run_job, waiting, executor, workers=workers, expense=_expense, ended=keep)
+            )
+        except KeyboardInterrupt as interrupt:
+            raise Interrupted(ended if store else 0, len(jobs)) from interrupt
+        if store:
+            store.forget()
+    return [each for known in stored for each in (next(made) if known is None else known)]
+
+
+def run_job(job: Job) -> list[Judgement]:
+    """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
+    from taylor_verify.run import run
+    from taylor_verify.scenes.faults import Refused
+    from taylor_verify.scenes.reader import as_scene
+
+    judgements, place = [], job.name
+    try:
+        scene = as_scene(job.scene)
+        for rung in job.rungs:
+            place = f"{job.name} on {rung}"
+            judgements.append(run(scene, job.solver, rung))
+    except Exception as error:
+        # Only text is sure to pass from process to process.
+        reason = str(error) if isinstance(error, Refused) else fault(error)
+        raise Failed(f"{place}: {reason}") from error
+    return judgements
+
+
+def _expense(job: Job) -> float:
+    """Return a rank by cost, the dearest job first, so that no core is left with one at the end.
+
+    It counts the tracked states, and ten times as much where the truth, or the flow between two samples of
+    a loaded body, is no closed form; of long runs the radians.
+    """
+    from taylor_verify.scenes.bodies import RigidBody
+    from taylor_verify.scenes.motion import Spin
+    from taylor_verify.scenes.reader import as_scene
+
+    scene = as_scene(job.scene)
+    body, start = scene.body, scene.initial
+    has_closed_form = body.is_free and (isinstance(body, RigidBody) or body.axis_of_symmetry)
+    states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
+    spin = max(map(abs, start.omega)) if isinstance(start, Spin) else 0
+    radians = float(spin * abs(scene.clock.elapsed[-1]))
+    return -states * (1 if has_closed_form else _TAYLOR) - radians / _RADIANS_PER_STATE

@@ -1,0 +1,209 @@
+"""An executor of worker processes on this machine that can be ended at once, at any moment.
+
+A thread waits for each process, on a pipe of their own. A process that is lost, or ended in the middle of
+a result, is the end of its pipe and blocks nobody. `concurrent.futures.ProcessPoolExecutor` has one pipe
+for all, and waits for ever for the rest of a result whose process was ended.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import pickle
+import signal
+import threading
+import traceback
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext
+from queue import SimpleQueue
+from typing import Any, Final, TypeVar
+
+Result = TypeVar("Result")
+
+# Each worker has one core: a library of linear algebra that reads these starts no threads for the others.
+_ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+# Seconds that a worker has to end before it is killed.
+_GRACE: Final = 2.0
+
+
+class WorkerLost(RuntimeError):  # noqa: N818 (it names what happened to the process)
+    """A worker process ended before its work did; the text says how."""
+
+
+class LocalPool(Executor):
+    """A `concurrent.futures.Executor` of spawned processes.
+
+    Processes are spawned and not forked: heyoka's threads and locks do not survive a fork. They ignore
+    Ctrl-C, which is their parent's affair, and end when the parent does, however that ends. Submitted
+    functions, arguments and results are pickled. A future raises WorkerLost if its process was lost; the
+    worker's place is then empty, and work that comes to it raises WorkerLost too.
+    """
+
+    def __init__(self, workers: int) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._threads = ThreadPoolExecutor(workers, "taylor-verify-worker")
+        self._workers: list[_Worker] = []
+        self._idle: SimpleQueue[_Worker] = SimpleQueue()
+        try:
+            with _interrupts_blocked():
+                for _ in range(workers):
+                    self._workers.append(_Worker(context))
+                    self._idle.put(self._workers[-1])
+        except BaseException:
+            self.terminate()
+            raise
+
+    def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> Future[Result]:
+        """Schedule ``fn(*args, **kwargs)`` in a worker process and return its future."""
+        return self._threads.submit(self._call, fn, args, kwargs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the workers after their work; with ``cancel_futures`` after the work that has begun."""
+        self._threads.shutdown(wait, cancel_futures=cancel_futures)
+        if wait:
+            for worker in self._workers:
+                worker.close()
+
+    def terminate(self) -> None:
+        """End the workers at once, in the middle of whatever they do; return when they have ended."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in self._workers:
+            worker.process.terminate()
+        for worker in self._workers:
+            worker.exit_status()
+        self.shutdown()
+
+    def _call(
+        self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Result:
+        worker = self._idle.get()
+        try:
+            return worker.call(function, args, kwargs)
+        finally:
+            self._idle.put(worker)
+
+
+class _Worker:
+    """A worker process and this side of its pipe."""
+
+    def __init__(self, context: SpawnContext) -> None:
+        self._pipe, theirs = context.Pipe()
+        self._waiting = threading.Lock()
+        self.process = context.Process(target=_serve, args=(theirs,))
+        self.process.start()
+        # Theirs alone now: when the process ends, the pipe does.
+        theirs.close()
+
+    def call(
+        self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Result:
+        request = pickle.dumps((function, args, kwargs))
+        try:
+            self._pipe.send_bytes(request)
+            answer = self._pipe.recv_bytes()
+        except (EOFError, OSError):
+            raise WorkerLost(_ending(self.exit_status())) from None
+        value, error = pickle.loads(answer)
+        if error is not None:
+            raise error
+        return value  # type: ignore[no-any-return]
+
+    def close(self) -> None:
+        self._pipe.close()
+        self.exit_status()
+
+    def exit_status(self) -> int | None:
+        """Wait for the end of the process, kill it if it does not come, and return its status."""
+        # Two threads that wait for one process at once may both miss its status.
+        with self._waiting:
+            self.process.join(_GRACE)
+            if self.process.is_alive():
+                self.process.kill()
+                self.process.join()
+            return self.process.exitcode
+
+
+def _ending(status: int | None) -> str:
+    """Return a sentence on how a process ended: by a signal, or with a status of its own."""
+    if status is not None and status < 0:
+        return f"a worker process was ended by signal {-status} (short of memory?)"
+    return (
+        f"a worker process ended early, with status {status} (a script that calls this needs "
+        '`if __name__ == "__main__":`)'
+    )
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use; a container may have fewer than the machine."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+# In the worker.
+
+
+def _serve(pipe: Connection) -> None:
+    """Do what comes down the pipe until the pipe ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _load_numpy_with_one_thread()
+    with suppress(EOFError, OSError):
+        while True:
+            pipe.send_bytes(_answer(pipe.recv_bytes()))
+
+
+def _load_numpy_with_one_thread() -> None:
+    """Have numpy's library start no threads; the environment is left as it was, for programs of solvers."""
+    added = [name for name in _ONE_THREAD if name not in os.environ]
+    os.environ.update(dict.fromkeys(added, "1"))
+    import_module("numpy")
+    for name in added:
+        del os.environ[name]
+
+
+def _answer(request: bytes) -> bytes:
+    """Do what is asked, and return the pickled pair of its value and its error."""
+    try:
+        function, args, kwargs = pickle.loads(request)
+        return pickle.dumps((function(*args, **kwargs), None))
+    except BaseException as error:
+        error.add_note(f"in a worker process:\n{traceback.format_exc()}")
+        return _failure(error)
+
+
+def _failure(error: BaseException) -> bytes:
+    """Return the pickled error, or its text where it cannot be pickled or read back."""
+    try:
+        failure = pickle.dumps((None, error))
+        pickle.loads(failure)
+        return failure
+    except Exception:
+        return pickle.dumps((None, RuntimeError(f"{type(error).__name__}: {error}")))
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Keep an interrupt waiting until the workers are started.
+
+    They inherit the mask, and so are deaf from their first instruction, before `_serve`.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

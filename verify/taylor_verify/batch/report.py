@@ -1,0 +1,150 @@
+"""What is written of many runs: a report folder, and a JUnit file. This module alone knows `publish`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.batch.comparison import Comparison, Earlier
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.rounding_class import Departure
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+
+if TYPE_CHECKING:
+    from taylor_verify.publish.ci.case import Remark
+
+
+class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the report)
+    """A run came to its end and its report could not be written; ``results`` are the judgements."""
+
+    def __init__(self, message: str, results: Judgements) -> None:
+        super().__init__(message)
+        self.results = results
+
+
+def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
+    """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
+
+    Returns the files. What an earlier run left there is replaced, as a whole or not at all. Raises
+    OSError for a folder that cannot be written, and ValueError for two unlike records of one run.
+    """
+    from taylor_verify.publish import report
+
+    stored = report.write(fspath(folder), results.verdicts, results.records)
+    return [*stored, *report.publish(fspath(folder))]
+
+
+def read_report(folder: str | PathLike[str]) -> Earlier:
+    """Read the verdicts of a report folder.
+
+    Raises FileNotFoundError where there are none, and ValueError for a file that holds something else.
+    """
+    from taylor_verify.publish import report
+
+    return Earlier(fspath(folder), report.load(fspath(folder)))
+
+
+def compare_with_published(
+    results: Judgements | Judgement, folder: str | PathLike[str]
+) -> Comparison:
+    """Compare a result with a report folder, as `taylor-verify run --against DIR` does.
+
+    Raises what `read_report` raises.
+    """
+    return read_report(folder).compare_as_published(results)
+
+
+def write_junit(
+    file: str | PathLike[str],
+    results: Judgements | Judgement,
+    comparison: Comparison | None = None,
+) -> None:
+    """Write the verdicts of results as JUnit XML, in place of an earlier file.
+
+    What came as expected is left out. With the ``comparison`` with a baseline, a regression is a failure of
+    its row. The file is green only where the exit statuses are 0. Raises OSError.
+    """
+    from taylor_verify.publish.ci.junit import junit
+    from taylor_verify.publish.replacement import replace_files
+
+    place = Path(file)
+    text = junit(shown_verdicts(results), remarks(results, comparison))
+    replace_files(place.parent, {place.name: text})
+
+
+def extremes_document(results: Judgements) -> dict[str, Any]:
+    """Return the document that the page of the extremes is made from."""
+    from taylor_verify.publish import extremes
+
+    agreement = results.agreement
+    return extremes.document(
+        results.verdicts,
+        expected={
+            row: extremes.Expected(each.verdict, each.why)
+            for row, each in agreement.expected.items()
+        },
+        mismatches=[str(mismatch) for mismatch in agreement.mismatches],
+        titles={scene.name: scene.title for scene in results.selection.scenes_run},
+        left_out=results.left_out,
+    )
+
+
+# What a CI is shown.
+
+
+def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
+    """Return the verdicts without those that are no pass and came as expected: a CI knows no such thing."""
+    if isinstance(results, Judgement):
+        return list(results.verdicts)
+    return [v for v in results.verdicts if results.agreement.met(v) is None]
+
+
+def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
+    """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
+    remarked = _unexpected(results) if isinstance(results, Judgements) else []
+    if comparison is not None:
+        remarked += _regressions(comparison, [*results.verdicts, *comparison.before])
+    return remarked
+
+
+def _unexpected(results: Judgements) -> list[Remark]:
+    """Return a failure for each row that is not as expected, its solver's name taken from its run.
+
+    Where nothing was judged, and that is no success, every row is undecided.
+    """
+    from taylor_verify.publish.ci.case import Remark
+
+    solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in results.verdicts}
+    mismatches = [
+        Remark(scene, *solvers[scene, rung], rung, quantity, Status.FAIL, str(mismatch))
+        for mismatch in results.agreement.mismatches
+        for scene, rung, quantity in (mismatch.row,)
+    ]
+    if not results.unjudged or not results.exit_status:
+        return mismatches
+    text = "nothing was judged"
+    return [
+        Remark(v.scene, v.solver, v.setting, v.rung, v.quantity, Status.UNDECIDED, text)
+        for v in results.verdicts
+    ]
+
+
+def _regressions(comparison: Comparison, rows: Sequence[Verdict]) -> list[Remark]:
+    from taylor_verify.publish.ci.case import Remark
+
+    # A departure names its row by scene, rung and quantity: a command has one solver.
+    owners = {(v.scene, v.rung, v.quantity): (v.solver, v.setting) for v in rows}
+
+    def remark(status: Status, prefix: str, departure: Departure) -> Remark:
+        scene, rung, quantity = departure.scene, departure.rung, departure.quantity
+        owner = owners[scene, rung, quantity]
+        return Remark(scene, *owner, rung, quantity, status, f"{prefix}: {departure}")
+
+    return [
+        *(remark(Status.FAIL, "regression", each) for each in comparison.failures),
+        *(remark(Status.UNDECIDED, "not comparable", each) for each in comparison.undecided),
+    ]
