@@ -436,6 +436,6 @@ def test_rows_that_are_no_rows_are_refused(tmp_path: Path) -> None:
     file.parent.mkdir()
     file.write_text(json.dumps({"versions": {}, "traps": [{"key": "T1"}]}), encoding="utf-8")
     with pytest.raises(
-        ValueError, match=r"expected title, got no such key @ traps\[0\] @ .*traps\.json"
+        ValueError, match=r"expected a key title, got none @ traps\[0\] @ .*traps\.json"
     ):
         published.load(tmp_path)

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from taylor_verify.records.answers import ExpectationsMet
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.expected import Expectation, Expectations, Row, is_extreme, shipped
@@ -76,10 +77,10 @@ class Agreement:
         expected = {"verdict": expectation.verdict, "why": expectation.why, "met": is_met}
         return {**verdict.row(), "expected": expected}
 
-    def document(self, verdicts: Sequence[Verdict]) -> dict[str, Any]:
+    def document(self, verdicts: Sequence[Verdict]) -> ExpectationsMet:
         """Return the number of answers besides `pass` that came as expected, and every mismatch."""
         met = sum(self.met(verdict) is not None for verdict in verdicts)
-        return {"met": met, "mismatches": [str(mismatch) for mismatch in self.mismatches]}
+        return ExpectationsMet(met, tuple(map(str, self.mismatches)))
 
 
 def compare_with_expectations(

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from typing import TYPE_CHECKING, Any, Final, overload
 
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
 from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.costs import total
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.showing import counts, dataframe, html_table
+from taylor_verify.records.answers import LeftOut
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
@@ -119,18 +121,15 @@ class Judgements(Sequence[Judgement]):
             "summary": self.summary,
         }
         if self.agreement.expected:
-            document["expected"] = self.agreement.document(self.verdicts)
+            document["expected"] = complete(self.agreement.document(self.verdicts))
         if self.selection.left_out:
-            document["left_out"] = self.left_out
+            document["left_out"] = [complete(one) for one in self.left_out]
         return document
 
     @property
-    def left_out(self) -> list[dict[str, str]]:
+    def left_out(self) -> tuple[LeftOut, ...]:
         """The runs of a folder that were not made, and why."""
-        return [
-            {"scene": scene, "rung": rung, "why": why}
-            for (scene, rung), why in self.selection.left_out.items()
-        ]
+        return tuple(LeftOut(*run, why) for run, why in self.selection.left_out.items())
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame with a row for each verdict, and the fields of a Verdict as columns.
@@ -138,41 +137,22 @@ class Judgements(Sequence[Judgement]):
         ``expected`` is the verdict that was expected of an extreme, and None elsewhere. Raises
         ModuleNotFoundError without pandas (``pip install pandas``).
         """
-        try:
-            import pandas
-        except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(
-                "expected pandas for to_dataframe, got none (pip install pandas)", name=error.name
-            ) from error
-        rows = [self.agreement.row(verdict) for verdict in self.verdicts]
-        return pandas.DataFrame(
-            [{**row, "expected": row.get("expected", {}).get("verdict")} for row in rows]
+        rows = (self.agreement.row(verdict) for verdict in self.verdicts)
+        return dataframe(
+            {**row, "expected": row.get("expected", {}).get("verdict")} for row in rows
         )
 
     def __repr__(self) -> str:
         runs = "1 run" if len(self) == 1 else f"{len(self)} runs"
         word = "passed" if self.passed else "not passed"
-        return f"<Judgements of {runs} by {self.solver}: {word}; {_counts(self.verdicts)}>"
+        return f"<Judgements of {runs} by {self.solver}: {word}; {counts(self.verdicts)}>"
 
     def _repr_html_(self) -> str:
-        rows = "".join(_html_row(judgement) for judgement in self.judgements[:_MOST_SHOWN])
+        shown = self.judgements[:_MOST_SHOWN]
+        rows = ((j.verdicts[0].scene, j.verdicts[0].rung, counts(j.verdicts)) for j in shown)
         more = len(self) - _MOST_SHOWN
         rest = f"<p>and {more} more runs: see <code>to_dataframe()</code></p>" if more > 0 else ""
-        return (
-            f"<p>{escape(repr(self)[1:-1])}</p><table><thead><tr><th>scene</th><th>rung</th>"
-            f"<th>verdicts</th></tr></thead><tbody>{rows}</tbody></table>{rest}"
-        )
+        return html_table(repr(self)[1:-1], ("scene", "rung", "verdicts"), rows) + rest
 
     def _is_met(self, verdict: Verdict) -> bool:
         return self.agreement.met(verdict) is not None
-
-
-def _html_row(judgement: Judgement) -> str:
-    first = judgement.verdicts[0]
-    cells = (first.scene, first.rung, _counts(judgement.verdicts))
-    return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"
-
-
-def _counts(verdicts: Sequence[Verdict]) -> str:
-    counts = ", ".join(f"{count} {word}" for word, count in summary(verdicts).items() if count)
-    return counts or "no verdicts"

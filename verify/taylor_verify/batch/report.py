@@ -11,6 +11,7 @@ from taylor_verify.batch.comparison import Comparison, Earlier
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import Departure
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -89,7 +90,7 @@ def extremes_document(results: Judgements) -> dict[str, Any]:
         },
         mismatches=[str(mismatch) for mismatch in agreement.mismatches],
         titles={scene.name: scene.title for scene in results.selection.scenes_run},
-        left_out=results.left_out,
+        left_out=[complete(one) for one in results.left_out],
     )
 
 

@@ -138,13 +138,13 @@ def _baseline(file: str) -> Earlier:
 
 
 def _document(file: str, comparison: Comparison) -> dict[str, Any]:
-    return {
-        "file": file,
-        "compared": comparison.compared,
-        "regressions": [str(departure) for departure in comparison.failures],
-        "undecided": [str(departure) for departure in comparison.undecided],
-        "changes": [str(departure) for departure in comparison.changes],
-    }
+    from taylor_verify.records.answers import AgainstBaseline
+    from taylor_verify.records.json_text import complete
+
+    departures = (comparison.failures, comparison.undecided, comparison.changes)
+    sentences = (tuple(map(str, kind)) for kind in departures)
+    found: dict[str, Any] = complete(AgainstBaseline(file, comparison.compared, *sentences))
+    return found
 
 
 def _messages(file: str, comparison: Comparison) -> list[str]:

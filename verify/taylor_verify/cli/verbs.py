@@ -85,6 +85,8 @@ def _run_answer(
     from taylor_verify.cli.ci import tell
     from taylor_verify.cli.terminal import verdicts_text
     from taylor_verify.judge.costs import sentence
+    from taylor_verify.records.answers import Against
+    from taylor_verify.records.json_text import complete
 
     status = graver(status, results.exit_status)
     messages = [f"nothing was judged: {results.unjudged}"] * (results.exit_status == WRONG_CALL)
@@ -95,15 +97,12 @@ def _run_answer(
         departures = [str(departure) for departure in comparison.failures]
         rows = f"{comparison.compared} rows compared with {published.source}"
         messages += [*departures, f"{rows}: {len(departures)} departures from their rounding class"]
-        document["against"] = {
-            "folder": published.source,
-            "compared": comparison.compared,
-            "departures": departures,
-        }
+        against = Against(published.source, comparison.compared, tuple(departures))
+        document["against"] = complete(against)
         status = graver(status, comparison.exit_status)
     to_ci = tell(asked, results, status)
     messages += to_ci.messages
-    messages += [f"not run: {o['scene']} on {o['rung']}: {o['why']}" for o in results.left_out]
+    messages += [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
     if len(results.selection.scenes) > 1 and results.costs:
         messages.append(sentence(results.costs))
     text = partial(verdicts_text, results.verdicts, results.agreement)

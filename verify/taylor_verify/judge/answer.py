@@ -63,7 +63,7 @@ _MADE_OF: Final = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FileJudgement(Judgement):
     """The verdicts on a file, and what was found out about it.
 

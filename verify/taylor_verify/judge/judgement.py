@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import fsum, inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpmath import mp
@@ -22,6 +22,7 @@ from taylor_verify.judge.errors import Errors, state_errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.shift import Shift, time_shifts
+from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
@@ -36,12 +37,15 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
+if TYPE_CHECKING:
+    import pandas
+
 
 class NotPassed(AssertionError):
     """A judgement that is no pass; the text is every verdict that is none, with its reason."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Judgement:
     """The verdicts of one run and the record they rest on (None if the run never came to a truth).
 
@@ -62,6 +66,26 @@ class Judgement:
     def __bool__(self) -> bool:
         return self.passed
 
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame with a row for each verdict, and its fields as columns.
+
+        Raises ModuleNotFoundError without pandas (``pip install pandas``).
+        """
+        return dataframe(verdict.row() for verdict in self.verdicts)
+
+    def __repr__(self) -> str:
+        first, word = self.verdicts[0], "passed" if self.passed else "not passed"
+        run = " ".join(filter(None, (first.scene, first.solver, first.setting, first.rung)))
+        return f"<{type(self).__name__} of {run}: {word}; {counts(self.verdicts)}>"
+
+    def _repr_html_(self) -> str:
+        headings = ("quantity", "verdict", "largest error", "allowed", "unit")
+        rows = (
+            (v.quantity, v.verdict.value, _short(v.max), _short(v.bound), v.unit)
+            for v in self.verdicts
+        )
+        return html_table(repr(self)[1:-1], headings, rows)
+
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
@@ -71,6 +95,10 @@ class Judgement:
                 for v in others
             ]
             raise NotPassed("\n".join(lines) or "nothing was judged")
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.3g}"
 
 
 def _size(verdict: Verdict) -> str:

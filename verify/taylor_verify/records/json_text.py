@@ -104,7 +104,7 @@ def _fault(error: msgspec.ValidationError, document: Any) -> str:
     said = (text[: match.start()] if match else text).partition(", got ")[0]
     place = match[1] if match else ""
     if missing := _MISSING.fullmatch(said):
-        return f"expected {missing[1]}, got no such key @ {place or 'the document'}"
+        return f"expected a key {missing[1]}, got none @ {place or 'the document'}"
     said = _TYPE.sub(_in_words, said)
     where = f" @ {place}" if place else ""
     return f"{said[:1].lower()}{said[1:]}, got {_at(document, place)}{where}"

@@ -1,0 +1,42 @@
+"""Verdicts shown to a Python caller: in words, as a table of pandas, as HTML for a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify.records.verdict import Verdict, summary
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def counts(verdicts: Iterable[Verdict]) -> str:
+    """Return the number of verdicts of each status that occurs, in words."""
+    found = ", ".join(f"{count} {word}" for word, count in summary(verdicts).items() if count)
+    return found or "no verdicts"
+
+
+def dataframe(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
+    """Return a pandas.DataFrame with a row for each of some rows.
+
+    Raises ModuleNotFoundError without pandas, with the command that installs it.
+    """
+    try:
+        import pandas
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            "expected pandas for to_dataframe, got none (pip install pandas)", name=error.name
+        ) from error
+    return pandas.DataFrame([dict(row) for row in rows])
+
+
+def html_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a paragraph and a table; every text is escaped."""
+    head = "".join(f"<th>{escape(heading)}</th>" for heading in headings)
+    lines = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    return (
+        f"<p>{escape(title)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    )
