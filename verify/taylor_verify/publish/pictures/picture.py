@@ -9,6 +9,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from taylor_verify.publish.pictures.compact_svg import compact
 from taylor_verify.publish.pictures.style import settings
 from taylor_verify.publish.replacement import replace_files
 
@@ -69,4 +70,7 @@ def _files(picture: Picture) -> Iterator[tuple[str, bytes]]:
             metadata["Description"] = picture.alt
         file = BytesIO()
         figure.savefig(file, format=ending, metadata=metadata)
-        yield f"{picture.stem}.{ending}", file.getvalue()
+        content = file.getvalue()
+        if ending == "svg":
+            content = compact(content.decode()).encode()
+        yield f"{picture.stem}.{ending}", content
