@@ -46,12 +46,18 @@ def advancing(total: int) -> Iterator[Callable[[Job], None]]:
 
 
 def _counting(total: int) -> Callable[[Job], None]:
+    finished = counting(total)
+    return lambda job: finished(f"{job.scene} on {' '.join(job.rungs)}")
+
+
+def counting(total: int) -> Callable[[str], None]:
+    """Return a function that names each thing as it ends, with its place among all."""
     done = 0
 
-    def finished(job: Job) -> None:
+    def finished(name: str) -> None:
         nonlocal done
         done += 1
-        say(f"{done}/{total} {job.scene} on {' '.join(job.rungs)}")
+        say(f"{done}/{total} {name}")
 
     return finished
 

@@ -1,11 +1,12 @@
 """The gallery: pictures of some motions and of their errors, made of stored data alone.
 
-What is drawn comes from data/portraits (the motion), data/records and reference (the errors of a run and
-the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
+What is drawn comes from data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv
+(the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
 """
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,10 +37,11 @@ _RUNG: Final = "f64"
 _OMEGA: Final = ("w1", "w2", "w3")
 
 _WHAT: Final = (
-    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`; each "
-    "is here as SVG and as PDF. Lengths, times and impulses are in the scene's own units. The motions are "
-    "exact, to more digits than any picture shows; an error is that of the Taylor driver of this suite, "
-    "against the exact motion of the same rounded data."
+    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`, as "
+    "SVG and as PDF. Portraits, records and the PDF are made and not committed: `taylor-verify publish "
+    "--missing` makes the data, `--paper` the PDF. Lengths, times and impulses are in the scene's own "
+    "units. The motions are exact, to more digits than any picture shows; an error is that of the Taylor "
+    "driver of this suite, against the exact motion of the same rounded data."
 )
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
@@ -61,9 +63,15 @@ class Shown:
     sources: tuple[str, ...]
 
     def block(self) -> str:
-        links = ", ".join(f"[{Path(source).name}](../{source})" for source in self.sources)
+        sources = ", ".join(map(_named, self.sources))
         stem, alt = self.picture.stem, prose(self.picture.alt)
-        return f"![{alt}]({stem}.svg)\n\n{self.caption} [PDF]({stem}.pdf). Data: {links}."
+        return f"![{alt}]({stem}.svg)\n\n{self.caption} Data: {sources}."
+
+
+def _named(source: str) -> str:
+    """A link to a file of data, or its name where the repository does not hold it."""
+    is_made = source.startswith((portraits.FOLDER, f"{data.FOLDER}/{data.RECORDS}"))
+    return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
 @dataclass(frozen=True)
@@ -90,9 +98,9 @@ class Stored:
 
     def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
         """The exact motion at the scene's instants, a row each."""
-        stored = data.read_document(self.folder / self.reference_name(scene))
-        rows = zip(*(stored[column] for column in columns), strict=True)
-        return [[float(entry) for entry in row] for row in rows]
+        file = self.folder / self.reference_name(scene)
+        with file.open(encoding="utf-8", newline="") as lines:
+            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
     def controls(self) -> list[Document]:
         found: list[Document] = data.read_document(self.folder / CONTROLS)["verdicts"]
@@ -104,11 +112,11 @@ class Stored:
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:
-        return f"{data.FOLDER}/{data.RECORDS}/{of_scene(scene)}.{_SOLVER}.{rung}.json"
+        return f"{data.FOLDER}/{data.record_name(scene, _SOLVER, rung)}"
 
     @staticmethod
     def reference_name(scene: str) -> str:
-        return f"{reference_files.FOLDER}/{of_scene(scene)}.json"
+        return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
 def write(folder: Path | str) -> list[Path]:
