@@ -221,9 +221,9 @@ def _quartics(stored: Stored) -> Shown:
         "body swings between two simple roots; a double root it only approaches, like an exponential, and "
         "a triple one like 1/t^2. With two real roots the other two are a complex pair."
     )
-    found = [stored.portrait(scene) for scene in _QUARTICS]
+    found = [stored.portrait(scene) for scene in QUARTICS]
     drawn = potential.picture(found, "kirchhoff")
-    sources = tuple(stored.portrait_name(scene) for scene in _QUARTICS)
+    sources = tuple(stored.portrait_name(scene) for scene in QUARTICS)
     return Shown("Clebsch's body: where the axial impulse may go", drawn, caption, sources)
 
 
@@ -252,7 +252,7 @@ _SCENES: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
     ("manufactured/kirchhoff-path", (_path,)),
     ("manufactured/euler-resonance", (_errors,)),
 )
-_QUARTICS: Final = (
+QUARTICS: Final = (
     *("kirchhoff/whole-motion", "kirchhoff/two-real-roots", "kirchhoff/falling-away"),
     *("kirchhoff/half-turn", "kirchhoff/algebraic", "kirchhoff/ellipsoid-disc"),
 )
