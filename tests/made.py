@@ -38,6 +38,7 @@ from taylor_verify.publish import (
 )
 from taylor_verify.reference import reference
 from taylor_verify.run import run
+from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reader import load
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
@@ -81,6 +82,22 @@ def write_controls(place: Path) -> None:
     """Write what each gate sees of some solvers that are broken on purpose."""
     defects = [defect for defect in DEFECTS if defect.name in _BROKEN]
     report.publish_controls(place, sight.document(sight.sights(defects)))
+
+
+@cache
+def every_portrait() -> Path:
+    """Return a report with the portrait of every scene of the standard set."""
+    place = folder()
+    portraits.write(place, [portrait(load(scene)) for scene in names()])
+    return place
+
+
+@cache
+def every_reference() -> Path:
+    """Return a report with the exact trajectory of every scene of the standard set."""
+    place = folder()
+    reference_files.write(place, [reference(load(scene)) for scene in names()])
+    return place
 
 
 @cache

@@ -379,12 +379,10 @@ def test_a_site_of_committed_files_alone_is_whole(
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*bulk))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
     said = capsys.readouterr().err
-    assert "without 8 records of runs, 4 portraits of scenes: `taylor-verify publish" in said
-    pages = {
-        file.relative_to(tmp_path / "site").as_posix(): Page(file.read_text(encoding="utf-8"))
-        for file in (tmp_path / "site").rglob("*.html")
-    }
+    assert "without 10 records of runs, 5 portraits of scenes: `taylor-verify publish" in said
+    target = tmp_path / "site"
+    files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
+    read = {name: file.read_text("utf-8") for name, file in files.items() if name.endswith(".html")}
+    pages = {name: Page(text) for name, text in read.items()}
     assert {place_of(scene) for scene in SCENES} < set(pages)
-    links_resolve(
-        pages, {f.relative_to(tmp_path / "site").as_posix() for f in (tmp_path / "site").rglob("*")}
-    )
+    links_resolve(pages, files)
