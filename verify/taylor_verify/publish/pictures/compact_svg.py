@@ -22,7 +22,7 @@ _NAMESPACES: Final = {
     "dc": "http://purl.org/dc/elements/1.1/",
 }
 _HEADING: Final = '<?xml version="1.0" encoding="utf-8"?>\n'
-_NUMBER: Final = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+_NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _COORDINATES: Final = ("d", "x", "y", "transform")
 _PATH: Final = re.compile(r"([A-Za-z])\s*([^A-Za-z]*)")
 _NO_TURN: Final = re.compile(r"^rotate\(-?0 [^)]*\)$")
