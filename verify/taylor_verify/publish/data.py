@@ -75,10 +75,12 @@ def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
 
 
 def has_own_records(folder: Path) -> bool:
-    """Return True if the records in ``folder``/data are those of the verdicts there."""
+    """Return True unless the records in ``folder``/data say that they are those of other verdicts."""
     data = folder / FOLDER
     stamp = data / STAMP
-    return stamp.exists() and stamp.read_text("utf-8") == _stamp((data / VERDICTS).read_bytes())
+    if not stamp.exists():
+        return True
+    return stamp.read_text("utf-8") == _stamp((data / VERDICTS).read_bytes())
 
 
 def record_name(scene: str, solver: str, rung: str) -> str:
