@@ -6,7 +6,8 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench reports tradeoff check-reports lint clean
+.PHONY: help verify verify-all test test-all docs site test-site bench reports release-data tradeoff
+.PHONY: check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -31,7 +32,9 @@ docs: $(INSTALLED)  ## Build the pages of docs into docs/_build/html; a warning 
 	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo 'docs/_build/html/index.html'
 
+# The first time in a clone this makes the data that the repository leaves out, and says so.
 site: $(INSTALLED)  ## Make static pages of what is published, into reports/site
+	@$(BIN)/taylor-verify publish --missing > /dev/null
 	@$(BIN)/taylor-verify publish --site reports/site > /dev/null
 	@echo 'reports/site/index.html'
 
@@ -53,6 +56,11 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify publish --gallery > /dev/null
 	@$(BIN)/taylor-verify publish --claims > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null
+
+release-data: $(INSTALLED)  ## Pack everything published, what is not committed included, into dist
+	@$(BIN)/taylor-verify publish --missing > /dev/null
+	@$(BIN)/taylor-verify publish --paper > /dev/null
+	@$(BIN)/taylor-verify publish --archive dist
 
 # Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
 tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)

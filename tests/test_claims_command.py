@@ -17,8 +17,6 @@ from taylor_verify.cli import main
 from taylor_verify.publish.claims import page, write
 from taylor_verify.publish.page import MADE_BY
 
-ROOT = Path(__file__).resolve().parents[1]
-PUBLISHED = ROOT / "reports" / "claims.md"
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}
 
@@ -120,18 +118,3 @@ def test_a_ledger_that_lost_a_verdict_is_not_published(
     assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
     assert f"@ {QUICK}" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
-
-
-def test_the_published_page_has_every_entry() -> None:
-    """reports/claims.md names its maker, and every entry with its statement as it is now."""
-    text = PUBLISHED.read_text(encoding="utf-8")
-    assert text.startswith(MADE_BY)
-    assert [c.id for c in claims() if f"`{c.id}`" not in text] == []
-    assert [c.id for c in claims() if f"$`{c.statement}`$" not in text] == []
-
-
-@pytest.mark.slow
-def test_the_published_page_can_be_remade() -> None:
-    """The whole ledger, run anew, makes the page that is published."""
-    rows = [finding.row() for finding in examined(claims())]
-    assert page(rows, CITED) == PUBLISHED.read_text(encoding="utf-8")

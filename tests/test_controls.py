@@ -24,7 +24,6 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 
-ROOT = Path(__file__).resolve().parents[1]
 NAMED = {defect.name: defect for defect in DEFECTS}
 STATE = {"omega", "impulse", "attitude", "centre"}
 TWINS: Twins = {}
@@ -300,10 +299,3 @@ def test_short_table_tells_the_defects_that_are_made_most() -> None:
         *("last-point-interpolated", "success-after-failure"),
     }
     assert met <= {defect.name for defect in DEFECTS if defect.told}
-
-
-def test_the_readme_has_the_short_table_of_the_published_rows() -> None:
-    """Between its marks the README has what the committed rows give, to the letter."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    shown = readme[readme.index(controls.BEGIN) : readme.index(controls.END) + len(controls.END)]
-    assert shown == controls.short(stored.load(ROOT / "reports"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import inspect
-import json
 import pkgutil
 import re
 import shlex
@@ -23,7 +22,6 @@ import taylor_verify
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
 from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import names
@@ -120,21 +118,6 @@ def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
 
 def results() -> list[list[str]]:
     return [row for row in table_rows("results.md") if row[0].startswith("`")]
-
-
-@pytest.mark.parametrize("row", results(), ids=lambda row: " ".join(row[:2]))
-def test_table_is_that_of_the_committed_reports(row: list[str]) -> None:
-    """Each cell is max/u (ratio) of the verdict in reports/data, to the digits printed."""
-    file = ROOT / "reports" / "data" / "verdicts.json"
-    published = json.loads(file.read_text(encoding="utf-8"))["verdicts"]
-    scene, quantity, *cells = row
-    expected = [
-        f"{v['max'] / v['roundoff']:.3g} u ({v['ratio']:.2g})"
-        for rung in LADDER
-        for v in published
-        if (f"`{v['scene']}`", v["quantity"], v["rung"]) == (scene, quantity, rung)
-    ]
-    assert cells == expected
 
 
 def test_the_table_of_results_has_both_models_and_every_state() -> None:

@@ -152,7 +152,7 @@ def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
 # publish
 
 
-MADE = ["gallery", "paper"]
+MADE = ["gallery", "paper", "missing"]
 MEASURED = [
     *("reference", "portraits", "controls", "claims", "prices", "tradeoff"),
     *("extremes", "worst", "reach", "growth"),
@@ -165,11 +165,13 @@ def test_every_option_of_publish_is_here() -> None:
 
     known = vars(parse(["publish"])).keys()
     others = {"folder", "seconds", "seed", "periods", "long", "outside", "json", "act"}
-    assert known - others == {*MADE, *MEASURED, "site"}
+    assert known - others == {*MADE, *MEASURED, "site", "archive"}
 
 
 @pytest.mark.parametrize(
-    "options", [[], ["--site", "pages"], *([f"--{name}"] for name in (*MADE, *MEASURED))], ids=str
+    "options",
+    [[], ["--site", "pages"], ["--archive", "dist"], *([f"--{n}"] for n in (*MADE, *MEASURED))],
+    ids=str,
 )
 def test_publish_outside_a_checkout_is_refused(
     capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str]

@@ -14,8 +14,6 @@ from taylor_verify.publish.paper import files, latex
 from taylor_verify.publish.paper.parsed import Page
 from taylor_verify.publish.report import publish, write
 
-REPORTS = Path(__file__).resolve().parents[1] / "reports"
-
 
 def compiled(folder: Path, name: str, out: Path) -> str:
     """What pdflatex says the second time, when the contents of a paper are known."""
@@ -67,16 +65,3 @@ def test_pdflatex_takes_a_report_with_failures(tmp_path: Path) -> None:
     publish(tmp_path)
     files.write(tmp_path)
     assert "Overfull" not in compiled(tmp_path / "tables", "paper.tex", tmp_path)
-
-
-@pytest.mark.slow
-def test_pdflatex_takes_every_published_page(tmp_path: Path) -> None:
-    """Each by itself and the paper of all: none has a line or a table that is wider than its page."""
-    folder = tmp_path / "tables"
-    folder.mkdir()
-    (tmp_path / "figures").symlink_to(REPORTS / "figures")
-    for name, text in files.renderings(REPORTS).items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    for file in sorted(folder.glob("*.tex")):
-        said = compiled(folder, file.name, tmp_path)
-        assert [line for line in said.splitlines() if line.startswith("Overfull")] == []

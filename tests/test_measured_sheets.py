@@ -4,18 +4,39 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+import made
 import pytest
+from test_prices import short
+from test_traps import as_measured
 
+from taylor_verify.controls.traps import table
+from taylor_verify.controls.traps.table import TRAPS
 from taylor_verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
 
-REPORTS = Path(__file__).resolve().parents[1] / "reports"
+
+@cache
+def measured_report() -> Path:
+    """A report with a document of every measurement, all of them short."""
+    place = made.folder()
+    shutil.copytree(made.small(), place, dirs_exist_ok=True)
+    prices.write(place, short())
+    some = [trap for trap in TRAPS if trap.key in _TRAPS]
+    traps.publish(place, table.study([replace(t, cases=as_measured(t.key)) for t in some]))
+    return place
+
+
+# With more than one case, and with gates on each.
+_TRAPS = ("T1", "T3")
 
 
 def stored(name: str) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads((REPORTS / name).read_text(encoding="utf-8"))
+    document: dict[str, Any] = json.loads((measured_report() / name).read_text(encoding="utf-8"))
     return document
 
 
@@ -78,7 +99,7 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
 
 def test_traps_have_a_row_for_every_case() -> None:
     """What heyoka reported, how wrong it was, and each gate's verdict."""
-    rows = traps.load(REPORTS).traps
+    rows = traps.load(measured_report()).traps
     found = read(measured.traps(rows))
     cases = [(row, case) for row in rows for case in row.cases]
     assert len(found) == len(cases)
@@ -92,7 +113,7 @@ def test_traps_have_a_row_for_every_case() -> None:
 
 def test_worst_has_a_row_for_every_family() -> None:
     """With its scene and its ratio."""
-    study = worst.load(REPORTS)
+    study = worst.load(measured_report())
     found = read(measured.worst(study))
     assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
         (row.name, row.ratio, row.scene) for row in study.families
@@ -123,7 +144,7 @@ def test_claims_have_a_row_for_every_entry() -> None:
 @pytest.mark.parametrize("module", [growth, prices, reach, traps, worst])
 def test_what_is_remade_is_page_and_sheet(module: Any) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
-    found = module.pages(REPORTS)
+    found = module.pages(measured_report())
     assert set(found) == {module.PAGE, module.SHEET}
     end = "".join(found[module.PAGE].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from dataclasses import replace
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import made
 import numpy as np
 import pytest
 from hypothesis import given
@@ -37,8 +37,6 @@ from taylor_verify.publish.pictures.picture import Picture, plotting, save
 from taylor_verify.publish.pictures.solids import norm_of, scale
 from taylor_verify.publish.pictures.view import Ellipsoid, View, pieces
 
-REPORTS = Path(__file__).resolve().parents[1] / "reports"
-STORED = Stored(REPORTS)
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 FREE = ("euler/generic", "euler/with-attitude", "euler/separatrix", "euler/tennis-racket")
 WITH_CENTRE = ("kirchhoff/whole-motion", "kirchhoff/falling-away", "manufactured/kirchhoff-path")
@@ -53,15 +51,19 @@ heights = st.floats(-80, 80)
 lengths = st.floats(0.2, 5)
 
 
+def stored() -> Stored:
+    return Stored(made.for_gallery())
+
+
 @cache
 def shown() -> tuple[gallery.Shown, ...]:
-    return tuple(gallery.shown(STORED))
+    return tuple(gallery.shown(stored()))
 
 
 def of_polhode(scene: str) -> polhode.Series:
     columns = ("w1", "w2", "w3")
-    samples = STORED.samples(scene, columns)
-    return polhode.series(STORED.portrait(scene), samples, STORED.record(scene, "f64"))
+    samples = stored().samples(scene, columns)
+    return polhode.series(stored().portrait(scene), samples, stored().record(scene, "f64"))
 
 
 # The view
@@ -156,7 +158,7 @@ def test_the_separatrix_scene_runs_along_a_separatrix() -> None:
 
 def test_the_errors_are_those_of_the_record_in_its_roundoff() -> None:
     """1 is one u of the rung that the record is of."""
-    record = STORED.record("euler/generic", "f64")
+    record = stored().record("euler/generic", "f64")
     gate = next(gate for gate in record["gates"] if gate["quantity"] == "omega")
     found = of_polhode("euler/generic").errors
     assert [error * 2.0**-53 for error in found] == pytest.approx(gate["errors"])
@@ -173,7 +175,7 @@ def test_the_errors_are_those_of_the_record_in_its_roundoff() -> None:
 def test_a_scene_without_a_polhode_is_refused(scene: str, what: str) -> None:
     """A fluid, a moment that changes with time, or no motion at all: there is no such surface."""
     with pytest.raises(ValueError, match=f"{what}.* @ {scene}"):
-        polhode.series(STORED.portrait(scene), [], STORED.record(scene, "f64"))
+        polhode.series(stored().portrait(scene), [], stored().record(scene, "f64"))
 
 
 def test_the_scale_of_colours_reads_the_same_in_grey() -> None:
@@ -200,24 +202,24 @@ def test_colours_keep_the_order_of_the_errors(errors: list[float]) -> None:
 def test_a_free_motion_keeps_a_direction_in_space() -> None:
     """The angular momentum or linear impulse of every free scene stands still, and no other's does."""
     for scene in ("euler/with-attitude", *WITH_CENTRE):
-        found = axis_path.series(STORED.portrait(scene))
+        found = axis_path.series(stored().portrait(scene))
         assert np.abs(np.linalg.norm(found.path, axis=1) - 1).max() <= 1e-7
         assert (found.fixed is None) == scene.startswith("manufactured")
 
 
 def test_the_axis_is_that_of_the_motion() -> None:
     """Of symmetry for Clebsch's body, wherever it lies; else the one that the polhode goes round."""
-    assert axis_path.axis_of(STORED.portrait("kirchhoff/whole-motion")) == 3
-    assert axis_path.axis_of(STORED.portrait("kirchhoff/oblate-about-axis-1")) == 1
-    assert axis_path.axis_of(STORED.portrait("euler/with-attitude")) == 1
-    assert axis_path.axis_of(STORED.portrait("euler/about-max-axis")) == 1
-    assert axis_path.axis_of(STORED.portrait("manufactured/kirchhoff-path")) == 3
+    assert axis_path.axis_of(stored().portrait("kirchhoff/whole-motion")) == 3
+    assert axis_path.axis_of(stored().portrait("kirchhoff/oblate-about-axis-1")) == 1
+    assert axis_path.axis_of(stored().portrait("euler/with-attitude")) == 1
+    assert axis_path.axis_of(stored().portrait("euler/about-max-axis")) == 1
+    assert axis_path.axis_of(stored().portrait("manufactured/kirchhoff-path")) == 3
 
 
 def test_a_centre_moves_as_its_velocity_says() -> None:
     """The path drawn is the course's own, and its direction field is made of unit vectors."""
     for scene in WITH_CENTRE:
-        portrait = STORED.portrait(scene)
+        portrait = stored().portrait(scene)
         found = centre_path.series(portrait)
         assert found.path.tolist() == portrait["course"]["centre"]
         assert np.abs(np.linalg.norm(found.directions, axis=1) - 1).max() <= 1e-7
@@ -227,7 +229,7 @@ def test_a_centre_moves_as_its_velocity_says() -> None:
 def test_what_is_not_tracked_is_not_drawn(module: Any) -> None:
     """A scene of the angular velocity alone has neither an axis in space nor a path."""
     with pytest.raises(ValueError, match=r"expected a scene with its .* @ euler/generic"):
-        module.picture(STORED.portrait("euler/generic"))
+        module.picture(stored().portrait("euler/generic"))
 
 
 # Errors
@@ -252,7 +254,7 @@ def test_what_a_logarithm_cannot_show_is_left_out() -> None:
 
 def test_the_powers_are_those_of_brouwers_law() -> None:
     """In every panel one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
-    records = [STORED.record("euler/generic", rung) for rung in RUNGS]
+    records = [stored().record("euler/generic", rung) for rung in RUNGS]
     with plotting():
         figure = errors_over_time.picture("euler/generic", records).figure()
     slopes = []
@@ -266,7 +268,7 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
 
 def test_a_record_of_the_state_alone_has_one_panel() -> None:
     """Where no conserved quantity was gated there is none to draw."""
-    record = STORED.record("manufactured/euler-resonance", "f64")
+    record = stored().record("manufactured/euler-resonance", "f64")
     alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
     panels = errors_over_time.panels_of(errors_over_time.series([alone]))
     assert [panel.quantity for panel in panels] == ["omega"]
@@ -296,7 +298,7 @@ def test_shifts_are_those_of_rows_that_have_one() -> None:
 
 def test_the_half_millisecond_is_found() -> None:
     """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
-    rows = {row["solver"]: row for row in shifts.series(STORED.controls())}
+    rows = {row["solver"]: row for row in shifts.series(stored().controls())}
     found = rows["half-a-millisecond-early"]
     assert found["shift"] == pytest.approx(-5e-4, rel=1e-6)
     assert found["residual"] <= 1e-10 * found["error"]
@@ -308,7 +310,7 @@ def test_the_half_millisecond_is_found() -> None:
 def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
     """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
     for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
-        found = potential.series(STORED.portrait(f"kirchhoff/{scene}"))
+        found = potential.series(stored().portrait(f"kirchhoff/{scene}"))
         z, X = found.curve.T
         top = X[(z >= found.interval[0]) & (z <= found.interval[1])].max()
         for end in found.interval:
@@ -320,7 +322,7 @@ def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
 def test_a_body_without_a_quartic_is_refused() -> None:
     """Only Clebsch's free body has one."""
     with pytest.raises(ValueError, match=r"expected a quartic .* @ kirchhoff/general-body"):
-        potential.picture([STORED.portrait("kirchhoff/general-body")])
+        potential.picture([stored().portrait("kirchhoff/general-body")])
 
 
 # The whole gallery
@@ -413,14 +415,15 @@ def test_two_drawings_are_the_same_file(tmp_path: Path) -> None:
 
 
 def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
-    """Its first line names its maker, no stem comes twice, and each link to data leads to a file."""
+    """Its first line names its maker, no stem comes twice, and every file of data that it names is one."""
     text = gallery.page(shown())
     stems = [one.picture.stem for one in shown()]
     assert text.startswith("<!-- made by taylor-verify publish --gallery; do not edit -->\n")
     assert len(set(stems)) == len(stems) >= 20
     assert re.findall(r"\]\(([\w-]+)\.svg\)", text) == stems
-    for link in re.findall(r"\]\(\.\./((?:data|reference)/[^)]+)\)", text):
-        assert (REPORTS / link).is_file()
+    named = re.findall(r"(?:\]\(\.\./|`)((?:data|reference)/[^)`]+)[)`]", text)
+    assert len(named) > len(stems)
+    assert [name for name in named if not (made.for_gallery() / name).is_file()] == []
     assert all(one.picture.alt for one in shown())
     assert not any(re.search(r"\b(nan|inf|None)\b", one.block()) for one in shown())
 
@@ -431,13 +434,13 @@ def test_the_command_asks_for_what_is_missing(
     """A folder without portraits, or with a portrait that is none, is a wrong call and stays as it is."""
     assert main(["publish", "--gallery", "--from", str(tmp_path)]) == 2
     assert "publish --reference" in capsys.readouterr().err
-    name = STORED.portrait_name("euler/generic")
-    for file in (name, STORED.record_name("euler/generic", "f64")):
+    name = stored().portrait_name("euler/generic")
+    for file in (name, stored().record_name("euler/generic", "f64")):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(REPORTS / file, tmp_path / file)
-    reference = STORED.reference_name("euler/generic")
+        shutil.copy(made.for_gallery() / file, tmp_path / file)
+    reference = stored().reference_name("euler/generic")
     (tmp_path / reference).parent.mkdir()
-    (tmp_path / reference).write_text(json.dumps({"t": []}), encoding="utf-8")
+    (tmp_path / reference).write_text("t\n0\n", encoding="utf-8")
     assert main(["publish", "--gallery", "--from", str(tmp_path)]) == 2
     assert "w1" in capsys.readouterr().err
     assert not (tmp_path / "figures").exists()

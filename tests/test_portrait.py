@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from latex2mathml.converter import convert
+from made import every_portrait
 
 from taylor_verify.cli import main
 from taylor_verify.exact.kirchhoff.displaced import centred
@@ -37,8 +38,7 @@ from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
-FOLDER = ROOT / "reports" / portraits.FOLDER
-SCENES = tuple(name for name in names() if (FOLDER / f"{of_scene(name)}.json").exists())
+SCENES = names()
 # A full tensor, an axis of symmetry that is not the third, and time that runs backward.
 FRESH = ("euler/full-tensor", "kirchhoff/oblate-about-axis-1", "euler/backward")
 # Half a unit of the ninth digit, of a number below 10.
@@ -47,7 +47,7 @@ HALF = 0.5 * 10.0 ** (1 - FIGURES)
 
 @cache
 def stored(scene: str) -> dict[str, Any]:
-    found = portraits.load(ROOT / "reports", scene)
+    found = portraits.load(every_portrait(), scene)
     assert found is not None
     return found
 
@@ -71,7 +71,7 @@ def with_quartic() -> list[str]:
 
 def test_every_scene_has_its_portrait() -> None:
     """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
-    files = {file.stem for file in FOLDER.glob("*.json")}
+    files = {file.stem for file in (every_portrait() / portraits.FOLDER).glob("*.json")}
     assert files == {of_scene(name) for name in names()}
     assert {name: stored(name)["sha256"] for name in names()} == {
         name: load(name).digest for name in names()
@@ -80,7 +80,7 @@ def test_every_scene_has_its_portrait() -> None:
 
 def test_a_portrait_is_small() -> None:
     """No file has more than 120 kB, and all together less than 7 MB: a page can load them."""
-    sizes = [file.stat().st_size for file in FOLDER.glob("*.json")]
+    sizes = [file.stat().st_size for file in (every_portrait() / portraits.FOLDER).glob("*.json")]
     assert max(sizes) <= 120_000
     assert sum(sizes) <= 7_000_000
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -66,8 +67,8 @@ def test_variants_of_one_scene_take_the_same_steps(name: str) -> None:
     assert [pace.run() for pace in steps] == [first, other]
 
 
-@pytest.fixture(scope="module")
-def measured() -> dict[str, Any]:
+@cache
+def short() -> dict[str, Any]:
     """A short measurement of a few variants."""
     patch = pytest.MonkeyPatch()
     kept = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
@@ -81,6 +82,11 @@ def measured() -> dict[str, Any]:
         patch.undo()
     assert told == ["f64"]
     return found
+
+
+@pytest.fixture(scope="module")
+def measured() -> dict[str, Any]:
+    return short()
 
 
 def test_the_barest_form_costs_one(measured: dict[str, Any]) -> None:

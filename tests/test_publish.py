@@ -288,6 +288,7 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     assert {file.name for file in records.iterdir()} == {
         "mine.json",
         "euler-generic.taylor.f32.json",
+        "verdicts.sha256",
     }
 
 

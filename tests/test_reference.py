@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from made import every_reference
 
 import taylor_verify
 from taylor_verify.batch.documents import document as document_of
@@ -31,7 +32,6 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reader import load
 
 ROOT = Path(__file__).resolve().parents[1]
-FOLDER = ROOT / "reports" / "reference"
 
 # A second or less each; with attitude, centre and a full tensor among them.
 CHEAP = (
@@ -52,8 +52,12 @@ Rows = list[dict[str, str]]
 Vector = Sequence[Fraction]
 
 
+def folder() -> Path:
+    return every_reference() / reference_files.FOLDER
+
+
 def file(scene: str, suffix: str) -> Path:
-    return FOLDER / f"{scene.replace('/', '-')}.{suffix}"
+    return folder() / f"{scene.replace('/', '-')}.{suffix}"
 
 
 def sheet(scene: str) -> Rows:
@@ -135,7 +139,7 @@ def test_the_question_is_that_of_the_scene(scene: str) -> None:
 def test_no_file_of_a_scene_that_is_gone() -> None:
     """The folder holds two files for each shipped scene, the page and the examples."""
     expected = {file(scene, suffix).name for scene in names() for suffix in ("csv", "json")}
-    assert {path.name for path in FOLDER.iterdir()} == expected | {
+    assert {path.name for path in folder().iterdir()} == expected | {
         "README.md",
         *reference_files.EXAMPLES,
     }
@@ -286,7 +290,7 @@ def test_remaking_gives_the_same_bytes(tmp_path: Path) -> None:
     }
     for path in written:
         if path.name != "README.md":
-            assert path.read_bytes() == (FOLDER / path.name).read_bytes()
+            assert path.read_bytes() == (folder() / path.name).read_bytes()
 
 
 def test_a_time_without_a_finite_decimal_is_the_decimal_that_is_printed(tmp_path: Path) -> None:
@@ -324,6 +328,21 @@ def test_the_verb_writes_the_folder(
     assert contents(folder)["euler-generic.csv"] == file("euler/generic", "csv").read_bytes()
 
 
+def test_a_scene_that_is_gone_loses_its_csv_without_its_json(tmp_path: Path) -> None:
+    """A clone has the CSV alone: the page says which of them are ours. Somebody's own stays."""
+    rest, gone = (
+        reference(load("euler/rest")),
+        {**reference(load("euler/rest")), "scene": "euler/x"},
+    )
+    for path in reference_files.write(tmp_path, [rest, gone]):
+        if path.suffix == ".json":
+            path.unlink()
+    mine = tmp_path / "reference" / "mine.csv"
+    mine.write_text("t\n", encoding="utf-8")
+    written = reference_files.write(tmp_path, [rest])
+    assert {*written, mine} == set((tmp_path / "reference").iterdir())
+
+
 @pytest.mark.parametrize(
     ("error", "text"),
     [(Unsettled("two evaluations do not agree"), r"euler/rest: two evaluations do not agree$"),
@@ -352,14 +371,15 @@ def test_documents_come_in_the_order_asked_for() -> None:
 
 
 def test_the_page_names_every_file() -> None:
-    """Every link of the page leads to a file, every scene is linked, and its maker is line 1."""
-    text = (FOLDER / "README.md").read_text(encoding="utf-8")
+    """Each link of the page leads to a file; it links to all but the JSON; its maker is line 1."""
+    text = (folder() / "README.md").read_text(encoding="utf-8")
     assert text.splitlines()[0] == MADE_BY
     assert "{{" not in text
     links = set(re.findall(r"\]\(([^)]+)\)", text))
-    assert links == {path.name for path in FOLDER.iterdir()} - {"README.md"}
+    committed = {path.name for path in folder().iterdir() if path.suffix != ".json"}
+    assert links == committed - {"README.md"} | {"../tables/attainable.csv"}
     for name in reference_files.EXAMPLES:
-        assert (FOLDER / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
+        assert (folder() / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
 
 
 @pytest.fixture(scope="module")
@@ -370,7 +390,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("there is no g++ on this machine")
     program = tmp_path_factory.mktemp("example") / "example"
     options = ["-std=c++17", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
-    source = str(FOLDER / "example.cpp")
+    source = str(folder() / "example.cpp")
     subprocess.run([compiler, *options, source, "-o", str(program)], check=True)
     return program
 

@@ -7,15 +7,30 @@ import re
 import shutil
 import subprocess
 from collections.abc import Sequence
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
+import made
 import pytest
 
-FOLDER = Path(__file__).resolve().parents[1] / "reports" / "reference"
-GENERIC = FOLDER / "euler-generic.csv"
+from taylor_verify.publish import reference_files
+from taylor_verify.reference import reference
+from taylor_verify.scenes.reader import load
+
 MOMENTS = ("1", "2", "3")
 U = 2.0**-53
+
+
+@cache
+def folder() -> Path:
+    """The exact trajectory of one scene with the examples, as they are published."""
+    place = made.folder()
+    return reference_files.write(place, [reference(load("euler/generic"))])[0].parent
+
+
+def generic() -> Path:
+    return folder() / "euler-generic.csv"
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +41,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if compiler is None:
         pytest.skip("there is no rustc on this machine")
     program = tmp_path_factory.mktemp("rust") / "example"
-    command = [compiler, "-O", "-D", "warnings", str(FOLDER / "example.rs"), "-o", str(program)]
+    command = [compiler, "-O", "-D", "warnings", str(folder() / "example.rs"), "-o", str(program)]
     subprocess.run(command, check=True)
     return program
 
@@ -43,10 +58,10 @@ def errors(printed: str) -> list[float]:
 
 def test_the_moments_of_the_page_are_those_of_the_scene() -> None:
     """The numbers on the command line are the principal moments that the JSON holds."""
-    question = json.loads(GENERIC.with_suffix(".json").read_text(encoding="utf-8"))
+    question = json.loads(generic().with_suffix(".json").read_text(encoding="utf-8"))
     diagonal = tuple(row[k] for k, row in enumerate(question["body"]["inertia"]))
     assert diagonal == MOMENTS
-    page = (FOLDER / "README.md").read_text(encoding="utf-8")
+    page = (folder() / "README.md").read_text(encoding="utf-8")
     assert f"./example euler-generic.csv {' '.join(MOMENTS)} 1e-10" in page
 
 
@@ -56,7 +71,7 @@ def test_the_example_converges_to_the_reference(example: Path) -> None:
     The next term of the error is smaller by the step, 1/25 at the longest, so that the ratio is 16 to a
     tenth; and at 1e-10 roundings, 100 rows of 200 steps of some u each, are far below.
     """
-    status, printed = run(example, GENERIC, MOMENTS, "1e-10")
+    status, printed = run(example, generic(), MOMENTS, "1e-10")
     assert status == 0
     found = errors(printed)
     assert len(found) >= 3
@@ -66,9 +81,9 @@ def test_the_example_converges_to_the_reference(example: Path) -> None:
 
 def test_the_example_says_how_well_the_reference_is_known(example: Path) -> None:
     """Its radius is that of the CSV, and below the roundoff of any double that is compared with it."""
-    _, printed = run(example, GENERIC, MOMENTS, "1e-6")
+    _, printed = run(example, generic(), MOMENTS, "1e-6")
     (radius,) = re.findall(r"the reference is known to ([0-9.e-]+)", printed)
-    rows = GENERIC.read_text(encoding="utf-8").splitlines()
+    rows = generic().read_text(encoding="utf-8").splitlines()
     known = max(float(row.rpartition(",")[2]) for row in rows[1:])
     # Two digits are printed.
     assert abs(float(radius) / known - 1) <= 0.05
@@ -88,7 +103,7 @@ def test_the_example_sees_what_is_wrong(
     example: Path, moments: Sequence[str], tolerance: str
 ) -> None:
     """Another body, a tolerance below roundoff and a NaN all end with status 1, at the shortest step."""
-    status, printed = run(example, GENERIC, moments, tolerance)
+    status, printed = run(example, generic(), moments, tolerance)
     assert status == 1
     assert len(printed.splitlines()) == 8
 

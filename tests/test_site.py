@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -13,9 +13,11 @@ from math import dist
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+import made
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from made import SCENES
 
 from taylor_verify.cli import main
 from taylor_verify.publish.pictures.palette import PAPER, contrast
@@ -29,37 +31,10 @@ from taylor_verify.publish.site.scene_page import ScenePage
 from taylor_verify.publish.site.source import Report
 from taylor_verify.solvers.file import read
 
-REPORTS = Path(__file__).resolve().parents[1] / "reports"
-SCENES = ("euler/with-attitude", "euler/constant-moment", "kirchhoff/whole-motion")
-RUNGS = ("f64", "mp237")
-MEGABYTE = 1_000_000
-
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Three scenes on two rungs of what is published, with every page beside them."""
-    place = tmp_path_factory.mktemp("report")
-    data = place / "data"
-    (data / "records").mkdir(parents=True)
-    (data / "portraits").mkdir()
-    for name in ("verdicts", "timings"):
-        stored = json.loads((REPORTS / f"data/{name}.json").read_text(encoding="utf-8"))
-        stored[name] = [r for r in stored[name] if r["scene"] in SCENES and r["rung"] in RUNGS]
-        (data / f"{name}.json").write_text(json.dumps(stored), encoding="utf-8")
-    for name in ("controls", "reach", "growth", "tradeoff", "tradeoff-timings"):
-        shutil.copy(REPORTS / f"data/{name}.json", data)
-    for stem in (scene.replace("/", "-") for scene in SCENES):
-        for file in (f"portraits/{stem}", *(f"records/{stem}.taylor.{rung}" for rung in RUNGS)):
-            shutil.copy(REPORTS / f"data/{file}.json", data / f"{file}.json")
-    for name in ("README.md", "claims.md", "tables", "upstream", "figures"):
-        copy = shutil.copytree if (REPORTS / name).is_dir() else shutil.copy
-        copy(REPORTS / name, place / name)
-    for large in ("gates.md", "accuracy.md", "conserved.md"):
-        (place / "tables" / large).unlink()
-    (place / "reference").mkdir()
-    for name in ("README.md", "euler-with-attitude.csv", "euler-with-attitude.json"):
-        shutil.copy(REPORTS / "reference" / name, place / "reference")
-    return place
+def report() -> Path:
+    return made.small()
 
 
 @pytest.fixture(scope="module")
@@ -115,6 +90,10 @@ def place_of(scene: str) -> str:
 
 def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """Every link within the site leads to a file of it, and to an anchor that is there."""
+    links_resolve(pages, site)
+
+
+def links_resolve(pages: Mapping[str, Page], site: Collection[str]) -> None:
     for name, page in pages.items():
         for link in page.links + page.loads:
             if link.startswith(("http://", "https://", "data:")):
@@ -391,11 +370,19 @@ def test_the_command_says_what_is_missing(
     assert not (tmp_path / "site").exists()
 
 
-@pytest.mark.slow
-def test_the_whole_site_is_small(tmp_path: Path) -> None:
-    """All that is published fits in 15 MB, Plotly's script included, and every scene has its page."""
-    files = build(REPORTS, tmp_path / "site")
-    assert sum(file.stat().st_size for file in files) < 15 * MEGABYTE
-    scenes = {file.stem for file in files if file.parent.name == "scenes"}
-    assert len(scenes) == len(Report(REPORTS).scenes)
-    assert build(REPORTS, tmp_path / "site") == files
+def test_a_site_of_committed_files_alone_is_whole(
+    report: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without records and portraits each scene has its page and all links resolve; that is said."""
+    place = tmp_path / "clone"
+    bulk = ("records", "portraits", "*.pdf", "gates.*")
+    shutil.copytree(report, place, ignore=shutil.ignore_patterns(*bulk))
+    assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
+    said = capsys.readouterr().err
+    assert "without 10 records of runs, 5 portraits of scenes: `taylor-verify publish" in said
+    target = tmp_path / "site"
+    files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
+    read = {name: file.read_text("utf-8") for name, file in files.items() if name.endswith(".html")}
+    pages = {name: Page(text) for name, text in read.items()}
+    assert {place_of(scene) for scene in SCENES} < set(pages)
+    links_resolve(pages, files)

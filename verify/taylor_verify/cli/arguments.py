@@ -330,8 +330,15 @@ def _add_publish(found: Any) -> None:
     made.add_argument(
         "--paper",
         action="store_true",
-        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables",
+        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables, and draw their "
+        "pictures as PDF",
     )
+    made.add_argument(
+        "--missing",
+        action="store_true",
+        help="instead make what a clone of the repository lacks in DIR (minutes, all cores)",
+    )
+    made.add_argument("--archive", metavar="DIST", help="instead pack DIR into the folder DIST")
     made.add_argument(
         "--site",
         metavar="SITE",

@@ -10,6 +10,8 @@ from pathlib import Path
 
 from taylor_verify.cli.answer import Answer, WrongCall, files_written
 from taylor_verify.cli.folders import alone_in, reports_folder, writable
+from taylor_verify.cli.missing import make_missing, missing_from_pages, pack
+from taylor_verify.cli.progress import counting
 from taylor_verify.cli.streams import say
 
 # The rung on which the extremes are published, as `make verify` runs them.
@@ -33,11 +35,12 @@ def publish(options: argparse.Namespace) -> Answer:
         "tradeoff": partial(tradeoff, outside=options.outside),
         "extremes": extremes,
         "paper": paper,
+        "missing": make_missing,
         "worst": partial(worst, seconds=options.seconds, seed=options.seed),
         "growth": partial(publish_growth, periods=options.periods, long=options.long),
     }
     # These make their pages from what the folder holds; all others put something into it.
-    measured = anew.keys() - {"gallery", "paper"}
+    measured = anew.keys() - {"gallery", "paper", "missing"}
     folder = reports_folder(
         options.folder, measures=any(getattr(options, option) for option in measured)
     )
@@ -50,6 +53,8 @@ def publish(options: argparse.Namespace) -> Answer:
         raise WrongCall("expected --periods and --long with --growth, got them without @ publish")
     if options.site is not None:
         return site(folder, str(writable(options.site, "--site")))
+    if options.archive is not None:
+        return pack(Path(folder), writable(options.archive, "--archive"))
     if options.outside:
         raise WrongCall("expected --outside with --tradeoff, got it without @ --outside")
     try:
@@ -70,7 +75,7 @@ def references(folder: Path) -> Answer:
     from taylor_verify.scenes.library import names
 
     scenes = names()
-    documents = references(scenes, _counting(len(scenes)))
+    documents = references(scenes, counting(len(scenes)))
     return files_written(reference_files.write(folder, documents))
 
 
@@ -81,7 +86,7 @@ def portraits(folder: Path) -> Answer:
     from taylor_verify.scenes.library import names
 
     scenes = names()
-    return files_written(files.write(folder, portraits(scenes, _counting(len(scenes)))))
+    return files_written(files.write(folder, portraits(scenes, counting(len(scenes)))))
 
 
 def gallery(folder: Path) -> Answer:
@@ -106,7 +111,7 @@ def controls(folder: Path) -> Answer:
     from taylor_verify.controls.traps import table
     from taylor_verify.publish import report, traps
 
-    finished = _counting(len(DEFECTS) + len(table.TRAPS))
+    finished = counting(len(DEFECTS) + len(table.TRAPS))
     seen = sight.document(sight.sights(DEFECTS, finished))
     trapped = table.study(table.TRAPS, finished)
     return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
@@ -117,7 +122,7 @@ def prices(folder: Path) -> Answer:
     from taylor_verify.publish import prices as pages
     from taylor_verify.trade.prices import RUNGS, document
 
-    return files_written(pages.write(folder, document(_counting(len(RUNGS)))))
+    return files_written(pages.write(folder, document(counting(len(RUNGS)))))
 
 
 def tradeoff(folder: Path, outside: bool) -> Answer:
@@ -134,7 +139,7 @@ def reach(folder: Path) -> Answer:
     from taylor_verify.publish import reach as pages
     from taylor_verify.trade.reach import document, members
 
-    return files_written(pages.write(folder, document(_counting(members()))))
+    return files_written(pages.write(folder, document(counting(members()))))
 
 
 def extremes(folder: Path) -> Answer:
@@ -176,7 +181,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
 
     if not 0 < seconds < inf:
         raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
-    found = hunt(FAMILIES, seconds, seed, _counting(len(FAMILIES)))
+    found = hunt(FAMILIES, seconds, seed, counting(len(FAMILIES)))
     scenes = {one.family.name: one.scene_text for one in found}
     kept = pages.keep(cases_directory() / WORST, scenes)
     return files_written([*pages.write(folder, study(found, seconds, seed)), *kept])
@@ -189,7 +194,8 @@ def site(folder: str, target: str) -> Answer:
     try:
         from taylor_verify.publish.site.builder import build
 
-        return files_written(build(folder, target))
+        answer = files_written(build(folder, target))
+        return answer._replace(messages=missing_from_pages(Path(folder)))
     except ImportError as error:
         raise WrongCall(
             f"expected {error.name} (pip install it), got no such package @ --site"
@@ -201,14 +207,3 @@ def site(folder: str, target: str) -> Answer:
         ) from error
     except ValueError as error:
         raise WrongCall(f"{error} @ --site") from error
-
-
-def _counting(total: int) -> Callable[[str], None]:
-    """Tells each name as it ends, with its place among all."""
-    ended: list[str] = []
-
-    def finished(name: str) -> None:
-        ended.append(name)
-        say(f"{len(ended)}/{total} {name}")
-
-    return finished

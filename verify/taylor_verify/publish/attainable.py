@@ -37,7 +37,7 @@ def attainable(verdicts: Sequence[Verdict]) -> str:
         "A single 0 with what was attainable is a state without any error.",
         "A word, or a bold one behind the numbers, is a verdict other than pass.",
         roundoffs(shown),
-        "[gates](gates.md) has the arithmetic of every attainable error, in words.",
+        "`gates.md` has the arithmetic of every attainable error, in words.",
     ]
     return page(
         "Attainable and reached",

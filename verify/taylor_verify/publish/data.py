@@ -3,13 +3,15 @@
     verdicts.json   every verdict, one a line; the same on any machine that computes the same;
                     shifts of time of failed gates alone: a passed one has them of its roundings
     timings.json    seconds of every run; Python, processor and command of every machine
-    records/        one file a run: the equations built and every sample's error
+    records/        one file a run: the equations built and every sample's error; of which verdicts
+                    they are, verdicts.sha256 says
 
 Floats are written so that they read back to the last bit; one that is not finite is null.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -28,6 +30,7 @@ FOLDER: Final = "data"
 VERDICTS: Final = "verdicts.json"
 TIMINGS: Final = "timings.json"
 RECORDS: Final = "records"
+STAMP: Final = f"{RECORDS}/verdicts.sha256"
 
 _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 # What the numbers do not depend on: it may differ where verdicts.json may not.
@@ -36,6 +39,8 @@ _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+# A row is for programs, and a large file has thousands of them.
+_ROW_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
 
 def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) -> tuple[Path, ...]:
@@ -51,8 +56,38 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     texts[TIMINGS] = laid_out({**_MADE_BY, **_timings(found)})
     rows = [row(verdict) for run in found for verdict in run.verdicts]
     same = versions(verdict for run in found for verdict in run.verdicts)
-    texts[VERDICTS] = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
+    verdicts_text = laid_out({**_MADE_BY, "versions": same, "verdicts": rows})
+    texts[STAMP] = _stamp(verdicts_text.encode())
+    texts[VERDICTS] = verdicts_text
     return replace_files(data, texts, stale=_own_records(data))
+
+
+def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
+    """Write records beside the verdicts that ``folder``/data has, and return the files written.
+
+    Records of these verdicts stay, records of others are removed. Raises OSError and ValueError as
+    `write` does.
+    """
+    data = folder / FOLDER
+    stale = [] if has_own_records(folder) else _own_records(data)
+    texts = _record_texts(records)
+    texts[STAMP] = _stamp((data / VERDICTS).read_bytes())
+    return replace_files(data, texts, stale=stale)
+
+
+def has_own_records(folder: Path) -> bool:
+    """Return True unless the records in ``folder``/data say that they are those of other verdicts."""
+    data = folder / FOLDER
+    stamp = data / STAMP
+    if not stamp.exists():
+        return True
+    return stamp.read_text("utf-8") == _stamp((data / VERDICTS).read_bytes())
+
+
+def record_name(scene: str, solver: str, rung: str) -> str:
+    """The path below ``folder``/data of the record of a run."""
+    stem = f"{file_names.of_scene(scene)}.{file_names.of_solver(solver)}"
+    return f"{RECORDS}/{stem}.{rung}.json"
 
 
 def load(folder: Path) -> tuple[Verdict, ...]:
@@ -124,12 +159,16 @@ def machine(verdict: Verdict) -> dict[str, Any]:
 def _record_texts(records: Iterable[Record]) -> dict[str, str]:
     texts: dict[str, str] = {}
     for record in records:
-        stem = f"{file_names.of_scene(record.scene)}.{file_names.of_solver(record.solver)}"
-        name = f"{stem}.{record.rung}.json"
+        name = record_name(record.scene, record.solver, record.rung)
         text = laid_out({**_MADE_BY, **record.document()})
-        if texts.setdefault(f"{RECORDS}/{name}", text) != text:
+        if texts.setdefault(name, text) != text:
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
     return texts
+
+
+def _stamp(verdicts: bytes) -> str:
+    """The line that `sha256sum --check` reads beside the records."""
+    return f"{hashlib.sha256(verdicts).hexdigest()}  ../{VERDICTS}\n"
 
 
 def _own_records(data: Path) -> list[Path]:
@@ -147,15 +186,15 @@ def laid_out(document: Mapping[str, Any]) -> str:
 def _value(value: Any) -> str:
     rows = value if isinstance(value, (list, tuple)) else ()
     if rows and all(isinstance(row, dict) for row in rows):
-        return "[\n  " + ",\n  ".join(_json(row) for row in rows) + "\n ]"
+        return "[\n  " + ",\n  ".join(_json(row, _ROW_ENCODER) for row in rows) + "\n ]"
     return _json(value)
 
 
-def _json(value: Any) -> str:
+def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> str:
     try:
-        return _ENCODER.encode(value)
+        return encoder.encode(value)
     except ValueError:
-        return _ENCODER.encode(_finite(value))
+        return encoder.encode(_finite(value))
 
 
 def _finite(value: Any) -> Any:

@@ -40,10 +40,10 @@ _CONTENTS = (
         "what was attainable, beside what was reached",
     ),
     ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
-    ("[tables/gates.md](tables/gates.md)", "every verdict, its bound and the reason of the bound"),
+    ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),
     ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),
     ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
-    ("[data/records](data/records)", "of each run the equations and every sample's error"),
+    ("`data/records`", "of each run the equations and every sample's error (not committed)"),
 )
 
 
@@ -161,6 +161,10 @@ def _remake(verdicts: Iterable[Verdict]) -> str:
             "and order operations in their own ways, so the roundings differ, and with them the "
             "digits of an error, but neither its verdict nor its size. "
             "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
+            "What is *not committed* is large and made from the rest: records, portraits of the "
+            "scenes, `gates`, PDF, LaTeX, HTML, and the JSON of `reference`. `taylor-verify publish "
+            "--missing` makes the data of these in minutes, `taylor-verify publish --paper` the "
+            "renderings, and `make release-data` packs all into one archive.",
             f"Made with {', '.join(packages) or 'unknown versions'}.",
         ]
     )

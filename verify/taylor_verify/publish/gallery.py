@@ -1,11 +1,12 @@
 """The gallery: pictures of some motions and of their errors, made of stored data alone.
 
-What is drawn comes from data/portraits (the motion), data/records and reference (the errors of a run and
-the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
+What is drawn comes from data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv
+(the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
 """
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,10 +36,11 @@ _SOLVER: Final = "taylor"
 _RUNG: Final = "f64"
 
 _WHAT: Final = (
-    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`; each "
-    "is here as SVG and as PDF. Lengths, times and impulses are in the scene's own units. The motions are "
-    "exact, to more digits than any picture shows; an error is that of the Taylor driver of this suite, "
-    "against the exact motion of the same rounded data."
+    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`, as "
+    "SVG and as PDF. Portraits, records and the PDF are made and not committed: `taylor-verify publish "
+    "--missing` makes the data, `--paper` the PDF. Lengths, times and impulses are in the scene's own "
+    "units. The motions are exact, to more digits than any picture shows; an error is that of the Taylor "
+    "driver of this suite, against the exact motion of the same rounded data."
 )
 _ELSEWHERE: Final = (
     "Other pictures of this folder stand beside their numbers: speed against accuracy in "
@@ -60,9 +62,15 @@ class Shown:
     sources: tuple[str, ...]
 
     def block(self) -> str:
-        links = ", ".join(f"[{Path(source).name}](../{source})" for source in self.sources)
+        sources = ", ".join(map(_named, self.sources))
         stem, alt = self.picture.stem, prose(self.picture.alt)
-        return f"![{alt}]({stem}.svg)\n\n{self.caption} [PDF]({stem}.pdf). Data: {links}."
+        return f"![{alt}]({stem}.svg)\n\n{self.caption} Data: {sources}."
+
+
+def _named(source: str) -> str:
+    """A link to a file of data, or its name where the repository does not hold it."""
+    is_made = source.startswith((portraits.FOLDER, f"{data.FOLDER}/{data.RECORDS}"))
+    return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
 @dataclass(frozen=True)
@@ -89,9 +97,9 @@ class Stored:
 
     def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
         """The exact motion at the scene's instants, a row each."""
-        stored = data.read_document(self.folder / self.reference_name(scene))
-        rows = zip(*(stored[column] for column in columns), strict=True)
-        return [[float(entry) for entry in row] for row in rows]
+        file = self.folder / self.reference_name(scene)
+        with file.open(encoding="utf-8", newline="") as lines:
+            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
     def controls(self) -> list[Document]:
         found: list[Document] = data.read_document(self.folder / CONTROLS)["verdicts"]
@@ -103,11 +111,11 @@ class Stored:
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:
-        return f"{data.FOLDER}/{data.RECORDS}/{of_scene(scene)}.{_SOLVER}.{rung}.json"
+        return f"{data.FOLDER}/{data.record_name(scene, _SOLVER, rung)}"
 
     @staticmethod
     def reference_name(scene: str) -> str:
-        return f"{reference_files.FOLDER}/{of_scene(scene)}.json"
+        return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
 def write(folder: Path | str) -> list[Path]:
@@ -212,9 +220,9 @@ def _quartics(stored: Stored) -> Shown:
         "body swings between two simple roots; a double root it only approaches, like an exponential, and "
         "a triple one like 1/t^2. With two real roots the other two are a complex pair."
     )
-    found = [stored.portrait(scene) for scene in _QUARTICS]
+    found = [stored.portrait(scene) for scene in QUARTICS]
     drawn = potential.picture(found, "kirchhoff")
-    sources = tuple(stored.portrait_name(scene) for scene in _QUARTICS)
+    sources = tuple(stored.portrait_name(scene) for scene in QUARTICS)
     return Shown("Clebsch's body: where the axial impulse may go", drawn, caption, sources)
 
 
@@ -243,7 +251,7 @@ _SCENES: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
     ("manufactured/kirchhoff-path", (_path,)),
     ("manufactured/euler-resonance", (_errors,)),
 )
-_QUARTICS: Final = (
+QUARTICS: Final = (
     *("kirchhoff/whole-motion", "kirchhoff/two-real-roots", "kirchhoff/falling-away"),
     *("kirchhoff/half-turn", "kirchhoff/algebraic", "kirchhoff/ellipsoid-disc"),
 )

@@ -28,8 +28,16 @@ def write(folder: Path | str, documents: Iterable[Portrait]) -> list[Path]:
     OSError; what the folder held then stays as it was.
     """
     target = Path(folder) / FOLDER
-    texts = {f"{of_scene(found['scene'])}.json": _laid_out(found) for found in documents}
-    return list(replace_files(target, texts, stale=_own_files(target)))
+    return list(replace_files(target, _texts(documents), stale=_own_files(target)))
+
+
+def add(folder: Path | str, documents: Iterable[Portrait]) -> list[Path]:
+    """Write portraits beside those that are there, and return the files written. Raises OSError."""
+    return list(replace_files(Path(folder) / FOLDER, _texts(documents)))
+
+
+def _texts(documents: Iterable[Portrait]) -> dict[str, str]:
+    return {f"{of_scene(found['scene'])}.json": _laid_out(found) for found in documents}
 
 
 def load(folder: Path | str, scene: str) -> dict[str, Any] | None:

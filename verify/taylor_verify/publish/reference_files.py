@@ -1,7 +1,8 @@
 """The exact trajectories as CSV and JSON files, with a page that says how to read them.
 
 NAME.csv      a heading line and a row for every sample time, in decimal text
-NAME.json     the same columns as arrays of strings, and the question they answer
+NAME.json     the same columns as arrays of strings, and the question they answer; no page links to
+              it, for the repository does not hold it
 README.md     columns, conventions, tolerances
 example.cpp   a program that compares a trajectory with a reference
 example.rs    a program that integrates a body and compares itself with a reference
@@ -10,6 +11,7 @@ example.rs    a program that integrates a body and compares itself with a refere
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -24,6 +26,7 @@ FOLDER: Final = "reference"
 _MADE_BY: Final = {"made_by": "taylor-verify publish --reference; do not edit"}
 EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
+_SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
 _ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
 
 Document = Mapping[str, Any]
@@ -36,15 +39,23 @@ def write(folder: Path | str, documents: Sequence[Document]) -> list[Path]:
     Files of scenes that are no longer there are removed, other people's files are left alone.
     Raises OSError; what the folder held then stays as it was.
     """
-    texts: dict[str, str] = {}
+    texts = _json_texts(documents)
     for document in documents:
         texts[f"{_stem(document)}.csv"] = _sheet(document["columns"])
-        texts[f"{_stem(document)}.json"] = _laid_out(document)
     examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
     texts |= examples
     texts["README.md"] = _readme(documents, examples)
     target = Path(folder) / FOLDER
     return list(replace_files(target, texts, stale=_own_files(target)))
+
+
+def add_json(folder: Path | str, documents: Iterable[Document]) -> list[Path]:
+    """Write the JSON files alone, beside what is there, and return them. Raises OSError."""
+    return list(replace_files(Path(folder) / FOLDER, _json_texts(documents)))
+
+
+def _json_texts(documents: Iterable[Document]) -> dict[str, str]:
+    return {f"{_stem(document)}.json": _laid_out(document) for document in documents}
 
 
 def _stem(document: Document) -> str:
@@ -66,7 +77,7 @@ def _laid_out(document: Document) -> str:
 
 
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
-    headings = ("scene", "regime", "route", "columns", "rows", "files")
+    headings = ("scene", "regime", "route", "columns", "rows", "file")
     columns = [Column(heading, heading == "rows") for heading in headings]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
     filled = text.replace("{{scenes}}", table(columns, [_row(found) for found in documents]))
@@ -85,12 +96,15 @@ def _row(document: Document) -> list[str]:
         _ROUTES.get(document["route"], document["route"]),
         " ".join(code(vector) for vector in vectors),
         str(len(columns["t"])),
-        f"[csv]({stem}.csv) [json]({stem}.json)",
+        f"[csv]({stem}.csv)",
     ]
 
 
 def _own_files(target: Path) -> list[Path]:
-    """The JSON files that name us as their maker, each with its CSV twin."""
+    """The JSON files that name us as their maker, and the CSV files that our page links to."""
     maker = "{" + json.dumps(_MADE_BY)[1:-1] + ","
     own = [file for file in target.glob("*.json") if first_line(file) == maker]
-    return own + [file.with_suffix(".csv") for file in own]
+    page = target / "README.md"
+    if page.exists() and first_line(page) == MADE_BY:
+        own += [target / name for name in _SHEET.findall(page.read_text(encoding="utf-8"))]
+    return own

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -77,13 +77,17 @@ def publish(folder: Path | str) -> list[Path]:
         f"{TABLES}/attainable.csv": sheets.attainable(verdicts),
         f"{TABLES}/conserved.md": tables.conserved(verdicts),
         f"{TABLES}/conserved.csv": sheets.conserved(verdicts),
-        f"{TABLES}/gates.md": tables.gates(verdicts),
-        f"{TABLES}/gates.csv": sheets.gates(verdicts),
+        **_gates(verdicts),
     }
     if _is_ours_or_new(place / FRONT):
         texts[FRONT] = front(verdicts, besides)
     written = replace_files(place, texts, stale=_own_tables(place / TABLES))
     return [*written, *replace_files(place.resolve().parent, quoted.requoted(place, verdicts))]
+
+
+def publish_gates(folder: Path | str) -> list[Path]:
+    """Make the tables of the gates alone from ``folder``/data. The errors are those of `publish`."""
+    return list(replace_files(Path(folder), _gates(load(folder))))
 
 
 def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
@@ -110,6 +114,13 @@ def publish_tradeoff(
         pictures = [one for trade in found.trades for one in figures.of_trade(trade)]
         stored += figures.draw(place, [*pictures, *figures.of_rungs(found.trades)])
     return [*stored, *replace_files(place, tradeoff.pages(place))]
+
+
+def _gates(verdicts: Sequence[Verdict]) -> dict[str, str]:
+    return {
+        f"{TABLES}/gates.md": tables.gates(verdicts),
+        f"{TABLES}/gates.csv": sheets.gates(verdicts),
+    }
 
 
 def _controls(place: Path) -> dict[str, str]:

@@ -51,14 +51,19 @@ _CONTENTS = (
         "the same beside what perfect rounding would leave, a column a rung",
     ),
     ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
-    ("[Gates](gates.md)", "[csv](gates.csv)", "every verdict, its bound and why that bound"),
+    (
+        "Gates",
+        "`gates.csv`",
+        "every verdict, its bound and why that bound: `gates.md`, not committed",
+    ),
 )
 _RENDERED = (
     "`taylor-verify publish --paper` renders these pages, and the ledger of claims, from their Markdown "
     "and from nothing else: each as NAME.tex, which pdflatex compiles as it is (three times, for the "
     "columns to stand right), and as NAME.html, which is one file without a script; all of them "
-    "together as paper.tex. The gates are left to their CSV: a line for every verdict with its reason "
-    "is for searching and not for reading."
+    "together as paper.tex. They are not committed, nor are `gates.md` and `gates.csv`: `taylor-verify "
+    "publish --missing` makes the tables of the gates. The gates are left to their CSV: a line for every "
+    "verdict with its reason is for searching and not for reading."
 )
 _RUN = (Column("scene"), Column("rung"))
 
@@ -73,7 +78,7 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
         *(f"{code(quantity)} is in {prose(unit)}." for quantity, unit in units.items()),
         roundoffs(shown),
         f"{_RATIO}. It decides the verdict; *bound* is the bound at the time of the maximum, and "
-        "[gates](gates.md) has the reason of each.",
+        "`gates.md` has the reason of each.",
     ]
     return page(
         "State errors",

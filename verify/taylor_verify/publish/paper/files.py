@@ -1,6 +1,7 @@
 """The renderings of a report folder, beside its tables: NAME.tex, NAME.html, and paper.tex of them all.
 
-They are made of the pages that are there and of nothing else: whoever changes a page makes these anew.
+They are made of the pages that are there and of nothing else: whoever changes a page makes these anew. The
+pictures of the pages are drawn as PDF, which LaTeX takes.
 """
 
 from __future__ import annotations
@@ -8,8 +9,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from taylor_verify.publish import drawings, figures
 from taylor_verify.publish.paper import html, latex
 from taylor_verify.publish.paper.parsed import FOLDER, Page
+from taylor_verify.publish.pictures.picture import save
 from taylor_verify.publish.replacement import first_line, replace_files
 
 PAPER: Final = f"paper{latex.SUFFIX}"
@@ -35,14 +38,27 @@ PAGES: Final = (
 
 
 def write(folder: Path | str) -> list[Path]:
-    """Render every page of ``folder`` that is there; renderings of pages that are gone go too.
+    """Render every page of ``folder`` that is there, and draw the pictures that are there as PDF.
+
+    Renderings of pages that are gone are removed.
 
     Raises OSError for files that cannot be read or written, ValueError for a page that is none, and
-    ImportError without markdown-it-py or latex2mathml.
+    ImportError without markdown-it-py, latex2mathml or, where there are pictures, matplotlib.
     """
     place = Path(folder)
     texts = renderings(place)
-    return list(replace_files(place, texts, stale=_own(place / FOLDER)))
+    drawn = _drawn(place)
+    return [*replace_files(place, texts, stale=_own(place / FOLDER)), *drawn]
+
+
+def _drawn(place: Path) -> list[Path]:
+    """The PDF of every picture that is there as SVG."""
+    target = place / figures.FOLDER
+    there = {file.stem for file in target.glob("*.svg")}
+    pictures = (
+        [picture for picture in drawings.pictures(place) if picture.stem in there] if there else []
+    )
+    return save(pictures, target, ("pdf",)) if pictures else []
 
 
 def renderings(folder: Path) -> dict[str, str]:

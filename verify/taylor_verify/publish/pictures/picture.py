@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from taylor_verify.publish.pictures.compact_svg import compact
 from taylor_verify.publish.pictures.style import settings
 from taylor_verify.publish.replacement import replace_files
 
@@ -36,14 +37,18 @@ class Picture:
     figure: Callable[[], Figure]
 
 
-def save(pictures: Iterable[Picture], folder: Path | str) -> list[Path]:
+def save(
+    pictures: Iterable[Picture], folder: Path | str, formats: Collection[str] = tuple(_METADATA)
+) -> list[Path]:
     """Write each picture as SVG and as PDF, in place of earlier ones; return the paths.
 
-    All are drawn before the first is written, and each is moved into its place whole. Raises
-    ImportError without matplotlib, OSError for a folder that cannot be written.
+    ``formats`` may name one of the two. All are drawn before the first is written, and each is moved into
+    its place whole. Raises ImportError without matplotlib, OSError for a folder that cannot be written.
     """
     with plotting():
-        contents = {name: content for picture in pictures for name, content in _files(picture)}
+        contents = {
+            name: content for picture in pictures for name, content in _files(picture, formats)
+        }
     return list(replace_files(Path(folder), contents))
 
 
@@ -60,13 +65,17 @@ def plotting() -> Iterator[None]:
         yield
 
 
-def _files(picture: Picture) -> Iterator[tuple[str, bytes]]:
+def _files(picture: Picture, formats: Collection[str]) -> Iterator[tuple[str, bytes]]:
     """Name and content for each format."""
     figure = picture.figure()
-    for ending, own in _METADATA.items():
+    for ending in formats:
+        own = _METADATA[ending]
         metadata = {"Title": picture.title, **own}
         if ending == "svg":
             metadata["Description"] = picture.alt
         file = BytesIO()
         figure.savefig(file, format=ending, metadata=metadata)
-        yield f"{picture.stem}.{ending}", file.getvalue()
+        content = file.getvalue()
+        if ending == "svg":
+            content = compact(content.decode()).encode()
+        yield f"{picture.stem}.{ending}", content

@@ -1,0 +1,128 @@
+"""Small reports that are made in the session by the real code, for tests of pages and pictures.
+
+A report is made once in a process, when a test first asks for it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+from collections.abc import Iterable
+from functools import cache
+from itertools import product
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Final
+
+from test_claims_command import CITED, ROWS
+from test_extremes_page import document as extremes_document
+from test_hunt import found_of
+from test_reach_page import document as reach_document
+from test_trade_page import NUMBERS_MADE, TIMES_MADE
+
+from taylor_verify import hunt
+from taylor_verify.controls import sight
+from taylor_verify.controls.defects import DEFECTS
+from taylor_verify.growth.published import Entry, followed
+from taylor_verify.portrait import portrait
+from taylor_verify.publish import (
+    claims,
+    extremes,
+    gallery,
+    growth,
+    portraits,
+    reach,
+    reference_files,
+    report,
+    worst,
+)
+from taylor_verify.reference import reference
+from taylor_verify.run import run
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reader import load
+
+RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
+# Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.
+SCENES: Final = (
+    *("euler/with-attitude", "euler/separatrix", "euler/constant-moment"),
+    *("kirchhoff/whole-motion", "kirchhoff/falling-away"),
+)
+# One that a shift of time explains, one that the energy does not see, and a term that is missing.
+_BROKEN: Final = ("half-a-millisecond-early", "munk-moment-sign", "no-gyroscopic-term")
+_UNDRAWN: Final = (
+    *("kirchhoff/oblate-about-axis-1", "euler/about-max-axis", "kirchhoff/general-body"),
+    *("manufactured/euler-tones", "euler/rest"),
+)
+_ENSEMBLE: Final = Entry("euler/about-max-axis", "f64", 10**3.5, 4, "a test")
+
+
+def folder() -> Path:
+    """Return a new folder, which is removed when the process ends."""
+    place = Path(mkdtemp(prefix="taylor-verify-made-"))
+    atexit.register(shutil.rmtree, place, ignore_errors=True)
+    return place
+
+
+def write_runs(place: Path, runs: Iterable[tuple[str, str]]) -> None:
+    """Run scenes on rungs by the Taylor driver, and write verdicts and records."""
+    results = [run(load(scene), "taylor", rung) for scene, rung in runs]
+    verdicts = [verdict for result in results for verdict in result.verdicts]
+    records = [result.record for result in results if result.record is not None]
+    report.write(place, verdicts, records)
+
+
+def write_portraits(place: Path, scenes: Iterable[str]) -> None:
+    """Write portraits and exact trajectories."""
+    loaded = [load(scene) for scene in scenes]
+    portraits.write(place, [portrait(scene) for scene in loaded])
+    reference_files.write(place, [reference(scene) for scene in loaded])
+
+
+def write_controls(place: Path) -> None:
+    """Write what each gate sees of some solvers that are broken on purpose."""
+    defects = [defect for defect in DEFECTS if defect.name in _BROKEN]
+    report.publish_controls(place, sight.document(sight.sights(defects)))
+
+
+@cache
+def every_portrait() -> Path:
+    """Return a report with the portrait of every scene of the standard set."""
+    place = folder()
+    portraits.write(place, [portrait(load(scene)) for scene in names()])
+    return place
+
+
+@cache
+def every_reference() -> Path:
+    """Return a report with the exact trajectory of every scene of the standard set."""
+    place = folder()
+    reference_files.write(place, [reference(load(scene)) for scene in names()])
+    return place
+
+
+@cache
+def for_gallery() -> Path:
+    """Return a report with everything that the gallery draws, and some scenes that it does not."""
+    place = folder()
+    drawn = product(gallery.scenes(), RUNGS)
+    write_runs(place, [*drawn, ("manufactured/euler-tones", "f64"), ("euler/rest", "f64")])
+    write_portraits(place, dict.fromkeys((*gallery.scenes(), *gallery.QUARTICS, *_UNDRAWN)))
+    write_controls(place)
+    return place
+
+
+@cache
+def small() -> Path:
+    """Return a report of five scenes on two rungs, with a page of every kind and its picture."""
+    place = folder()
+    write_runs(place, product(SCENES, ("f64", "mp237")))
+    write_portraits(place, SCENES)
+    write_controls(place)
+    report.publish_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
+    reach.write(place, reach_document())
+    growth.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
+    worst.write(place, hunt.study([found_of("euler-a", 1.5)], 60.0, 3))
+    extremes.write(place, extremes_document())
+    claims.write(place, ROWS, CITED)
+    report.publish(place)
+    return place

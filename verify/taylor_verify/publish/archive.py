@@ -1,0 +1,57 @@
+"""A report folder as one archive: the same bytes whenever and wherever it is packed."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import io
+import tarfile
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.replacement import replace_files
+
+SUMS: Final = "SHA256SUMS"
+# What a user's own runs and the site write below the folder.
+_LOCAL: Final = ("local", "site")
+
+
+def pack(folder: Path, target: Path, name: str) -> list[Path]:
+    """Write ``target``/NAME.tar.gz and NAME.tar.gz.sha256, and return both.
+
+    The archive has one folder, NAME, with every file of ``folder`` and with SHA256SUMS, a list that
+    `sha256sum --check` reads. Names are in order; no date, owner or machine is in it. Raises OSError.
+    """
+    contents = {path: (folder / path).read_bytes() for path in _paths(folder)}
+    sums = "".join(f"{_digest(content)}  {path}\n" for path, content in contents.items())
+    packed = _packed(name, {**contents, SUMS: sums.encode()})
+    file = f"{name}.tar.gz"
+    texts: dict[str, str | bytes] = {file: packed, f"{file}.sha256": f"{_digest(packed)}  {file}\n"}
+    return list(replace_files(target, texts))
+
+
+def _paths(folder: Path) -> list[str]:
+    """Every file by its path below the folder; no hidden one and none that is local."""
+    paths = [file.relative_to(folder) for file in folder.rglob("*") if file.is_file()]
+    return sorted(
+        path.as_posix()
+        for path in paths
+        if path.parts[0] not in _LOCAL and not any(part.startswith(".") for part in path.parts)
+    )
+
+
+def _packed(name: str, contents: dict[str, bytes]) -> bytes:
+    stream = io.BytesIO()
+    with (
+        gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as pressed,
+        tarfile.open(fileobj=pressed, mode="w", format=tarfile.USTAR_FORMAT) as archive,
+    ):
+        for path, content in contents.items():
+            member = tarfile.TarInfo(f"{name}/{path}")
+            member.size = len(content)
+            archive.addfile(member, io.BytesIO(content))
+    return stream.getvalue()
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

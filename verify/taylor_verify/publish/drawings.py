@@ -1,0 +1,47 @@
+"""Every picture of a report folder, made of the data that the folder holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from taylor_verify.publish import data, figures, gallery, growth, prices, reach, trades
+from taylor_verify.publish.pictures.picture import Picture
+
+
+def pictures(folder: Path) -> list[Picture]:
+    """Return the pictures whose data are there; the gallery asks for portraits and records.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
+    return [*_traded(folder), *_priced(folder), *_grown(folder), *_reached(folder), *_shown(folder)]
+
+
+def _traded(folder: Path) -> list[Picture]:
+    stored = trades.load(folder)
+    if stored is None:
+        return []
+    own = [picture for trade in stored.trades for picture in figures.of_trade(trade)]
+    return [*own, *figures.of_rungs(stored.trades)]
+
+
+def _priced(folder: Path) -> list[Picture]:
+    file = folder / prices.PRICES
+    return figures.of_prices(data.read_document(file)) if file.exists() else []
+
+
+def _grown(folder: Path) -> list[Picture]:
+    stored = growth.load(folder)
+    picture = growth.picture_of(stored) if stored["runs"] else None
+    return [picture] if picture else []
+
+
+def _reached(folder: Path) -> list[Picture]:
+    file = folder / reach.REACH
+    return reach.pictures(data.read_document(file)) if file.exists() else []
+
+
+def _shown(folder: Path) -> list[Picture]:
+    try:
+        return [one.picture for one in gallery.shown(gallery.Stored(folder))]
+    except FileNotFoundError:
+        return []
