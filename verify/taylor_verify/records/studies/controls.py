@@ -29,6 +29,6 @@ class ControlsStudy:
 
     versions: dict[str, str]
     machine: Machine
-    factor: float
+    factor: int
     defects: tuple[DefectRow, ...]
     verdicts: tuple[Verdict, ...]

@@ -57,5 +57,5 @@ class TrapsStudy:
 
     versions: dict[str, str]
     machine: Machine
-    factor: float
+    factor: int
     traps: tuple[TrapRow, ...]

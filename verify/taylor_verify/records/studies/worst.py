@@ -26,7 +26,7 @@ class WorstOfFamily:
 class WorstStudy:
     """A search of so many seconds; ``factor`` is the bound of a gate over what is attainable."""
 
-    factor: float
+    factor: int
     rung: str
     seconds: float
     seed: int
