@@ -51,10 +51,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     answer, and a warning says so. Raises scenes.faults.Refused for a scene that cannot be read.
     """
     scene = as_scene(scene)
-    found = run(scene, "taylor", rung)
-    lacking = _lacking(found)
-    if lacking and (judged := _judged_without_solver(scene, rung_named(rung))) is not None:
-        found = judged
+    found, lacking = _judged(scene, rung_named(rung))
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
@@ -83,18 +80,22 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     }
 
 
-def _lacking(found: Judgement) -> list[str]:
-    """Return a sentence for a run that lacked its package."""
+def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
+    """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
+    found = run(scene, "taylor", rung)
     (first, *_) = found.verdicts
     if first.outcome != Outcome.NO_PACKAGE.value:
-        return []
-    judged = (
-        f"the gates are those of the exact motion rounded to {first.rung}, a step for each sample"
+        return found, []
+    exact = _judged_exact_motion(scene, rung)
+    if exact is None:
+        return found, []
+    meaning = (
+        f"the gates are those of the exact motion rounded to {rung.name}, a step for each sample"
     )
-    return [f"{first.because}; {judged}"]
+    return exact, [f"{first.because}; {meaning}"]
 
 
-def _judged_without_solver(scene: Scene, rung: Rung) -> Judgement | None:
+def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
     """Return the judgement of the exact motion rounded once to the rung; None where there is none."""
     try:
         problem = pose(scene, rung)
