@@ -247,6 +247,22 @@ def test_a_cold_solve_is_told_part_by_part() -> None:
     assert min(one.importing, one.compiling, one.solving) > 0
 
 
+def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
+    """A first solve has heyoka loaded when the solver begins: to import is not to compile."""
+    script = (
+        "import pickle, sys\n"
+        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.scenes.reader import load\n"
+        "from taylor_verify.solvers.taylor import driver\n"
+        "from taylor_verify.trade.cold import first_solve\n"
+        "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
+        "driver.compiled = compiled\n"
+        "assert 'heyoka' not in sys.modules\n"
+        "first_solve(pickle.dumps((load('euler/rest'), driver.Taylor(), rung('f64'))))\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
+
+
 # The command.
 
 
