@@ -78,8 +78,6 @@ def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
 
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
     """A wrong name is told before anything heavy is imported."""
-    import subprocess
-
     program = (
         "import sys; from taylor_verify.solvers.registry import check_name; "
         "check_name('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"

@@ -103,6 +103,30 @@ def test_run_names_the_command_that_installs_it(scenes: list[str], tmp_path: Pat
     assert err.splitlines()[-1] == f"taylor-verify: {why}"
 
 
+def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
+    """One that cannot be imported is named with the reason, and the same command mends it."""
+    (tmp_path / "heyoka.py").write_text("raise ImportError('no libLLVM')\n")
+    done = lacking(tmp_path, (), "-m", "taylor_verify", "run", "euler/rest")
+    assert done.returncode == 2
+    expected = f"expected heyoka, got one that cannot be imported (no libLLVM): {INSTALL}"
+    assert done.stdout.splitlines()[-1] == f"nothing was judged: {expected}"
+
+
+def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
+    """What is measured with heyoka alone is exit status 2 with the same sentence, and no traceback."""
+    script = (
+        "import sys\nfrom taylor_verify import cli\n"
+        "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"
+        " from taylor_verify.scenes.precision import rung\n batch_width(rung('f64'))\n"
+        "import taylor_verify.cli.verbs as verbs\nverbs.list_all = act\n"
+        "sys.exit(cli.main(['list']))"
+    )
+    done = lacking(tmp_path, HEYOKA, "-c", script)
+    assert done.returncode == 2
+    told = done.stderr.splitlines()[-1]
+    assert told == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
+
+
 def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:
     """`list`, `question`, `exact` and `check` have exit status 0."""
     assert command(tmp_path, "list")[0] == 0
