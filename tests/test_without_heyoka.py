@@ -112,6 +112,24 @@ def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
     assert done.stdout.splitlines()[-1] == f"nothing was judged: {expected}"
 
 
+@pytest.mark.parametrize(
+    "option",
+    ["portraits", "controls", "prices", "reach", "tradeoff", "extremes", "worst", "growth"],
+)
+def test_nothing_is_published_without_heyoka(option: str, tmp_path: Path) -> None:
+    """What was measured with it stays as it is: exit status 2, one sentence, and no file."""
+    script = (
+        "import sys\nfrom pathlib import Path\nfrom taylor_verify.cli import folders, main\n"
+        "folders._checkout = lambda place: place\n"
+        f"sys.exit(main(['publish', '--{option}', '--from', 'reports']))"
+    )
+    done = lacking(tmp_path, HEYOKA, "-c", script)
+    assert done.returncode == 2
+    expected = f"expected heyoka, got no such package: {INSTALL} @ --{option}"
+    assert done.stderr.splitlines() == [f"taylor-verify: {expected}"]
+    assert not (tmp_path / "reports").exists()
+
+
 def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
     """What is measured with heyoka alone is exit status 2 with the same sentence, and no traceback."""
     script = (
