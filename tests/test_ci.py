@@ -612,6 +612,38 @@ def test_the_example_calls_the_action_with_inputs_it_has() -> None:
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the action's scripts are for bash")
+@pytest.mark.parametrize(
+    ("solver", "installed"),
+    [
+        ("", "source[taylor]"),
+        ("taylor?tol=1e-9", "source[taylor]"),
+        ("scipy:DOP853", "source[scipy]"),
+        ("process:./simulator 0.001", "source"),
+    ],
+)
+def test_the_action_installs_what_the_solver_needs(
+    solver: str, installed: str, tmp_path: Path
+) -> None:
+    """heyoka, which is large, comes along for `taylor` alone."""
+    python = tmp_path / "python"
+    # `-m venv FOLDER` puts it there, `-m pip ...` writes down what it is asked for.
+    python.write_text(
+        '#!/bin/sh\nif [ "$2" = venv ]; then mkdir -p "$3/bin" && cp "$0" "$3/bin/python"; '
+        f'else echo "$*" > "{tmp_path}/asked"; fi\n',
+        encoding="utf-8",
+    )
+    python.chmod(0o755)
+    given = {"PYTHON": str(python), "SOURCE": "source", "RUNNER_TEMP": str(tmp_path)}
+    step = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c"]
+    subprocess.run(
+        [*step, script("install taylor-verify")],
+        env={**os.environ, **given, "SOLVER": solver},
+        check=True,
+    )
+    assert (tmp_path / "asked").read_text().split()[-1] == installed
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="the action's scripts are for bash")
 def test_the_script_of_the_action_judges(short: Path) -> None:
     """As GitHub would call it: two rungs, several scenes, a baseline; 1 if a row of that is gone."""
     command = Path("taylor-verify/bin/taylor-verify")

@@ -177,6 +177,25 @@ def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
             yield f"expected heyoka in models or solvers/taylor, got {target} @ {module}:{line}"
 
 
+def imports_heyoka_late(module: str, source: str) -> Iterator[str]:
+    """heyoka is imported inside functions, or for type hints alone: no module needs it to load."""
+    for target, line in _imports_on_loading(ast.parse(source)):
+        if within(target, "heyoka"):
+            yield f"expected heyoka inside a function, got {target} @ {module}:{line}"
+
+
+def _imports_on_loading(node: ast.AST) -> Iterator[tuple[str, int]]:
+    """What is imported outside every function, class bodies and conditions included."""
+    for target in _imported(node):
+        yield target, node.lineno
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+        return
+    for_types = node.body if isinstance(node, ast.If) and _is_type_checking(node.test) else []
+    for child in ast.iter_child_nodes(node):
+        if child not in for_types:
+            yield from _imports_on_loading(child)
+
+
 def is_silent(module: str, source: str) -> Iterator[str]:
     """Printing is for cli and progress, and for the programs in solvers/outside."""
     if within(
@@ -229,6 +248,7 @@ RULES: Final = (
     heyoka_has_its_place,
     batch_stands_below_the_verbs,
     processes_have_their_place,
+    imports_heyoka_late,
     is_silent,
     stands_in_its_own_environment,
     imports_in_full,
@@ -414,6 +434,19 @@ PLANTED = [
         "ProcessPoolExecutor",
     ),
     (processes_have_their_place, "taylor_verify.hunt", "import multiprocessing", "multiprocessing"),
+    (imports_heyoka_late, "taylor_verify.solvers.taylor.step", "import heyoka as hy", "heyoka"),
+    (
+        imports_heyoka_late,
+        "taylor_verify.models.euler",
+        "class A:\n try:\n  from heyoka import par\n except ImportError:\n  pass",
+        "heyoka.par",
+    ),
+    (
+        imports_heyoka_late,
+        "taylor_verify.solvers.taylor.step",
+        "hy = import_module('heyoka')",
+        "heyoka",
+    ),
     (is_silent, "taylor_verify.judge.errors", "print(1)", "print()"),
     (is_silent, "taylor_verify.run", "from rich.console import Console", "rich.console"),
     (is_silent, "taylor_verify.run", "import sys\nsys.stderr.write('')", "sys.stderr"),
@@ -449,8 +482,8 @@ def test_every_rule_has_a_planted_fault() -> None:
     ("module", "source"),
     [
         ("taylor_verify.exact.theta", "from taylor_verify.scenes.scene import Scene"),
-        ("taylor_verify.models.euler", "import heyoka as hy"),
-        ("taylor_verify.solvers.taylor.step", "from heyoka import par"),
+        ("taylor_verify.models.euler", "def f():\n import heyoka as hy"),
+        ("taylor_verify.solvers.taylor.step", "if TYPE_CHECKING:\n from heyoka import par"),
         ("taylor_verify.publish.plots", "from taylor_verify.records.verdict import Verdict"),
         (
             "taylor_verify.publish.plots",

@@ -43,10 +43,6 @@ def with_broken_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [n for n in sys.modules if n.startswith("taylor_verify.solvers.taylor")]:
-        monkeypatch.delitem(sys.modules, name)
-    taylor = sys.modules.get("taylor_verify.solvers")
-    monkeypatch.delattr(taylor, "taylor", raising=False)
     monkeypatch.setitem(sys.modules, "heyoka", None)
 
 
@@ -56,7 +52,7 @@ def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
         (without_scipy, "scipy:DOP853", INSTALL),
         (with_broken_scipy, "scipy:DOP853", INSTALL),
         (without_scipy, "closed-form:ellipj", INSTALL),
-        (without_heyoka, "taylor", "pip install heyoka"),
+        (without_heyoka, "taylor", "pip install 'taylor-verify[taylor]'"),
     ],
 )
 def test_a_missing_package_is_exit_2_with_the_command(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -77,8 +78,6 @@ def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
 
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
     """A wrong name is told before anything heavy is imported."""
-    import subprocess
-
     program = (
         "import sys; from taylor_verify.solvers.registry import check_name; "
         "check_name('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
@@ -245,6 +244,22 @@ def test_a_cold_solve_is_told_part_by_part() -> None:
     parts = one.process + one.importing + one.compiling + one.solving + one.rest
     assert parts == pytest.approx(one.whole)
     assert min(one.importing, one.compiling, one.solving) > 0
+
+
+def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
+    """A first solve has heyoka loaded when the solver begins: to import is not to compile."""
+    script = (
+        "import pickle, sys\n"
+        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.scenes.reader import load\n"
+        "from taylor_verify.solvers.taylor import driver\n"
+        "from taylor_verify.trade.cold import first_solve\n"
+        "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
+        "driver.compiled = compiled\n"
+        "assert 'heyoka' not in sys.modules\n"
+        "first_solve(pickle.dumps((load('euler/rest'), driver.Taylor(), rung('f64'))))\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
 
 
 # The command.

@@ -7,10 +7,14 @@ import os
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from email import message_from_bytes
+from importlib.metadata import distribution, files, requires
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 
@@ -188,3 +192,87 @@ def launch(installed: Path | str, folder: Path, *command: str) -> subprocess.Com
     return subprocess.run(
         command, cwd=folder, env=environment, check=False, stdout=subprocess.PIPE, text=True
     )
+
+
+# What the wheel requires by itself, in an environment of its own.
+
+
+def required(wheel: Path, extra: str = "") -> set[str]:
+    """The names of the distributions that the wheel asks for, with an extra or without."""
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith("/METADATA")]
+        metadata = message_from_bytes(archive.read(name))
+    return asked_for(metadata.get_all("Requires-Dist", []), extra)
+
+
+def asked_for(requirements: Iterable[str], extra: str = "") -> set[str]:
+    """The names in these requirements, without those for other systems and extras."""
+    needed = map(Requirement, requirements)
+    applying = [r for r in needed if r.marker is None or r.marker.evaluate({"extra": extra})]
+    return {canonicalize_name(requirement.name) for requirement in applying}
+
+
+def closure(names: Iterable[str]) -> set[str]:
+    """The distributions of these names, and all that they require themselves."""
+    seen: set[str] = set()
+    waiting = set(names)
+    while waiting:
+        seen |= waiting
+        waiting = {each for name in waiting for each in asked_for(requires(name) or ())} - seen
+    return seen
+
+
+@pytest.fixture(scope="module")
+def bare(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An environment with the wheel, what it requires, and pytest; linked, as nothing is downloaded."""
+    folder = tmp_path_factory.mktemp("bare")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    (site,) = folder.glob("lib/python*/site-packages")
+    for name in closure(required(wheel) | {"pytest"}):
+        for part in {file.parts[0] for file in files(name) or ()} - {"..", "__pycache__"}:
+            (site / part).symlink_to(Path(distribution(name).locate_file(part)))
+    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    pip += ["--python", str(folder / "bin" / "python")]
+    subprocess.run([*pip, "install", "--no-deps", "--no-index", str(wheel)], check=True)
+    return folder
+
+
+def test_the_wheel_requires_no_solver(wheel: Path) -> None:
+    """heyoka, SciPy, matplotlib and pyarrow are extras, and no requirement requires them."""
+    needed = closure(required(wheel))
+    assert {"gmpy2", "mpmath", "numpy", "python-flint"} <= needed
+    assert needed.isdisjoint({"heyoka", "scipy", "matplotlib", "pyarrow", "pytest"})
+    assert required(wheel, "taylor") - required(wheel) == {"heyoka"}
+
+
+@pytest.mark.slow
+def test_a_bare_environment_judges(bare: Path, tmp_path: Path) -> None:
+    """With the wheel alone `exact`, `check` and the plugin work; `run` names what it lacks."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+    def bare_run(*command: str) -> subprocess.CompletedProcess[str]:
+        program = str(bare / "bin" / command[0])
+        return subprocess.run(
+            [program, *command[1:]],
+            cwd=tmp_path,
+            env=environment,
+            check=False,
+            capture_output=True,
+            text=True,
+        )
+
+    exact = bare_run("taylor-verify", "exact", "euler/generic", "--at", "1")
+    assert (exact.returncode, "0.886993695743147990920637547598" in exact.stdout) == (0, True)
+    question = bare_run("taylor-verify", "question", "euler/rest", "--csv").stdout.splitlines()
+    rows = [f"{row.partition(',')[0]},0,0,0" for row in question[1:]]
+    (tmp_path / "mine.csv").write_text("\n".join([question[0], *rows]))
+    check = bare_run("taylor-verify", "check", "mine.csv", "--scene", "euler/rest")
+    assert check.returncode == 0, check.stdout
+    lacking = bare_run("taylor-verify", "run", "euler/generic", "--json")
+    assert lacking.returncode == 2
+    (row,) = json.loads(lacking.stdout)["verdicts"]
+    assert "pip install 'taylor-verify[taylor]'" in row["because"]
+    a_file(tmp_path)
+    (tmp_path / "test_simulator.py").write_text(ANOTHER_PROJECT)
+    session = bare_run("python", "-m", "pytest", "-p", "no:cacheprovider")
+    assert "2 failed, 4 passed" in session.stdout, session.stdout

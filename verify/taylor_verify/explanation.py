@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
+from math import ceil, isfinite, log10
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpmath import mp
 
@@ -14,8 +14,11 @@ from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import Element, Elements, elements
 from taylor_verify.exact.kirchhoff.general import screws_beside
 from taylor_verify.exact.kirchhoff.screws import Screw
+from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.carrying import Carrying, carrying
+from taylor_verify.judge.initial import with_initial
+from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
@@ -27,24 +30,33 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reader import as_scene
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.file import Recorded
+from taylor_verify.solvers.trajectory import Outcome
+
+if TYPE_CHECKING:
+    from taylor_verify.judge.judgement import Judgement
 
 _DIGITS = 15
+# Beyond the digits of a rung, so that what is rounded to it is the exact number.
+_SPARE_DIGITS = 6
 _FROM_RECORD = (
     *("equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff"),
 )
 
 
 def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
-    """One run of the scene on that rung, told by its record: nothing here is an estimate.
+    """Run the scene on that rung and return what its record says; no number is an estimate.
 
     A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
-    orbit, its conditioning, and each gate with the terms of its bound. What a run that came to no
-    comparison has not found out is None. Raises scenes.faults.Refused for a scene that cannot be read.
+    orbit, its conditioning, and each gate with the terms of its bound. A number that the run did not
+    come to is None. Without heyoka the exact motion, rounded to the rung, is judged in place of an
+    answer, and a warning says so. Raises scenes.faults.Refused for a scene that cannot be read.
     """
     scene = as_scene(scene)
-    found = run(scene, "taylor", rung)
+    found, lacking = _judged(scene, rung_named(rung))
     record = found.record.document() if found.record is not None else {}
     first = found.verdicts[0]
+    effort = ("steps", "evaluations", "seconds")
     orbit = _orbit(scene)
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
     return {
@@ -55,14 +67,12 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "rung": rung,
         "bits": rung_named(rung).bits,
         "track": sorted({MAIN[scene.model]} | scene.track),
-        "warnings": list(scene.warnings),
+        "warnings": [*scene.warnings, *lacking],
         "body": ellipsoid.told(scene.body) if isinstance(scene.body, ImmersedBody) else [],
         **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
             **_cost(scene, rung),
-            "steps": first.steps,
-            "evaluations": first.evaluations,
-            "seconds": first.seconds,
+            **{name: None if lacking else getattr(first, name) for name in effort},
         },
         **orbit,
         "screws": [_screw(screw) for screw in screws_beside(scene)],
@@ -70,6 +80,35 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in found.verdicts],
     }
+
+
+def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
+    """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
+    found = run(scene, "taylor", rung)
+    (first, *_) = found.verdicts
+    if first.outcome != Outcome.NO_PACKAGE.value:
+        return found, []
+    exact = _judged_exact_motion(scene, rung)
+    if exact is None:
+        return found, []
+    meaning = (
+        f"the gates are those of the exact motion rounded to {rung.name}, a step for each sample"
+    )
+    return exact, [f"{first.because}; {meaning}"]
+
+
+def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
+    """Return the judgement of the exact motion rounded once to the rung; None where there is none."""
+    try:
+        problem = pose(scene, rung)
+        digits = ceil(rung.bits * log10(2)) + _SPARE_DIGITS
+        exact = solution(problem.given).motion(problem.given.clock.elapsed, digits)
+        with mp.workprec(rung.bits):
+            rounded = {name: +values for name, values in exact.quantities.items()}
+        found = partial_judgement(problem, Recorded(rounded, name="exact"))
+    except (NotRepresentable, Unsettled):
+        return None
+    return with_initial(found, float(problem.given.clock.start))
 
 
 def _orbit(scene: Scene) -> dict[str, Any]:

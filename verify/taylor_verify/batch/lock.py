@@ -21,6 +21,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 
     Afterwards the lock file is removed, and every folder that was made and is still empty. Raises
     Occupied if another process or thread holds the lock, and OSError if the folder cannot be written.
+    Windows has no such lock: there nobody is kept out.
     """
     made = [path for path in (folder, *folder.absolute().parents) if not path.exists()]
     handle = _locked(folder)
@@ -31,6 +32,10 @@ def alone_in(folder: Path) -> Iterator[None]:
         with suppress(OSError):
             os.unlink(folder / LOCK)
         os.close(handle)
+        if os.name == "nt":
+            # Windows removes no file that is open.
+            with suppress(OSError):
+                os.unlink(folder / LOCK)
         for path in made:
             with suppress(OSError):
                 path.rmdir()

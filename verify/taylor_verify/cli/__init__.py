@@ -72,6 +72,10 @@ def _told(error: Exception) -> str:
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
     if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name or __name__):
+        from taylor_verify.solvers.taylor import package
+
+        if error.name == package.NAME:
+            return package.sentence(error)
         return f"expected the package {error.name} (`make verify` sets all up), got none"
     from taylor_verify.batch.failure import Failed, fault
 

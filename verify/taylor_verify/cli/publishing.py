@@ -41,11 +41,15 @@ def publish(options: argparse.Namespace) -> Answer:
     }
     # These make their pages from what the folder holds; all others put something into it.
     measured = anew.keys() - {"gallery", "paper", "missing"}
+    # These are exact, and run no solver.
+    with_heyoka = measured - {"reference", "claims"}
     folder = reports_folder(
         options.folder, measures=any(getattr(options, option) for option in measured)
     )
     for option, write in anew.items():
         if getattr(options, option):
+            if option in with_heyoka:
+                _require_heyoka(f"--{option}")
             place = writable(folder, "--from")
             with alone_in(place, "--from"):
                 return write(place)
@@ -66,6 +70,14 @@ def publish(options: argparse.Namespace) -> Answer:
         ) from error
     except ValueError as error:
         raise WrongCall(str(error)) from error
+
+
+def _require_heyoka(option: str) -> None:
+    """Raise WrongCall without heyoka: what is published must not be replaced by rows of nothing."""
+    from taylor_verify.solvers.taylor.package import lack
+
+    if (missing := lack()) is not None:
+        raise WrongCall(f"{missing} @ {option}")
 
 
 def references(folder: Path) -> Answer:

@@ -47,11 +47,25 @@ def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) ->
 
 
 def verdicts_text(verdicts: Sequence[Verdict], held: Agreement) -> str:
-    """A line for each scene and rung, then what is not a pass with its reason, then the counts."""
+    """Return a line for each scene and rung, each row that is no pass with its reason, and the counts.
+
+    Where no row was judged, and all for one reason, the counts and the reason are enough.
+    """
     from taylor_verify.records.verdict import summary
 
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
+    why = held.unjudged(verdicts)
+    if not why or len({verdict.because for verdict in verdicts}) > 1:
+        _print_rows(console, verdicts, held)
+    counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
+    print_line(console, f"{counts}{_as_expected(verdicts, held)}")
+    if why:
+        print_line(console, f"nothing was judged: {why}")
+    return text_of(console)
+
+
+def _print_rows(console: Console, verdicts: Sequence[Verdict], held: Agreement) -> None:
     console.print(_table(verdicts, gap=2 if console.width >= _ROOMY else 1))
     print_line(console)
     print_line(
@@ -71,11 +85,7 @@ def verdicts_text(verdicts: Sequence[Verdict], held: Agreement) -> str:
         print_line(console, _status(verdict.verdict.value), f"  {place}: {told}")
     for mismatch in held.mismatches:
         print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
-    counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
-    print_line(console, f"\n{counts}{_as_expected(verdicts, held)}")
-    if why := held.unjudged(verdicts):
-        print_line(console, f"nothing was judged: {why}")
-    return text_of(console)
+    print_line(console)
 
 
 def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
@@ -322,7 +332,6 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
     _print_orbit(console, found)
     truth = f"  route {found['route']}, {found['truth_digits']} digits"
     print_line(console, Text("truth", "bold"), truth)
-    order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
     for i, sentence in enumerate(cost["because"]):
         print_indented(console, "chosen   " if i == 0 else "         ", sentence)
     print_line(
@@ -330,10 +339,15 @@ def _print_problem(console: Console, found: Mapping[str, Any]) -> None:
         Text("cost", "bold"),
         f"   {_counted(cost)}\n"
         f"       general equations of this body: {_counted(cost['same'])}\n"
-        f"       with all that the model has: {_counted(cost['general'])}\n"
-        f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
-        f"{cost['seconds']:.3g} s",
+        f"       with all that the model has: {_counted(cost['general'])}",
     )
+    if cost["steps"] is not None:
+        order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
+        print_line(
+            console,
+            f"       {cost['steps']} steps of order {order}: {cost['evaluations']} evaluations, "
+            f"{cost['seconds']:.3g} s",
+        )
 
 
 def _counted(cost: Mapping[str, Any]) -> str:

@@ -61,7 +61,8 @@ def _status(path: Path, expected: str) -> os.stat_result:
 
 
 def _open_without_waiting(path: str, flags: int) -> int:
-    return os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC)
+    # Windows has no such flag, and no FIFO that a name could lead to.
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _check(found: os.stat_result, path: Path, expected: str, most: Limit) -> None:

@@ -138,8 +138,8 @@ class Outside(Solver):
     setting: str = ""
 
     def unavailable(self, rung: Rung) -> str:
-        if self.entrant.unavailable:
-            return self.entrant.unavailable
+        if reason := self.entrant.unavailable or process.unavailable():
+            return reason
         if rung.name not in self.entrant.rungs:
             return f"{self.name} is made for {' and '.join(self.entrant.rungs)} alone"
         environment = self.entrant.environment

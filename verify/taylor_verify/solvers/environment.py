@@ -217,9 +217,12 @@ def _reason(said: str) -> str:
 
 @contextmanager
 def _alone(lock: Path, tell: Tell) -> Iterator[None]:
-    """Hold a lock that ends with the process, whatever ends it."""
-    import fcntl
-
+    """Hold a lock that ends with the process, whatever ends it; a system without locks has none."""
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
     with lock.open("w") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -27,6 +27,7 @@ from time import monotonic, perf_counter
 from typing import Any, Final, NamedTuple, final
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers import protocol
 from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -66,6 +67,10 @@ class Process(Solver):
     def command(self) -> list[str]:
         return shlex.split(self.name.removeprefix(PREFIX))
 
+    def unavailable(self, rung: Rung) -> str:
+        del rung
+        return unavailable()
+
     def solve(self, problem: Problem) -> Trajectory:
         asked = json.dumps(protocol.question(problem)).encode()
         began = perf_counter()
@@ -82,6 +87,15 @@ class Process(Solver):
             outcome, what = Outcome.NON_FINITE, str(fault)
         detail = replace(ended, what=what).detail()
         return Trajectory(outcome, detail=detail, seconds=seconds)
+
+
+def unavailable() -> str:
+    """Return the reason why this system can run no program of a user; empty where it can."""
+    if hasattr(os, "posix_spawnp"):
+        return ""
+    return (
+        "programs are run on Linux and macOS alone: elsewhere nothing ends the processes they start"
+    )
 
 
 def named(name: str) -> Process:

@@ -55,12 +55,10 @@ NAMES = (
 
 def solver_named(name: str) -> Solver:
     """The solver of that name; ValueError lists the names there are."""
-    # Each is imported for itself: heyoka alone takes a fifth of a second, and only a run needs it.
+    # A solver is imported when it is asked for: most bring a library with them.
     if name == TAYLOR or name.startswith(TAYLOR_AT):
-        try:
-            from taylor_verify.solvers.taylor import driver
-        except ModuleNotFoundError as error:
-            return _without_heyoka(name, error)
+        from taylor_verify.solvers.taylor import driver
+
         return driver.named(name)
     if name.startswith(PROCESS):
         from taylor_verify.solvers import process
@@ -87,16 +85,6 @@ def solver_named(name: str) -> Solver:
 
         return entrant.named(name)
     raise ValueError(unknown_solver(name))
-
-
-def _without_heyoka(name: str, error: ModuleNotFoundError) -> Solver:
-    if error.name != "heyoka":
-        raise error
-    from taylor_verify.solvers.solver import Absent, Lack
-    from taylor_verify.solvers.trajectory import Outcome
-
-    sentence = "heyoka is not installed: pip install heyoka"
-    return Absent(name, Lack(sentence, Outcome.NO_PACKAGE))
 
 
 def as_solver(solver: Solver | str) -> Solver:

@@ -68,23 +68,6 @@ class Solver(ABC):
 
 @final
 @dataclass(frozen=True)
-class Absent(Solver):
-    """A solver that cannot be loaded, because a package is missing."""
-
-    name: str
-    lack: Lack
-
-    def unavailable(self, rung: Rung) -> str:
-        del rung
-        return self.lack
-
-    def solve(self, problem: Problem) -> Trajectory:
-        del problem
-        return Trajectory(self.lack.outcome, detail=str(self.lack))
-
-
-@final
-@dataclass(frozen=True)
 class Callback(Solver):
     """A solver of one's own: ``answer(problem)`` returns states of shape (samples, n).
 

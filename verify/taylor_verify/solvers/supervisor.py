@@ -27,7 +27,7 @@ _PR_SET_CHILD_SUBREAPER = 36
 # Seconds for processes that do not end: those of another user, and those held in a system call.
 _PATIENCE = 5.0
 _GLANCE = 0.02
-_IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_IGNORED = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
 
 
 def main(link: int, command: list[str]) -> None:

@@ -27,10 +27,9 @@ if TYPE_CHECKING:
 class Cold:
     """Seconds of a first solve, part by part.
 
-    ``process`` until the new process runs, ``importing`` the libraries and posing the problem,
-    ``compiling`` what the solver says went before its propagation (SciPy, for one, is loaded then),
-    ``solving`` the propagation, ``rest`` the answer made exact, ``whole`` all of it as the caller
-    waits for it.
+    ``process`` until the new process runs, ``importing`` the libraries, the solver's own among them, and
+    posing the problem, ``compiling`` what the solver says went before its propagation, ``solving`` the
+    propagation, ``rest`` the answer made exact, ``whole`` all of it as the caller waits for it.
     """
 
     process: float
@@ -80,12 +79,14 @@ def _in_a_new_process(data: bytes) -> Cold | None:
 
 
 def first_solve(data: bytes) -> dict[str, float]:
-    """Solve what the bytes hold, and say what each part took; in a process that has done nothing."""
+    """Solve the pickled problem in a process that has done nothing; return the seconds of each part."""
     began = perf_counter()
     scene, solver, rung = pickle.loads(data)
     from taylor_verify.models.problem import pose
 
     problem = pose(scene, rung)
+    # The question loads the library of the solver, as in every run.
+    solver.unavailable(rung)
     imported = perf_counter()
     trajectory = solver.solve(problem)
     ended = perf_counter()

@@ -74,11 +74,15 @@ class Trap:
 
 
 def shown(function: Callable[..., Any]) -> str:
-    """The source of a function without its docstring and type hints: what is shown was run."""
+    """Return the source of a function without its docstring, type hints and import of heyoka.
+
+    The other lines are those that were run.
+    """
     lines, _ = inspect.getsourcelines(function)
     (definition,) = ast.parse(textwrap.dedent("".join(lines))).body
     assert isinstance(definition, ast.FunctionDef)
-    body = definition.body[1:] if ast.get_docstring(definition) else definition.body
+    body = [line for line in definition.body if not isinstance(line, ast.Import)]
+    body = body[1:] if ast.get_docstring(definition) else body
     text = "".join(lines[body[0].lineno - 1 :]).rstrip()
     return f"def {definition.name}({_without_hints(definition.args)}):\n{text}"
 

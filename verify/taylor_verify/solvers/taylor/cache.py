@@ -25,7 +25,6 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-import heyoka as hy
 import numpy as np
 from platformdirs import user_cache_path
 
@@ -52,6 +51,8 @@ def stored(make: Callable[..., Any], system: Any, **options: Any) -> Any:
 
 def heyoka_cache_off() -> None:
     """Switch heyoka's own disk cache off, and its warnings, which it prints on stdout."""
+    import heyoka as hy
+
     hy.set_logger_level_error()
     hy.llvm_state.set_diskcache_enabled(False)
 
@@ -94,6 +95,8 @@ def _name(make: Callable[..., Any], system: Any, options: dict[str, Any]) -> str
 @lru_cache(maxsize=1)
 def _build() -> bytes:
     """A text for this installation of heyoka: another build of one version may link otherwise."""
+    import heyoka as hy
+
     installed = os.stat(hy.__file__)
     python = platform.python_version()
     return f"{hy.__version__} {installed.st_mtime_ns} {installed.st_size} {python}".encode()

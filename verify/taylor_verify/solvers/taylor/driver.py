@@ -20,7 +20,6 @@ from math import ceil, isfinite
 from time import perf_counter
 from typing import Any, final
 
-import heyoka as hy
 import numpy as np
 
 from taylor_verify.models.algebra import is_absent
@@ -57,12 +56,6 @@ _LONG_WAY = 50
 
 # The samples of one stretch after the other, each a row of the states.
 Rows = list[np.ndarray[Any, Any]]
-
-_OUTCOMES = {
-    hy.taylor_outcome.time_limit: Outcome.FINISHED,
-    hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
-    hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
-}
 
 
 @final
@@ -138,6 +131,8 @@ def compiled(
     Parameters cost what literals cost, and serve every body: literals are for measuring that. What it
     computes does not depend on ``is_long``, which tells what pays.
     """
+    import heyoka as hy
+
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
     states = hy.make_vars(*form.states)
@@ -215,7 +210,7 @@ def _propagate(
             began_at = reached[-1, path]
         rows.append(reached[1:])
         total_steps += int(steps)
-        outcome = _OUTCOMES.get(status, Outcome.INTERRUPTED)
+        outcome = outcome_of(status)
         if outcome is Outcome.FINISHED and not np.isfinite(reached).all():
             outcome = Outcome.NON_FINITE
         if outcome is not Outcome.FINISHED:
@@ -223,6 +218,18 @@ def _propagate(
     if sum(map(len, rows)) != len(grid):
         return Outcome.INTERRUPTED, total_steps, [], inner
     return Outcome.FINISHED, total_steps, [np.concatenate(rows)[samples]], inner
+
+
+def outcome_of(status: Any) -> Outcome:
+    """Return the outcome that heyoka's own word stands for."""
+    import heyoka as hy
+
+    known = {
+        hy.taylor_outcome.time_limit: Outcome.FINISHED,
+        hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
+        hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
+    }
+    return known.get(status, Outcome.INTERRUPTED)
 
 
 def _pieces(radians: float, rung: Rung) -> int:

@@ -20,7 +20,6 @@ from functools import lru_cache
 from math import inf, isfinite
 from typing import Any, Final, final
 
-import heyoka as hy
 import numpy as np
 
 from taylor_verify.models.algebra import is_absent
@@ -29,7 +28,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import LONGEST_STEP, compiled
+from taylor_verify.solvers.taylor.driver import LONGEST_STEP, compiled, outcome_of
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -144,10 +143,12 @@ class Ensemble:
             max_delta_t=numbers.double(LONGEST_STEP / lane.fastest),
             max_steps=most_steps(lane, target),
         )
-        return self._reached(lane, target, status, int(steps), integrator.state)
+        outcome = outcome_of(status)
+        return self._reached(lane, target, outcome, int(steps), integrator.state)
 
-    def _reached(self, lane: Lane, target: Fraction, status: Any, steps: int, state: Array) -> Lane:
-        outcome = _outcome(status)
+    def _reached(
+        self, lane: Lane, target: Fraction, outcome: Outcome, steps: int, state: Array
+    ) -> Lane:
         if outcome is Outcome.FINISHED and not np.isfinite(state).all():
             outcome = Outcome.NON_FINITE
         if outcome is not Outcome.FINISHED:
@@ -202,11 +203,11 @@ class _Stretch:
         lost = [k for k in going if not finite[k]]
         if not lost:
             for k in going:
-                self._settle(k, found[k][0], integrator.state[:, k])
+                self._settle(k, outcome_of(found[k][0]), integrator.state[:, k])
             return False
         # The others have been stopped where they are, not at their targets: they go on from there.
         for k in lost:
-            self._settle(k, hy.taylor_outcome.err_nf_state, integrator.state[:, k])
+            self._settle(k, Outcome.NON_FINITE, integrator.state[:, k])
         self._time, self._state = integrator.time.copy(), integrator.state.copy()
         return True
 
@@ -217,14 +218,16 @@ class _Stretch:
             self._parameters[:, k] = self._parameters[:, going[0]]
             self._time[k] = self._end[k] = self._end[going[0]]
 
-    def _settle(self, k: int, status: Any, state: Array) -> None:
+    def _settle(self, k: int, outcome: Outcome, state: Array) -> None:
         self.lanes[k] = self._ensemble._reached(
-            self.lanes[k], self._targets[k], status, int(self._steps[k]), state
+            self.lanes[k], self._targets[k], outcome, int(self._steps[k]), state
         )
 
 
 def batch_width(rung: Rung) -> int:
     """How many lanes this processor steps at once; 1 where heyoka has no batch for the rung."""
+    import heyoka as hy
+
     kind = _BATCHED.get(rung.name)
     return 1 if kind is None else int(hy.recommended_simd_size(kind))
 
@@ -264,6 +267,8 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     """One compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance)
+    import heyoka as hy
+
     numbers = arithmetic(rung)
     states = hy.make_vars(*form.states)
     rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
@@ -300,12 +305,3 @@ def _padded(values: Array, width: int) -> Array:
     """The last axis with zeros up to so many places."""
     missing = width - values.shape[-1]
     return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, missing)])
-
-
-def _outcome(status: Any) -> Outcome:
-    known = {
-        hy.taylor_outcome.time_limit: Outcome.FINISHED,
-        hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
-        hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
-    }
-    return known.get(status, Outcome.INTERRUPTED)

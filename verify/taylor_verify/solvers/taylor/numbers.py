@@ -13,13 +13,13 @@ from functools import lru_cache
 from math import ldexp
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 from mpmath import libmp
 
 from taylor_verify.models.times import BinaryTimes, TypedTimes
 from taylor_verify.scenes.precision import Rung, exact_value, power_of_two
 from taylor_verify.solvers.solver import Lack
+from taylor_verify.solvers.taylor.package import lack
 from taylor_verify.solvers.trajectory import Outcome
 
 # hy.real(int) passes through a decimal string, which Python limits to 4300 digits.
@@ -77,6 +77,8 @@ def arithmetic(rung: Rung) -> Arithmetic:
             scaled=lambda m, e: np.ldexp(np.longdouble(m), e),
             double=np.longdouble,
         )
+    import heyoka as hy
+
     # Without compact mode these compile for seconds to minutes and then run no faster.
     if rung.name == "f128":
         return Arithmetic(
@@ -100,7 +102,11 @@ def arithmetic(rung: Rung) -> Arithmetic:
 
 
 def unavailable(rung: Rung) -> str:
-    """Why heyoka has no such number type on this machine; empty where it has."""
+    """Return the reason why heyoka cannot compute on a rung here; empty where it can."""
+    if (missing := lack()) is not None:
+        return missing
+    import heyoka as hy
+
     reason = ""
     if rung.name == "f80" and np.finfo(np.longdouble).nmant != 63:
         reason = "the long double of this processor is not the 80-bit x87 format"
@@ -116,6 +122,8 @@ def _longdouble(value: Fraction) -> Any:
 
 
 def _real128(value: Fraction) -> Any:
+    import heyoka as hy
+
     return hy.real128(_real(value, 113))
 
 
@@ -127,6 +135,8 @@ def _real(value: Fraction, bits: int) -> Any:
 
 def _scaled(significand: int, exponent: int, bits: int) -> Any:
     """significand times 2^exponent, for a significand of no more than so many bits."""
+    import heyoka as hy
+
     result = hy.real(significand, bits)
     while exponent:
         step = max(-_LARGEST_INTEGER_BITS, min(_LARGEST_INTEGER_BITS, exponent))
@@ -138,6 +148,8 @@ def _scaled(significand: int, exponent: int, bits: int) -> Any:
 
 @lru_cache(maxsize=256)
 def _power(exponent: int, bits: int) -> Any:
+    import heyoka as hy
+
     return hy.real(2**exponent, bits)
 
 
@@ -147,6 +159,8 @@ def _trailing_zeros(value: int) -> int:
 
 def _from_real128(value: Any) -> Fraction:
     """IEEE binary128: sign, 15 bits of exponent, 112 of fraction, little-endian."""
+    import heyoka as hy
+
     raw = int.from_bytes(np.array([value], dtype=hy.real128).tobytes(), "little")
     fraction, biased = raw & (2**112 - 1), raw >> 112 & 0x7FFF
     significand = fraction + (2**112 if biased else 0)

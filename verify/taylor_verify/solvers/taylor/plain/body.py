@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, NamedTuple, final
 
-import heyoka as hy
 import numpy as np
 
 from taylor_verify.models.problem import Problem
@@ -26,11 +25,8 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 Array = np.ndarray[Any, Any]
 
-# What heyoka says, and what somebody who asks `outcome is time_limit` makes of it.
-_READ = {
-    hy.taylor_outcome.time_limit: Outcome.FINISHED,
-    hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
-}
+# heyoka's words, and what somebody who asks `outcome is time_limit` makes of them.
+_READ = {"time_limit": Outcome.FINISHED, "err_nf_state": Outcome.NON_FINITE}
 
 
 class Ran(NamedTuple):
@@ -43,6 +39,8 @@ class Ran(NamedTuple):
 
 def euler_equations(I: Sequence[Any]) -> list[Any]:
     """The equations as they are typed."""
+    import heyoka as hy
+
     w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
     return [
         (w1, w2 * w3 * (I[1] - I[2]) / I[0]),
@@ -53,6 +51,8 @@ def euler_equations(I: Sequence[Any]) -> list[Any]:
 
 def free_body(I: Sequence[Any], w: Array, times: Array, fp_type: Any = float) -> Ran:
     """Integrate from w at times[0] = 0 and sample at the times."""
+    import heyoka as hy
+
     ta = hy.taylor_adaptive(euler_equations(I), w, fp_type=fp_type)
     outcome, _, _, steps, _, rows = ta.propagate_grid(times)
     return Ran(outcome, steps, rows)
@@ -60,6 +60,8 @@ def free_body(I: Sequence[Any], w: Array, times: Array, fp_type: Any = float) ->
 
 def unset(w: Sequence[float], end: float) -> tuple[Any, Array]:
     """The same body with parameters in place of numbers, which are then forgotten."""
+    import heyoka as hy
+
     w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
     equations = [
         (w1, hy.par[0] * (w2 * w3)),
@@ -99,11 +101,11 @@ class Plain(Solver):
         moments = list(numbers.array(diagonal)) if self.typed else [float(I) for I in diagonal]
         w, times = numbers.array(start.omega), numbers.array(problem.given.clock.elapsed)
         ran = free_body(moments, w, times, numbers.fp_type)
-        outcome = _READ.get(ran.outcome, Outcome.INTERRUPTED)
+        said = str(ran.outcome.name)
+        outcome = _READ.get(said, Outcome.INTERRUPTED)
         quantities = {}
         if outcome is Outcome.FINISHED:
             rows = [[held_exactly(numbers.exact(v)) for v in row] for row in ran.rows]
             quantities["omega"] = np.array(rows, dtype=object)
         seconds = perf_counter() - began
-        said = str(ran.outcome.name)
         return Trajectory(outcome, quantities, said, steps=ran.steps, seconds=seconds)

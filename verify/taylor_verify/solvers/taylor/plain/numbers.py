@@ -9,7 +9,6 @@ import math
 from importlib import import_module
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 
 
@@ -30,6 +29,8 @@ def printed(number: Any, form: str = "%.40e") -> Any:
 
 def to_real128(number: Any) -> Any:
     """A real of more bits made a real128."""
+    import heyoka as hy
+
     return hy.real128(number)
 
 
@@ -40,5 +41,7 @@ def equal(number: Any, other: Any) -> Any:
 
 def from_sympy(digits: str) -> Any:
     """A SymPy number of 50 digits as a heyoka expression; ImportError without SymPy."""
+    import heyoka as hy
+
     sympy = import_module("sympy")
     return hy.from_sympy(sympy.Float(digits, 50) * sympy.Symbol("x"))

@@ -11,7 +11,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 
 Array = np.ndarray[Any, Any]
@@ -19,6 +18,8 @@ Array = np.ndarray[Any, Any]
 
 def decay(x0: float, end: float, **options: Any) -> tuple[Any, Any]:
     """x' = -x: the integrator, and what propagate_until returned."""
+    import heyoka as hy
+
     x = hy.make_vars("x")
     ta = hy.taylor_adaptive([(x, -x)], [x0])
     return ta, ta.propagate_until(end, **options)
@@ -26,6 +27,8 @@ def decay(x0: float, end: float, **options: Any) -> tuple[Any, Any]:
 
 def blow_up(x0: float, end: float) -> tuple[Any, Any]:
     """x' = x^2, which is infinite at t = 1/x0."""
+    import heyoka as hy
+
     x = hy.make_vars("x")
     ta = hy.taylor_adaptive([(x, x * x)], [x0])
     return ta, ta.propagate_until(end)
@@ -33,6 +36,8 @@ def blow_up(x0: float, end: float) -> tuple[Any, Any]:
 
 def tolerance_of_zero() -> Any:
     """The tolerance of an integrator that was asked for none."""
+    import heyoka as hy
+
     x = hy.make_vars("x")
     ta = hy.taylor_adaptive([(x, -x)], [1.0], tol=0.0)
     return ta.tol
@@ -40,6 +45,8 @@ def tolerance_of_zero() -> Any:
 
 def lanes(equations: Any, w: Array, end: float) -> tuple[list[Any], Array, Array]:
     """Several bodies side by side, a column of w each: outcomes, times and states."""
+    import heyoka as hy
+
     ta = hy.taylor_adaptive_batch(equations, w)
     ta.propagate_until(end)
     return [outcome for outcome, *_ in ta.propagate_res], ta.time, ta.state
@@ -54,6 +61,8 @@ def swung(ta: Any, end: float) -> float:
 
 def interrupted(seconds: float, end: float) -> float:
     """The time of the integrator when an interruption after so many seconds is heard of."""
+    import heyoka as hy
+
     x, v = hy.make_vars("x", "v")
     ta = hy.taylor_adaptive([(x, v), (v, -hy.sin(x))], [1.0, 0.0])
 
@@ -71,6 +80,8 @@ def interrupted(seconds: float, end: float) -> float:
 
 def cache_key() -> str:
     """What the disk cache has stored of the surroundings in which a piece of code was compiled."""
+    import heyoka as hy
+
     before = hy.llvm_state.get_diskcache_path()
     enabled = hy.llvm_state.get_diskcache_enabled()
     with TemporaryDirectory() as folder:

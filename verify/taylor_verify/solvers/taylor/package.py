@@ -1,0 +1,33 @@
+"""The package heyoka: whether it can be imported, and how to install it.
+
+It is an extra, and it is imported inside functions: only its own integrator needs it.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from taylor_verify.solvers.solver import Lack
+from taylor_verify.solvers.trajectory import Outcome
+
+NAME: Final = "heyoka"
+INSTALL: Final = (
+    "pip install 'taylor-verify[taylor]' (macOS, Windows: conda install -c conda-forge heyoka.py)"
+)
+
+
+def lack() -> Lack | None:
+    """Return the reason why heyoka cannot be imported, with the command that installs it."""
+    try:
+        import heyoka
+    except ImportError as error:
+        return Lack(sentence(error), Outcome.NO_PACKAGE)
+    del heyoka
+    return None
+
+
+def sentence(error: ImportError) -> str:
+    """Return the message for an import of heyoka that failed with this error."""
+    is_absent = isinstance(error, ModuleNotFoundError) and error.name == NAME
+    got = "no such package" if is_absent else f"one that cannot be imported ({error})"
+    return f"expected {NAME}, got {got}: {INSTALL}"
