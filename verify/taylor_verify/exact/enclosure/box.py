@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 from flint import arb, arb_mat, ctx
@@ -23,7 +24,7 @@ from taylor_verify.exact.enclosure.tube import (
 )
 
 # The derivative of the flow is wanted to the leading digits alone: what this order leaves is bounded.
-_FLOW_ORDER: Final = 14
+_FLOW_ORDER: Final = 12
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,11 @@ class Box:
     def is_point(self) -> bool:
         return all(r == 0 for r in self.radius.entries())
 
+    @cached_property
     def apart(self) -> arb_mat:
         """How far a state of the box may be from its point, component by component."""
-        return magnitudes(magnitudes(self.axes) * self.radius)
+        with ctx.workprec(BOUND_BITS):
+            return magnitudes(magnitudes(self.axes) * self.radius)
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,8 @@ def flow(system: Balls, bounds: Bounds, state: Series, sizes: Series, h: arb, tu
     """
     n = len(state[0])
     order = min(_FLOW_ORDER, len(state) - 1)
-    jacobians = [arb_mat(n, n, (system.second * column(z)).entries()) * h for z in state[:order]]
+    second = system.second * h
+    jacobians = [arb_mat(n, n, (second * column(z)).entries()) for z in state[:order]]
     terms = [identity(n)]
     for k in range(order):
         total = jacobians[k] * terms[0]
