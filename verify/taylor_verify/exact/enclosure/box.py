@@ -90,7 +90,9 @@ def flow(system: Balls, bounds: Bounds, state: Series, sizes: Series, h: arb, tu
             total = total + jacobians[k - j] * terms[j]
         terms.append(total * (1 / arb(k + 1)))
     size = abs(h).upper()
-    tails, magnitude = partial_tails(sizes), [magnitudes(term) for term in terms]
+    beyond = [sum(entries, arb(0)) for entries in zip(*sizes[order:], strict=True)]
+    tails = partial_tails([*sizes[:order], beyond])
+    magnitude = [magnitudes(term) for term in terms]
     everything = magnitude[0]
     left = rates_of_change(bounds, column(tails[order])) * magnitude[0]
     for j in range(1, order + 1):
