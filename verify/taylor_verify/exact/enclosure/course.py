@@ -193,7 +193,7 @@ class Course:
                     found = tube(bounds, sizes, h.abs_upper(), box.apart)
                     moving = None
                     if not box.is_point:
-                        moving = flow(system, bounds, state, sizes, h, found)
+                        moving = flow(system, bounds, box, state, sizes, h, found)
                 except StepTooLong:
                     found = None
             if found is not None:

@@ -151,9 +151,7 @@ def _deviations(box: Box, flow: Flow | None, tube: Tube) -> tuple[list[arb_mat],
     """Bounds e_k and e with |z(s) - p(s)| <= sum_k e_k s^k + e, component by component."""
     if flow is None:
         return [], tube.truncation
-    spread = [magnitudes(term * box.axes) * box.radius for term in flow.terms]
-    constant = flow.defect * box.apart + tube.truncation
-    return spread, magnitudes(constant)
+    return flow.spread, magnitudes(flow.defect * box.apart + tube.truncation)
 
 
 def _accumulated(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:
