@@ -20,7 +20,8 @@ from taylor_verify.scenes.scene import Scene
 
 # Of the two runs, beyond the digits asked for: what one rounding may become, and how they differ.
 GUARD_DIGITS, APART_DIGITS = 3, 12
-SLACK_BITS, STEP_BITS = 24, 6
+# What the roundings of all steps may come to, and what the truncation of one may leave, in last bits.
+GUARD_BITS, SLACK_BITS, STEP_BITS = 24, 12, 6
 ORDERS_PER_BIT = 0.36
 
 Integer = libmp.MPZ
@@ -100,7 +101,7 @@ def two_runs(scene: Scene, elapsed: Sequence[Fraction], digits: int) -> list[lis
     posed_once = equations(scene)
     runs = []
     for more in (GUARD_DIGITS, GUARD_DIGITS + APART_DIGITS):
-        bits = ceil((digits + more) * 3.3219280948873626) + SLACK_BITS
+        bits = ceil((digits + more) * 3.3219280948873626) + GUARD_BITS
         runs.append(run(posed_once, [t for t in elapsed if t], bits))
     return runs
 
@@ -111,7 +112,11 @@ def run(posed_once: Equations, times: Sequence[Fraction], bits: int) -> list[lis
     now, width, pending, rows = Fraction(0), cut(times[-1], 0), list(times[::-1]), []
     while pending:
         rows_of = coefficients(posed_once, state, width, bits)
-        reach = root_test(rows_of, bits)
+        reach = root_test(rows_of)
+        if reach < -1:
+            # Powers of so small a share would have no bits: the first width is a mere guess.
+            width = cut(width, reach)
+            continue
         step = width if reach >= 0 else cut(width, reach)
         while pending and abs(pending[-1] - now) <= abs(step):
             rows.append(value(rows_of, (pending.pop() - now) / width, bits))
@@ -170,7 +175,7 @@ def value(rows: list[list[int]], share: Fraction, bits: int) -> list[int]:
     return [sum(map(mul, row, powers)) >> bits for row in rows]
 
 
-def root_test(rows: list[list[int]], bits: int) -> float:
+def root_test(rows: list[list[int]]) -> float:
     """log2 of the factor at which the last terms fall to the slack."""
     order = len(rows[0]) - 1
     sizes = {k: max(abs(row[k]) for row in rows).bit_length() for k in range(order - 3, order + 1)}
