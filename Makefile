@@ -53,6 +53,7 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish --reference > /dev/null
 	@$(BIN)/taylor-verify publish --portraits > /dev/null
+	@$(BIN)/taylor-verify publish --enclosure > /dev/null
 	@$(BIN)/taylor-verify publish --gallery > /dev/null
 	@$(BIN)/taylor-verify publish --claims > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null

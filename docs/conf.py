@@ -80,13 +80,15 @@ def told(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: l
 def linked(text: str, written_in: Path, shown_in: Path) -> str:
     """The links of a text that stands in one folder and is shown in another.
 
-    What lies beyond these pages comes along as a file: it has links of its own, which start there.
+    What lies beyond these pages comes along as a file: it has links of its own, which start there. A
+    picture is shown where it is named.
     """
 
     def moved(link: re.Match[str]) -> str:
         target = (written_in / link[1]).resolve()
         path = os.path.relpath(target, shown_in)
-        return f"{path}{link[2] or ''}" if target.is_relative_to(HERE) else f"path:{path}"
+        is_here = target.is_relative_to(HERE) or target.suffix == ".svg"
+        return f"{path}{link[2] or ''}" if is_here else f"path:{path}"
 
     return LINK.sub(moved, text)
 

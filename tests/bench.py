@@ -21,11 +21,13 @@ from pathlib import Path
 from unittest.mock import patch
 
 from mpmath import mpf
+from two_runs import two_runs
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.sensitivity import sensitivity
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.library import EXTREMES, STANDARD_SET, WORST, names
@@ -50,6 +52,9 @@ ELLIPTIC = (
     "kirchhoff/two-real-roots",
     "kirchhoff/cubic",
 )
+# Scenes without a closed form, in the standard set and beyond: what an enclosure costs beside two runs.
+ENCLOSED_DIGITS, ENCLOSED_ROUNDS = 30, 3
+ENCLOSED_BESIDE = ("extremes/kirchhoff-nearly-clebsch",)
 SAMPLES, RUNGS = 10_000, ("f64", "f80", "mp237")
 PROPAGATED = {
     "euler/generic": frozenset[str](),
@@ -152,6 +157,28 @@ def many_times(name: str) -> None:
             f"{each:.3f}",
         )
     )
+
+
+def enclosures(name: str) -> None:
+    """The enclosure over two plain runs at the scene's own times: states alone, and with the frame."""
+    cells = []
+    for scene in (replace(load(name), track=frozenset()), tracking_all(name)):
+        times = scene.clock.elapsed
+        enclosure, plain = interleaved(
+            [
+                partial(TaylorSolution(scene).motion, times, ENCLOSED_DIGITS),
+                partial(two_runs, scene, times, ENCLOSED_DIGITS),
+            ],
+            ENCLOSED_ROUNDS,
+        )
+        cells += [f"{1e3 * spent.best:.0f}" for spent in (enclosure, plain)]
+        cells.append(f"{enclosure.best / plain.best:.2f}")
+    print(line(name, *cells))
+
+
+def without_closed_form(names_of: Sequence[str]) -> list[str]:
+    """Those of the scenes whose truth is an enclosure."""
+    return [name for name in names_of if solution(load(name)).regime == NO_CLOSED_FORM]
 
 
 def derivatives(name: str) -> None:
@@ -275,6 +302,14 @@ def main() -> None:
         f"\nRadius relative to each vector after {PERIODS:.0e} periods, {MANY_DIGITS} digits asked for."
     )
     after_a_billion_periods(names(*STANDARD_SET, EXTREMES, WORST))
+
+    print(
+        f"\nMilliseconds of the Taylor enclosure and of two plain runs, {ENCLOSED_DIGITS} digits;"
+    )
+    print("ratios of the best: states alone, and with attitude and centre.")
+    print(line("", "enclosure", "two runs", "ratio", "with frame", "two runs", "ratio"))
+    for name in (*without_closed_form(names(*STANDARD_SET)), *ENCLOSED_BESIDE):
+        enclosures(name)
 
     print(f"\nWhat the suite adds to a propagation of {SAMPLES:,} samples, once compiled.")
     print(line("", "inside, ms", "added", "best", "steps", "exact, ms"))

@@ -154,7 +154,7 @@ def test_of_two_runs_at_once_one_is_refused(tmp_path: Path) -> None:
 
 MADE = ["gallery", "paper", "missing"]
 MEASURED = [
-    *("reference", "portraits", "controls", "claims", "prices", "tradeoff"),
+    *("reference", "portraits", "controls", "enclosure", "claims", "prices", "tradeoff"),
     *("extremes", "worst", "reach", "growth"),
 ]
 

@@ -305,6 +305,12 @@ def _add_publish(found: Any) -> None:
         "wrong, and write what each gate sees of them into DIR/data and DIR/tables",
     )
     made.add_argument(
+        "--enclosure",
+        action="store_true",
+        help="instead enclose two motions without a closed form, and draw the proven width beside the true "
+        "error (matplotlib), into DIR/data and DIR/figures (a minute)",
+    )
+    made.add_argument(
         "--claims",
         action="store_true",
         help="instead run the ledger of both source texts, and write DIR/claims.md, the errata in front",

@@ -29,6 +29,7 @@ def publish(options: argparse.Namespace) -> Answer:
         "portraits": portraits,
         "gallery": gallery,
         "controls": controls,
+        "enclosure": enclosure,
         "claims": publish_claims,
         "prices": prices,
         "reach": reach,
@@ -127,6 +128,14 @@ def controls(folder: Path) -> Answer:
     seen = sight.document(sight.sights(DEFECTS, finished))
     trapped = table.study(table.TRAPS, finished)
     return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
+
+
+def enclosure(folder: Path) -> Answer:
+    """The width of an enclosure beside its true error, stored and drawn."""
+    from taylor_verify.exact.widths import document
+    from taylor_verify.publish import widths
+
+    return files_written(widths.write(folder, document()))
 
 
 def prices(folder: Path) -> Answer:

@@ -5,5 +5,5 @@ series     their Taylor coefficients in balls
 tube       a bound of how far the motion is from its polynomial within one step
 box        the set that contains the state, and how a step carries it on
 placing    attitude and centre along the step
-motion     the steps, the outputs and the precision
+course     the steps, the outputs and the precision
 """

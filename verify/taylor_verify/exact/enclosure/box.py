@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 from flint import arb, arb_mat, ctx
@@ -18,12 +19,15 @@ from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
     Tube,
     accumulated,
+    is_within,
     partial_tails,
     rates_of_change,
 )
 
-# The derivative of the flow is wanted to the leading digits alone: what this order leaves is bounded.
-_FLOW_ORDER: Final = 14
+# The derivative of the flow is wanted to the leading digits alone. Orders that move the box by less than
+# this part of what the orders before them did are bounded, and not computed; some are in any case.
+_LITTLE: Final = arb(2) ** -24
+_LEAST_ORDER: Final = 8
 
 
 @dataclass(frozen=True)
@@ -48,16 +52,22 @@ class Box:
     def is_point(self) -> bool:
         return all(r == 0 for r in self.radius.entries())
 
+    @cached_property
     def apart(self) -> arb_mat:
         """How far a state of the box may be from its point, component by component."""
-        return magnitudes(magnitudes(self.axes) * self.radius)
+        with ctx.workprec(BOUND_BITS):
+            return magnitudes(magnitudes(self.axes) * self.radius)
 
 
 @dataclass(frozen=True)
 class Flow:
-    """The derivative of the flow over one step: V(s) = sum of the terms s^k, and ``defect`` about it."""
+    """The derivative of the flow over one step: V(s) = sum of the terms s^k, and ``defect`` about it.
+
+    ``spread`` bounds how far each term moves a state of the box from its point.
+    """
 
     terms: list[arb_mat]
+    spread: list[arb_mat]
     defect: arb_mat
 
     def at(self, s: arb) -> arb_mat:
@@ -69,31 +79,49 @@ class Flow:
         return widened(total, self.defect)
 
 
-def flow(system: Balls, bounds: Bounds, state: Series, sizes: Series, h: arb, tube: Tube) -> Flow:
+def flow(
+    system: Balls, bounds: Bounds, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
+) -> Flow:
     """The derivative of the state by the one at the beginning, for every path within the tube.
 
     V' = h DF(z(s)) V, V(0) = 1. What the polynomial V leaves of this equation is at most
 
         sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
     """
-    n = len(state[0])
-    order = min(_FLOW_ORDER, len(state) - 1)
-    jacobians = [arb_mat(n, n, (system.second * column(z)).entries()) * h for z in state[:order]]
-    terms = [identity(n)]
-    for k in range(order):
-        total = jacobians[k] * terms[0]
-        for j in range(1, k + 1):
-            total = total + jacobians[k - j] * terms[j]
-        terms.append(total * (1 / arb(k + 1)))
-    size = abs(h).upper()
-    tails, magnitude = partial_tails(sizes), [magnitudes(term) for term in terms]
+    terms, spread = _flow_terms(system, box, state, h)
+    order, size = len(terms) - 1, abs(h).upper()
+    beyond = [sum(entries, arb(0)) for entries in zip(*sizes[order:], strict=True)]
+    tails = partial_tails([*sizes[:order], beyond])
+    magnitude = [magnitudes(term) for term in terms]
     everything = magnitude[0]
     left = rates_of_change(bounds, column(tails[order])) * magnitude[0]
     for j in range(1, order + 1):
         everything = everything + magnitude[j]
         left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
     left = (left + rates_of_change(bounds, tube.width) * everything) * size
-    return Flow(terms, accumulated(tube.growth, magnitudes(left), 1))
+    return Flow(terms, spread, accumulated(tube.growth, magnitudes(left), 1))
+
+
+def _flow_terms(
+    system: Balls, box: Box, state: Series, h: arb
+) -> tuple[list[arb_mat], list[arb_mat]]:
+    """The terms of V up to one that hardly moves the box, and how far each moves it."""
+    n = len(state[0])
+    second = system.second * h
+    jacobians: list[arb_mat] = []
+    terms, spread = [identity(n)], [box.apart]
+    moved = box.apart
+    for k, z in enumerate(state[:-1]):
+        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
+        total = jacobians[k] * terms[0]
+        for j in range(1, k + 1):
+            total = total + jacobians[k - j] * terms[j]
+        terms.append(total * (1 / arb(k + 1)))
+        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
+        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
+            break
+        moved = moved + spread[-1]
+    return terms, spread
 
 
 def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:

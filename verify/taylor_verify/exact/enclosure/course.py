@@ -16,7 +16,13 @@ from flint import arb, ctx
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box, Flow, carried, exponent, flow, within
 from taylor_verify.exact.enclosure.placing import Leg, Place, leg
-from taylor_verify.exact.enclosure.series import Series, scaled, state_series
+from taylor_verify.exact.enclosure.series import (
+    Series,
+    frame_series,
+    scaled,
+    state_series,
+    value,
+)
 from taylor_verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
@@ -28,9 +34,9 @@ from taylor_verify.exact.enclosure.tube import (
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 
-# The cheapest step is the radius of convergence over e^2: bits ln 2/2 orders. The linear part of the
-# cost asks for a few more.
-_ORDERS_PER_BIT: Final = 0.36
+# Steps of the radius of convergence over e^2, bits ln 2/2 orders, are the cheapest where the cost of a step
+# is that of its convolutions; what is done once in an order, or in a step, asks for more.
+_ORDERS_PER_BIT: Final = 0.42
 _STEP_BITS: Final = 8
 # Beside a steady motion the series converges for ever, and the bounds do not close.
 _MOST_GROWTH: Final = 5.0
@@ -38,8 +44,6 @@ _LEAST_CUT: Final = 0.25
 _HALVINGS: Final = 30
 # A last step is not left for less than the rest of this one.
 _NEARLY: Final = Fraction(63, 64)
-# A turn by this share of the order has its last term below the last bit.
-_TURN_PER_ORDER: Final = 1 / 20
 MOST_STEPS: Final = 1_000_000
 # A box so large, as a power of two of its vector, is lost: steps shrink with it for ever.
 _LOST: Final = -10
@@ -177,28 +181,36 @@ class Course:
 
     def _step(self, box: Box, guess: Fraction, left: Fraction) -> _Step:
         system, bounds = self.balls, self.bounds
-        length = self._first(box, guess, left)
-        state = state_series(system, box.point, ball(length), self.order)
-        length, state = self._fitted(state, length, left)
+        first = self._first(box, guess, left)
+        state, frame = self._series(box, ball(first))
+        length = self._fitted(box, state, frame, first, left)
+        state, frame = (scaled(series, ball(length / first)) for series in (state, frame))
         for _ in range(_HALVINGS):
             h = ball(length)
             with ctx.workprec(BOUND_BITS):
                 sizes = [[z.abs_upper() for z in row] for row in state]
                 try:
-                    found = tube(bounds, sizes, h.abs_upper(), box.apart())
+                    found = tube(bounds, sizes, h.abs_upper(), box.apart)
                     moving = None
                     if not box.is_point:
-                        moving = flow(system, bounds, state, sizes, h, found)
+                        moving = flow(system, bounds, box, state, sizes, h, found)
                 except StepTooLong:
                     found = None
             if found is not None:
                 there = None
-                if self.place is not None:
-                    has_centre = self.place.centre is not None
-                    there = leg(system, bounds, state, h, found, moving, box, has_centre)
+                if frame:
+                    there = leg(system, bounds, state, frame, h, found, moving, box)
                 return _Step(length, state, found, moving, there)
-            state, length = scaled(state, arb(1) / 2), length / 2
+            length = length / 2
+            state, frame = (scaled(series, arb(1) / 2) for series in (state, frame))
         raise Coarse(2 * self.bits, stuck=True)
+
+    def _series(self, box: Box, h: arb) -> tuple[Series, Series]:
+        """The coefficients of the state and of the frame, which has none where it is not tracked."""
+        state = state_series(self.balls, box.point, h, self.order)
+        if self.place is None:
+            return state, []
+        return state, frame_series(self.balls, state, h, self.place.centre is not None)
 
     def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
@@ -221,48 +233,42 @@ class Course:
         trace = power.trace()
         return float("-inf") if trace.is_zero() else exponent(trace) / 8
 
-    def _fitted(self, state: Series, length: Fraction, left: Fraction) -> tuple[Fraction, Series]:
-        """The length at which the last coefficients fall below the last bit, and the series there."""
-        factor = self._root_test(state)
-        with ctx.workprec(BOUND_BITS):
-            if self.place is not None:
-                factor = min(factor, self._turning(state, length))
-            factor = min(factor, _log2(left) - _log2(length))
-            factor = self._bounded(state, length, factor)
+    def _fitted(
+        self, box: Box, state: Series, frame: Series, length: Fraction, left: Fraction
+    ) -> Fraction:
+        """The length at which the last coefficients fall below the last bit."""
+        both = [z + turn for z, turn in zip(state, frame, strict=True)] if frame else state
+        factor = min(self._root_test(both), _log2(left) - _log2(length))
+        if not (box.is_point and _is_constant(state)):
+            with ctx.workprec(BOUND_BITS):
+                factor = self._bounded(state, length, factor)
         fitted = _cut(length, factor)
-        if abs(fitted) >= abs(left) * _NEARLY:
-            fitted = left
-        return fitted, scaled(state, ball(fitted / length))
+        return left if abs(fitted) >= abs(left) * _NEARLY else fitted
 
     def _bounded(self, state: Series, length: Fraction, factor: float) -> float:
         """The factor, or less where the linearised motion would outgrow the bounds within the step."""
+        sizes = [list(map(arb.abs_upper, row)) for row in state]
         while True:
-            reach = scaled([list(map(arb.abs_upper, row)) for row in state], _power(factor))
-            most = [sum(entries, arb(0)) for entries in zip(*reach, strict=True)]
+            most = value(sizes, _power(factor))
             excess = self._growth(most) + _log2(length) + factor - log2(_MOST_GROWTH)
             if excess <= 0:
                 return factor
             # The reach may itself grow with the length.
             factor -= max(excess / 2, _LEAST_CUT)
 
-    def _root_test(self, state: Series) -> float:
-        """log2 of the factor by which the length may grow; infinite where the series has ended."""
-        factor = float("inf")
-        for span in self.system.spans:
-            size = _first_size(state, span)
+    def _root_test(self, series: Series) -> float:
+        """log2 of the factor by which the length may grow; infinite where the series has ended.
+
+        Rows of the state, and of the turn beside it where the frame is tracked.
+        """
+        factor, n = float("inf"), self.system.size
+        for span in (*self.system.spans, range(n, min(n + 4, len(series[0])))):
+            size = _first_size(series, span)
             for k in range(max(1, self.order - 2), self.order + 1):
-                last = _size(state[k], span)
+                last = _size(series[k], span)
                 if last > float("-inf"):
                     factor = min(factor, (size - self.bits - last) / k)
         return factor
-
-    def _turning(self, state: Series, length: Fraction) -> float:
-        """log2 of the factor at which the frame turns by no more than its series can follow."""
-        most = log2(max(1.0, self.order * _TURN_PER_ORDER))
-        spins = [
-            _size((self.balls.spin * column(z)).entries(), range(3)) + _log2(length) for z in state
-        ]
-        return min((most - spin) / (k + 1) for k, spin in enumerate(spins))
 
     # When to stop.
 
@@ -278,7 +284,7 @@ class Course:
 
         Raises Unsettled where there would be too many steps.
         """
-        apart = box.apart().entries()
+        apart = box.apart.entries()
         for k, span in enumerate(self.system.spans):
             if _size(apart, span) > largest[k] + _LOST:
                 raise Coarse(self._needed(now, last))
@@ -329,6 +335,10 @@ def _cut(length: Fraction, log2_factor: float) -> Fraction:
     wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
     unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
     return int(wide / unit) * unit
+
+
+def _is_constant(series: Series) -> bool:
+    return all(entry.is_zero() for row in series[1:] for entry in row)
 
 
 def _first_size(state: Series, span: range) -> float:

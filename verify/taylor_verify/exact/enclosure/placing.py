@@ -1,14 +1,28 @@
-"""Attitude and centre along the steps: R' = R G and c' = c + R b, with errors that only add up.
+"""Attitude and centre along the steps: q -> q g and c -> c + R d, with errors that only add up.
 
-Over one step dG/ds = h G [Omega]x and db/ds = h G U. Let G_p and b_p be the polynomials, |.|_F the
-Frobenius norm. All bounds hold for every s in [0, 1].
+R = R_0 R(q) with R_0 the attitude at the start, and R(q) v = q v q* for a quaternion q of any length. Over
+one step g is the turn and d the way since its beginning, in body axes:
 
-    dG = |d_G| + sqrt(2) dW >= |G - G_p|_F,      d_G the products that the polynomials leave out,
-    dW >= int |h| |Omega - Omega_p|,             db = |d_b| + |h| dG sum |U_j| + dU >= |b - b_p|.
+    dg/ds = h g Omega/2,        dd/ds = h (U + d x Omega).
 
-Proof. Delta = G - G_p obeys Delta' = h Delta [Omega_p]x + h G [Omega - Omega_p]x + d_G. The first term
-turns the rows of Delta and changes no length; |G [w]x|_F = sqrt(2) |w|, as G is a rotation. For the path,
-G U - G_p U_p = G (U - U_p) + (G - G_p) U_p.
+Let g_p and d_p be their polynomials. All bounds hold for every s in [0, 1].
+
+    dg = (|d_g| + dW)/2 >= |g - g_p|,                     d_g, d_d the products that the polynomials
+    dd = |d_d| + dU + dW sum_k |d_k| >= |d - d_p|,        leave out,
+    dW >= int |h| |Omega - Omega_p|,                      dU >= int |h| |U - U_p|.
+
+Proof. Delta = g - g_p obeys Delta' = h Delta Omega_p/2 + h g (Omega - Omega_p)/2 + d_g/2. The first term is
+at right angles to Delta and changes no length; |g| = 1. Likewise delta = d - d_p obeys
+delta' = h delta x Omega + h (U - U_p) + h d_p x (Omega - Omega_p) + d_d.
+
+At s, with p = q_p g_p for the quaternion of which |q - q_p| <= rho,
+
+    |q g - p| <= rho (1 + dg) + dg =: e,
+    |R(q g) - R(p)| <= e (2 + e) as an operator, and sqrt(3) of it by Frobenius,
+    |R(q g) d - R(p) d_p| <= dd + e (2 + e) |d_p|.
+
+Proof. q g - q_p g_p = (q - q_p) g_p + q (g - g_p). For unit quaternions r, r v r* - p v p* =
+(r - p) v r* + p v (r - p)*, and |p| <= 1 + e.
 """
 
 from __future__ import annotations
@@ -20,7 +34,7 @@ from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box, Flow
-from taylor_verify.exact.enclosure.series import Series, frame_series, value
+from taylor_verify.exact.enclosure.series import Series, value
 from taylor_verify.exact.enclosure.system import Balls, Bounds, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -28,11 +42,13 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 
 @dataclass(frozen=True)
 class Place:
-    """The frame of the body: ``turn`` (nine entries, exact) within ``turn_error`` of R, by Frobenius.
+    """The frame of the body: R is ``start`` R(q), with q within ``turn_error`` of ``turn``.
 
-    ``centre`` (exact) is within ``centre_error`` of the centre, by length; None where it is not asked.
+    ``start`` are nine balls about the attitude at the start. ``centre`` is within ``centre_error`` of the
+    centre, by length; None where it is not asked. Between steps ``turn`` and ``centre`` are exact.
     """
 
+    start: list[arb]
     turn: list[arb]
     turn_error: arb
     centre: list[arb] | None
@@ -41,44 +57,49 @@ class Place:
     @classmethod
     def of(cls, attitude: Matrix, centre: Vector | None) -> Place:
         """The place at the start, at the ambient precision."""
-        turn = balls([entry for row in attitude for entry in row])
         point = None if centre is None else balls(centre)
         return cls(
-            turn=[b.mid() for b in turn],
-            turn_error=_radius(turn),
+            start=balls([entry for row in attitude for entry in row]),
+            turn=[arb(1), arb(0), arb(0), arb(0)],
+            turn_error=arb(0),
             centre=None if point is None else [b.mid() for b in point],
             centre_error=_radius(point or ()),
         )
 
     def balls(self) -> tuple[list[arb], list[arb] | None]:
         """Attitude (nine entries) and centre, each entry with the whole bound as its radius."""
-        return _about(self.turn, self.turn_error), (
+        with ctx.workprec(BOUND_BITS):
+            error = (arb(3).sqrt() * _turning(self.turn_error)).abs_upper()
+        return _about(self.attitude(), error), (
             None if self.centre is None else _about(self.centre, self.centre_error)
         )
+
+    def attitude(self) -> list[arb]:
+        """``start`` R(turn), nine entries row by row."""
+        return product(self.start, rotation(self.turn))
 
 
 @dataclass(frozen=True)
 class Leg:
-    """The turn and the path of one step: the polynomials, and bounds of what they miss."""
+    """The turn and the way of one step: their polynomials, and bounds of what these miss."""
 
-    turns: list[list[arb]]
-    path: Series
+    frame: Series
     turn_error: arb
     path_error: arb
 
     def place(self, begin: Place, s: arb) -> Place:
         """The place at s; its entries are balls, and its bounds are of their further errors."""
-        turn = product(begin.turn, value(self.turns, s))
+        frame = value(self.frame, s)
+        turn, way = multiplied(begin.turn, frame[:4]), frame[4:]
         with ctx.workprec(BOUND_BITS):
-            turn_error = begin.turn_error + (1 + begin.turn_error) * self.turn_error
+            error = begin.turn_error * (1 + self.turn_error) + self.turn_error
         if begin.centre is None:
-            return Place(turn, turn_error.abs_upper(), None, arb(0))
-        way = value(self.path, s)
-        moved = product(begin.turn, way)
+            return Place(begin.start, turn, error.abs_upper(), None, arb(0))
+        moved = product(begin.start, product(rotation(turn), way))
         centre = [c + m for c, m in zip(begin.centre, moved, strict=True)]
         with ctx.workprec(BOUND_BITS):
-            error = begin.centre_error + begin.turn_error * norm(way) + self.path_error
-        return Place(turn, turn_error.abs_upper(), centre, error.abs_upper())
+            missed = begin.centre_error + self.path_error + _turning(error) * norm(way)
+        return Place(begin.start, turn, error.abs_upper(), centre, missed.abs_upper())
 
     def carried(self, begin: Place) -> Place:
         """The place at the end of the step, its roundings counted."""
@@ -86,6 +107,7 @@ class Leg:
         with ctx.workprec(BOUND_BITS):
             rounded, moved = (_radius(entries) for entries in (end.turn, end.centre or ()))
             return Place(
+                start=begin.start,
                 turn=[t.mid() for t in end.turn],
                 turn_error=(end.turn_error + rounded).abs_upper(),
                 centre=None if end.centre is None else [c.mid() for c in end.centre],
@@ -101,39 +123,35 @@ def leg(
     system: Balls,
     bounds: Bounds,
     state: Series,
+    frame: Series,
     h: arb,
     tube: Tube,
     flow: Flow | None,
     box: Box,
-    with_centre: bool,
 ) -> Leg:
-    """The turn and the path of one step, at the ambient precision."""
-    turns, path = frame_series(system, state, h, with_centre)
+    """The turn and the way of one step, whose polynomials are those of the ``frame``."""
     with ctx.workprec(BOUND_BITS):
         size = h.abs_upper()
         deviations = _deviations(box, flow, tube)
-        lengths = [norm(turn) for turn in turns]
         spins = [norm((system.spin * column(z)).entries()) for z in state]
-        turn_error = _left_out(lengths, spins) * size
-        turn_error += arb(2).sqrt() * size * _accumulated(bounds.spin, deviations)
+        turned = _accumulated(bounds.spin, deviations) * size
+        left_out = _left_out([norm(row[:4]) for row in frame], spins) * size
+        turn_error = ((left_out + turned) / 2).abs_upper()
         path_error = arb(0)
-        if with_centre:
-            assert system.velocity is not None
+        if system.velocity is not None and len(frame[0]) > 4:
             assert bounds.velocity is not None
-            speeds = [norm((system.velocity * column(z)).entries()) for z in state]
-            path_error = _left_out(lengths, speeds) * size
-            path_error += size * turn_error.abs_upper() * sum(speeds, arb(0))
-            path_error += size * _accumulated(bounds.velocity, deviations)
-        return Leg(turns, path, turn_error.abs_upper(), path_error.abs_upper())
+            ways = [norm(row[4:]) for row in frame]
+            path_error = _left_out(ways, spins) * size + turned * sum(ways, arb(0))
+            path_error += norm((system.velocity * column(state[-1])).entries()) * size
+            path_error += _accumulated(bounds.velocity, deviations) * size
+        return Leg(frame, turn_error, path_error.abs_upper())
 
 
 def _deviations(box: Box, flow: Flow | None, tube: Tube) -> tuple[list[arb_mat], arb_mat]:
     """Bounds e_k and e with |z(s) - p(s)| <= sum_k e_k s^k + e, component by component."""
     if flow is None:
         return [], tube.truncation
-    spread = [magnitudes(term * box.axes) * box.radius for term in flow.terms]
-    constant = flow.defect * (magnitudes(box.axes) * box.radius) + tube.truncation
-    return spread, magnitudes(constant)
+    return flow.spread, magnitudes(flow.defect * box.apart + tube.truncation)
 
 
 def _accumulated(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:
@@ -162,8 +180,35 @@ def _radius(entries: Sequence[arb]) -> arb:
     return norm([arb(entry.rad()) for entry in entries])
 
 
+def _turning(error: arb) -> arb:
+    """A bound of |R(r) - R(p)| as an operator, for a unit quaternion r within ``error`` of p."""
+    return error * (2 + error)
+
+
 def _about(entries: Sequence[arb], error: arb) -> list[arb]:
     return [entry + arb(0, error) for entry in entries]
+
+
+def multiplied(p: Sequence[arb], q: Sequence[arb]) -> list[arb]:
+    """The product of two quaternions, scalar first."""
+    a, b, c, d = p
+    s, x, y, z = q
+    return [
+        a * s - b * x - c * y - d * z,
+        a * x + b * s + c * z - d * y,
+        a * y - b * z + c * s + d * x,
+        a * z + b * y - c * x + d * s,
+    ]
+
+
+def rotation(q: Sequence[arb]) -> list[arb]:
+    """The matrix of v -> q v q*, row by row: a rotation times the square of |q|."""
+    s, a, b, c = q
+    return [
+        *(s * s + a * a - b * b - c * c, 2 * (a * b - s * c), 2 * (a * c + s * b)),
+        *(2 * (a * b + s * c), s * s - a * a + b * b - c * c, 2 * (b * c - s * a)),
+        *(2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c),
+    ]
 
 
 def product(matrix: Sequence[arb], other: Sequence[arb]) -> list[arb]:

@@ -1,4 +1,4 @@
-"""Taylor coefficients in balls: of the state, and of the turn and the path that it makes of the frame.
+"""Taylor coefficients in balls: of the state, and of the turn and the way that it makes of the frame.
 
 Row k of a series holds the coefficients of order k times h^k, so that the step is s from 0 to 1.
 """
@@ -6,82 +6,107 @@ Row k of a series holds the coefficients of order k times h^k, so that the step 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.enclosure.system import Balls, column
 
 Series = list[list[arb]]
 
+# What the last coefficient of a step keeps: it is a last bit of the first one.
+_LEAST_BITS: Final = 24
+_ZERO: Final = arb(0)
+
+
+def falling_bits(count: int) -> list[int]:
+    """The precision of each of so many coefficients, from the ambient one down.
+
+    A step is so long that the coefficients fall to the last bit of the first one. What is rounded off
+    below that bit is in their balls, like every rounding.
+    """
+    return [_LEAST_BITS + ctx.prec * (count - k) // count for k in range(count)]
+
 
 def state_series(system: Balls, point: Sequence[arb], h: arb, order: int) -> Series:
-    """The coefficients of the motion from a point, up to ``order``."""
+    """The coefficients of the motion from a point, up to ``order``.
+
+    Order k of q(z, z) is the sum of DF(z_j) z_(k - j) over j < k/2, and half as much for j = k/2. The
+    matrices of all orders that are known stand side by side; they serve until one more is asked for.
+    """
     n = len(point)
-    hessian = system.hessian * h
-    rows = [list(point)]
-    forward, backward = list(point), list(point)
-    for k in range(order):
-        # Each product of two unlike orders counts once in H, and twice in the symmetric Hessian.
-        half = (k + 1) // 2
-        left, right = forward[: half * n], backward[: half * n]
-        if k % 2 == 0:
-            left = forward[: (half + 1) * n]
-            right = right + [z / 2 for z in rows[half]]
-        count = len(left) // n
-        products = arb_mat(count, n, left).transpose() * arb_mat(count, n, right)
-        rates = (hessian * column(products.entries())).entries()
-        fresh = [rate / (k + 1) for rate in rates]
-        if k == 0:
-            fresh = [z + h * c for z, c in zip(fresh, system.constant, strict=True)]
-        rows.append(fresh)
-        forward += fresh
-        backward[:0] = fresh
+    second = system.second * h
+    rows, backward = [list(point)], list(point)
+    beside: list[list[arb]] = [[] for _ in point]
+    known, jacobians = 0, arb_mat(n, 0)
+    with ctx.workprec(ctx.prec):
+        for k, bits in enumerate(falling_bits(order)):
+            ctx.prec = bits
+            if 2 * known <= k:
+                for fresh in rows[known:]:
+                    entries = (second * column(fresh)).entries()
+                    for i, row in enumerate(beside):
+                        row += entries[i * n : i * n + n]
+                known, jacobians = len(rows), arb_mat(beside)
+            others = backward[: (k + 1) // 2 * n]
+            if k % 2 == 0:
+                others += [z / 2 for z in rows[k // 2]]
+            others += [_ZERO] * (known * n - len(others))
+            fresh = [rate / (k + 1) for rate in (jacobians * column(others)).entries()]
+            if k == 0:
+                fresh = [z + h * c for z, c in zip(fresh, system.constant, strict=True)]
+            rows.append(fresh)
+            backward[:0] = fresh
     return rows
 
 
-def frame_series(
-    system: Balls, state: Series, h: arb, with_centre: bool
-) -> tuple[list[list[arb]], Series]:
-    """The turn G, nine entries row by row, and the path b: G' = h G [Omega]x, b' = h G U.
+def frame_series(system: Balls, state: Series, h: arb, with_centre: bool) -> Series:
+    """The turn since the beginning of the step as a quaternion q, and the way d since then in body axes.
 
-    G begins as 1 and b as 0. Without a centre the path has no rows.
+    q' = h q Omega/2 and d' = h (U + d x Omega), with Omega as a quaternion without a scalar part. A row
+    holds four entries of q, which begins as 1, and with a centre three of d, which begins as 0.
     """
     order = len(state) - 1
-    forms = [_linear(system.spin, z) for z in state]
+    spins = _linear(system.spin * h, state)
+    size = 7 if with_centre else 4
     if with_centre:
         assert system.velocity is not None
-        forms = [f + _linear(system.velocity, z) for f, z in zip(forms, state, strict=True)]
-    width = len(forms[0])
-    turns = [[arb(int(i == j)) for i in range(3) for j in range(3)]]
-    path = [[arb(0)] * 3] if with_centre else []
-    forward, backward = list(turns[0]), list(forms[0])
-    for k in range(order):
-        products = arb_mat(k + 1, 9, forward).transpose() * arb_mat(k + 1, width, backward)
-        factor = h / (k + 1)
-        fresh = [
-            (products[3 * r + i, j] - products[3 * r + j, i]) * factor
-            for r in range(3)
-            for i, j in ((1, 2), (2, 0), (0, 1))
-        ]
-        turns.append(fresh)
-        forward += fresh
-        backward[:0] = forms[k + 1]
-        if with_centre:
-            path.append(
-                [
-                    sum((products[3 * r + i, 3 + i] for i in range(3)), arb(0)) * factor
-                    for r in range(3)
-                ]
-            )
-    return turns, path
+        speeds = _linear(system.velocity * h, state)
+    rows = [[arb(1)] + [_ZERO] * (size - 1)]
+    # One column for each order of q and d that is known; the spins stand in reverse.
+    columns = arb_mat(size, order)
+    backward = [entry for spin in spins[-2::-1] for entry in spin] + [_ZERO] * (3 * order)
+    with ctx.workprec(ctx.prec):
+        for k, bits in enumerate(falling_bits(order)):
+            ctx.prec = bits
+            for i, entry in enumerate(rows[k]):
+                columns[i, k] = entry
+            first = 3 * (order - 1 - k)
+            spun = columns * arb_mat(order, 3, backward[first : first + 3 * order])
+            p = spun.entries()
+            fresh = [
+                (-p[3] - p[7] - p[11]) / (2 * k + 2),
+                (p[0] + p[8] - p[10]) / (2 * k + 2),
+                (p[1] + p[9] - p[5]) / (2 * k + 2),
+                (p[2] + p[4] - p[6]) / (2 * k + 2),
+            ]
+            if with_centre:
+                carried = (p[17] - p[19], p[18] - p[14], p[13] - p[15])
+                fresh += [(u + c) / (k + 1) for u, c in zip(speeds[k], carried, strict=True)]
+            rows.append(fresh)
+    return rows
 
 
 def scaled(series: Series, factor: arb) -> Series:
     """The series of a step longer by this factor."""
-    power, rows = arb(1), []
-    for row in series:
-        rows.append([entry * power for entry in row])
-        power *= factor
+    if not series:
+        return []
+    power, rows = factor, [series[0]]
+    with ctx.workprec(ctx.prec):
+        for row, bits in zip(series[1:], falling_bits(len(series) - 1), strict=True):
+            ctx.prec = bits
+            rows.append([entry * power for entry in row])
+            power *= factor
     return rows
 
 
@@ -97,6 +122,5 @@ def value(series: Series, s: arb) -> list[arb]:
     return row
 
 
-def _linear(form: arb_mat, state: Sequence[arb]) -> list[arb]:
-    entries: list[arb] = (form * column(state)).entries()
-    return entries
+def _linear(form: arb_mat, series: Series) -> Series:
+    return [(form * column(row)).entries() for row in series]
