@@ -11,6 +11,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from fnmatch import fnmatch
+from fractions import Fraction
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -27,6 +28,7 @@ from test_traps import fresh, judged
 
 from taylor_verify.claims.ledger import claims, examined
 from taylor_verify.claims.numbers import CITED
+from taylor_verify.exact.widths import SCENES, widths
 from taylor_verify.judge import baseline
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish import claims as claims_page
@@ -42,6 +44,7 @@ from taylor_verify.publish import (
     sights,
     traps,
 )
+from taylor_verify.publish import widths as widths_page
 from taylor_verify.publish.attainable import attainable
 from taylor_verify.publish.bulk import FILES
 from taylor_verify.publish.page import MADE_BY
@@ -319,6 +322,26 @@ def test_published_rows_are_no_departures_from_themselves() -> None:
     assert (held.regressions, held.undecided, held.changes, held.status) == ((), (), (), 0)
     keys = [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in verdicts()]
     assert [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in read] == keys
+
+
+def test_published_widths_are_above_the_true_errors() -> None:
+    """No true error of an enclosure is larger than the width that is proven."""
+    study = widths_page.load(REPORTS)
+    assert {row.scene for row in study.rows} == set(SCENES)
+    assert all(row.error <= row.width for row in study.rows)
+
+
+@pytest.mark.slow
+def test_published_widths_are_remade() -> None:
+    """The first rows of each motion are those that its scene gives today.
+
+    The steps that lead to them do not know yet where the run ends.
+    """
+    study = widths_page.load(REPORTS)
+    for name in SCENES:
+        rows = [row for row in study.rows if row.scene == name][:40]
+        times = [Fraction(row.t) for row in rows]
+        assert widths(load(name), times, study.bits)[:10] == rows[:10]
 
 
 # What is made of the pages.

@@ -132,10 +132,10 @@ def controls(folder: Path) -> Answer:
 
 def enclosure(folder: Path) -> Answer:
     """The width of an enclosure beside its true error, stored and drawn."""
-    from taylor_verify.exact.widths import document
+    from taylor_verify.exact.widths import study
     from taylor_verify.publish import widths
 
-    return files_written(widths.write(folder, document()))
+    return files_written(widths.write(folder, study()))
 
 
 def prices(folder: Path) -> Answer:

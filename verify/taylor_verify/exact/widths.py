@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
 from flint import arb, ctx
 
@@ -16,6 +16,7 @@ from taylor_verify.exact.enclosure.placing import norm
 from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.records.studies.enclosure import EnclosureStudy, WidthRow
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -28,15 +29,15 @@ _SAMPLES: Final = 200
 _MOST_BITS: Final = 10_000
 
 
-def document() -> dict[str, Any]:
-    """Width and error of the published motions: ``{"bits": .., "rows": [{"scene", "t", ..}, ..]}``."""
+def study() -> EnclosureStudy:
+    """Return width and error of the published motions."""
     times = [Fraction(_END * (k + 1), _SAMPLES) for k in range(_SAMPLES)]
-    rows = [row for name in SCENES for row in widths(load(name), times, BITS)]
-    return {"bits": BITS, "rows": rows}
+    rows = (row for name in SCENES for row in widths(load(name), times, BITS))
+    return EnclosureStudy(BITS, tuple(rows))
 
 
-def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[dict[str, Any]]:
-    """A row for each time, all after the start: the state alone, at one precision.
+def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]:
+    """Return a row for each time, all after the start: the state alone, at one precision.
 
     ``width`` and ``error`` are relative to the vector, of the vector for which they are largest. Raises
     exact.enclosure.course.Coarse where so many bits do not lead to the last time.
@@ -49,14 +50,9 @@ def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[dict[str,
         for time, state, truth in zip(times, coarse, sharp, strict=True):
             radii = [arb(z.rad()) for z in state]
             errors = [(z.mid() - true) for z, true in zip(state, truth, strict=True)]
-            rows.append(
-                {
-                    "scene": scene.name,
-                    "t": float(time),
-                    "width": max(_relative(radii, truth, span) for span in spans),
-                    "error": max(_relative(errors, truth, span) for span in spans),
-                }
-            )
+            width = max(_relative(radii, truth, span) for span in spans)
+            error = max(_relative(errors, truth, span) for span in spans)
+            rows.append(WidthRow(scene.name, float(time), width, error))
     return rows
 
 

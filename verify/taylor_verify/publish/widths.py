@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, figures
 from taylor_verify.publish.pictures import widths
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.studies.enclosure import EnclosureStudy
 
 STORED: Final = f"{data.FOLDER}/enclosure.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --enclosure; do not edit"}
 
 
-def write(folder: Path, document: Mapping[str, Any]) -> list[Path]:
+def write(folder: Path, study: EnclosureStudy) -> list[Path]:
     """Store the numbers below ``folder`` and draw them.
 
     Raises ImportError without matplotlib, and OSError.
     """
-    drawn = figures.draw(folder, [widths.picture(document)])
-    return [*replace_files(folder, {STORED: data.laid_out({**_MADE_BY, **document})}), *drawn]
+    drawn = figures.draw(folder, [widths.picture(study)])
+    text = data.laid_out({**_MADE_BY, **complete(study)})
+    return [*replace_files(folder, {STORED: text}), *drawn]
+
+
+def load(folder: Path) -> EnclosureStudy:
+    """Return the numbers stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / STORED, EnclosureStudy)

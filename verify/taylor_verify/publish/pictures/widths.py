@@ -11,6 +11,7 @@ from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
 from taylor_verify.publish.pictures.wording import plain, power_of_ten
+from taylor_verify.records.studies.enclosure import EnclosureStudy
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,20 +30,20 @@ _ERROR: Final[Mapping[str, Any]] = {
 }
 
 
-def series(document: Mapping[str, Any]) -> dict[str, dict[str, Points]]:
-    """By scene: the points of ``width`` and of ``error``; what is zero is left out."""
+def series(study: EnclosureStudy) -> dict[str, dict[str, Points]]:
+    """Return the points of ``width`` and of ``error`` for each scene; a zero is left out."""
     found: dict[str, dict[str, Points]] = {}
-    for row in document["rows"]:
-        lines = found.setdefault(row["scene"], {"width": [], "error": []})
-        for name, points in lines.items():
-            if row[name] > 0:
-                points.append((row["t"], row[name]))
+    for row in study.rows:
+        lines = found.setdefault(row.scene, {"width": [], "error": []})
+        for name, value in (("width", row.width), ("error", row.error)):
+            if value > 0:
+                lines[name].append((row.t, value))
     return found
 
 
-def picture(document: Mapping[str, Any]) -> Picture:
-    """Of what `publish --enclosure` stores. Raises ValueError for a document without rows."""
-    motions = series(document)
+def picture(study: EnclosureStudy) -> Picture:
+    """Return the picture of a study. Raises ValueError for one without rows."""
+    motions = series(study)
     if not all(lines["width"] and lines["error"] for lines in motions.values()) or not motions:
         raise ValueError("expected widths and errors above zero, got none @ enclosure")
     ends = "; ".join(
@@ -51,7 +52,7 @@ def picture(document: Mapping[str, Any]) -> Picture:
         for scene, lines in motions.items()
     )
     alt = (
-        f"Proven width of the enclosure with {document['bits']} bits and true error of its middle against "
+        f"Proven width of the enclosure with {study.bits} bits and true error of its middle against "
         f"time, errors logarithmic. The error is always below the width. {ends}."
     )
     return Picture(STEM, "Width and true error of an enclosure", alt, partial(_figure, motions))
