@@ -26,6 +26,7 @@ from taylor_verify.exact.enclosure.tube import (
     tube,
 )
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.faults import shown
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 
 # The cheapest step is the radius of convergence over e^2: bits ln 2/2 orders. The linear part of the
@@ -48,17 +49,28 @@ _SEVERAL: Final = 16
 # Whoever waits for the answer may listen.
 _progress: Final = logging.getLogger("taylor_verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
+# However quiet the motion was of late.
+_LEAST_SHARE: Final = Fraction(1, 8)
 
 
 class Coarse(ArithmeticError):
     """The motion cannot be followed to its end at this precision; ``bits`` may suffice.
 
-    ``stuck`` says that the bounds of a step did not close, however short it was.
+    ``stuck`` is the first time that was not reached because the bounds of a step did not close, however
+    short it was; None where these closed.
     """
 
-    def __init__(self, bits: int, stuck: bool = False) -> None:
+    def __init__(self, bits: int, stuck: Fraction | None = None) -> None:
         super().__init__()
         self.bits, self.stuck = bits, stuck
+
+
+class Unreached(Unsettled):
+    """More steps or more bits would be needed than there may be; ``time`` is the first one to need them."""
+
+    def __init__(self, because: str, time: Fraction) -> None:
+        super().__init__(because)
+        self.time = time
 
 
 @dataclass(frozen=True)
@@ -91,7 +103,8 @@ class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
-    More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for.
+    More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for. ``begin`` is what a clock
+    shows at the start, for messages alone.
     """
 
     system: System
@@ -102,6 +115,7 @@ class Course:
     bits: int
     most_bits: int
     most_steps: int = MOST_STEPS
+    begin: Fraction = Fraction(0)
 
     @classmethod
     def of(
@@ -131,15 +145,18 @@ class Course:
     def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
         """The state at these times, which go away from zero on one side.
 
-        Raises Coarse where more bits are needed, and Unsettled where more than a million steps, or
-        more than ``most_bits`` bits, would be.
+        Raises Coarse where more bits are needed, and Unreached where more than a million steps, or
+        more than ``most_bits`` bits, would be. What was yielded until then stands.
         """
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
         pending, lengths, length = list(times[::-1]), [], last
-        largest = self._largest(box, place)
+        largest, widths = self._largest(box, place), list[tuple[Fraction, float]]()
         while pending:
-            step = self._step(box, length, last - now)
+            try:
+                step = self._step(box, length, last - now)
+            except StepTooLong:
+                raise Coarse(2 * self.bits, stuck=pending[-1]) from None
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
@@ -154,7 +171,8 @@ class Course:
                 _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
             lengths.append(abs(step.length))
             if pending:
-                self._watch(box, largest, lengths, now, last)
+                widths.append((abs(now), self._relative_width(box, largest)))
+                self._watch(widths, lengths, now, pending)
 
     def _terms(self, step: _Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""
@@ -198,7 +216,7 @@ class Course:
                     there = leg(system, bounds, state, h, found, moving, box, has_centre)
                 return _Step(length, state, found, moving, there)
             state, length = scaled(state, arb(1) / 2), length / 2
-        raise Coarse(2 * self.bits, stuck=True)
+        raise StepTooLong
 
     def _first(self, box: Box, guess: Fraction, left: Fraction) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
@@ -266,44 +284,68 @@ class Course:
 
     # When to stop.
 
+    def _relative_width(self, box: Box, largest: Sequence[float]) -> float:
+        """log2 of the width of the box beside the largest size so far of the block that it is worst for."""
+        apart = box.apart().entries()
+        spans = self.system.spans
+        return max(_size(apart, span) - largest[k] for k, span in enumerate(spans))
+
     def _watch(
         self,
-        box: Box,
-        largest: Sequence[float],
-        lengths: list[Fraction],
+        widths: Sequence[tuple[Fraction, float]],
+        lengths: Sequence[Fraction],
         now: Fraction,
-        last: Fraction,
+        pending: Sequence[Fraction],
     ) -> None:
         """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere.
 
-        Raises Unsettled where there would be too many steps.
+        Raises Unreached where there would be too many steps. ``pending`` has the nearest time last.
         """
-        apart = box.apart().entries()
-        for k, span in enumerate(self.system.spans):
-            if _size(apart, span) > largest[k] + _LOST:
-                raise Coarse(self._needed(now, last))
+        if widths[-1][1] > _LOST:
+            raise Coarse(self._needed(widths, pending))
         if len(lengths) % _SEVERAL == 0:
             usual = median(lengths[-8 * _SEVERAL :])
             if lengths[-1] < usual * power_of_two(_SHRUNK):
-                raise Coarse(self._needed(now, last))
-            steps = len(lengths) + abs(last - now) / usual
-            if steps > self.most_steps:
-                raise Unsettled(
-                    f"the Taylor series would take about {_brief(steps)} steps to reach a time of "
-                    f"{_brief(last)} from the start; expected at most {self.most_steps}: ask for a shorter "
-                    "time"
-                )
+                raise Coarse(self._needed(widths, pending))
+            for time in reversed(pending):
+                steps = len(lengths) + abs(time - now) / usual
+                if steps > self.most_steps:
+                    raise Unreached(
+                        f"the Taylor series would take about {_brief(steps)} steps to reach "
+                        f"t = {self._shown(time)}; expected at most {self.most_steps}",
+                        time,
+                    )
 
-    def _needed(self, lost: Fraction, last: Fraction) -> int:
-        """The bits with which the box would reach the end, if it grows as it did so far."""
-        rate = self.bits / abs(lost)
-        needed = ceil(rate * abs(last))
-        if needed > self.most_bits:
-            raise Unsettled(
-                f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; a "
-                f"time of {_brief(last)} from the start needs more than {self.most_bits} bits"
-            )
+    def _needed(self, widths: Sequence[tuple[Fraction, float]], pending: Sequence[Fraction]) -> int:
+        """The bits with which the box would reach the last time, if it grows as it did of late."""
+        lost = widths[-1][0]
+        rate = self.bits / lost * _share_of_late(widths)
+        for time in reversed(pending):
+            needed = self.bits + ceil(rate * (abs(time) - lost))
+            if needed > self.most_bits:
+                raise Unreached(
+                    f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; "
+                    f"t = {self._shown(time)} needs more than {self.most_bits} bits",
+                    time,
+                )
         return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
+
+    def _shown(self, time: Fraction) -> str:
+        """What the clock shows at that time since the start."""
+        return shown(self.begin + time)
+
+
+def _share_of_late(widths: Sequence[tuple[Fraction, float]]) -> Fraction:
+    """The growth of the width in the second half of the time by its mean, but not above one.
+
+    What grew at first only, or as a power of the time, does not need the bits of what grows for ever.
+    """
+    (first, begin), (last, end) = widths[0], widths[-1]
+    half, middle = next(pair for pair in widths if 2 * pair[0] >= last)
+    if begin == float("-inf") or not end > begin or half == last:
+        return Fraction(1)
+    late = Fraction((end - middle) / (end - begin)) * (last - first) / (last - half)
+    return min(max(late, _LEAST_SHARE), Fraction(1))
 
 
 def _log2(length: Fraction) -> float:
