@@ -146,5 +146,6 @@ def _largest(differences: Iterable[mpf]) -> mpf:
 
 
 def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:
+    """The norm of the difference as Motion.radius measures it: by that of b, absolute where b is zero."""
     size = mp.norm(list(b.flat))
     return mp.norm(list((p - b).flat)) / (size if size > 0 else 1)
