@@ -49,8 +49,6 @@ _SEVERAL: Final = 16
 # Whoever waits for the answer may listen.
 _progress: Final = logging.getLogger("taylor_verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
-# However quiet the motion was of late.
-_LEAST_SHARE: Final = Fraction(1, 8)
 
 
 class Coarse(ArithmeticError):
@@ -151,7 +149,7 @@ class Course:
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
         pending, lengths, length = list(times[::-1]), [], last
-        largest, widths = self._largest(box, place), list[tuple[Fraction, float]]()
+        largest = self._largest(box, place)
         while pending:
             try:
                 step = self._step(box, length, last - now)
@@ -171,8 +169,7 @@ class Course:
                 _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
             lengths.append(abs(step.length))
             if pending:
-                widths.append((abs(now), self._relative_width(box, largest)))
-                self._watch(widths, lengths, now, pending)
+                self._watch(box, largest, lengths, now, pending)
 
     def _terms(self, step: _Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""
@@ -284,15 +281,10 @@ class Course:
 
     # When to stop.
 
-    def _relative_width(self, box: Box, largest: Sequence[float]) -> float:
-        """log2 of the width of the box beside the largest size so far of the block that it is worst for."""
-        apart = box.apart().entries()
-        spans = self.system.spans
-        return max(_size(apart, span) - largest[k] for k, span in enumerate(spans))
-
     def _watch(
         self,
-        widths: Sequence[tuple[Fraction, float]],
+        box: Box,
+        largest: Sequence[float],
         lengths: Sequence[Fraction],
         now: Fraction,
         pending: Sequence[Fraction],
@@ -301,27 +293,29 @@ class Course:
 
         Raises Unreached where there would be too many steps. ``pending`` has the nearest time last.
         """
-        if widths[-1][1] > _LOST:
-            raise Coarse(self._needed(widths, pending))
+        apart = box.apart().entries()
+        for k, span in enumerate(self.system.spans):
+            if _size(apart, span) > largest[k] + _LOST:
+                raise Coarse(self._needed(now, pending))
         if len(lengths) % _SEVERAL == 0:
             usual = median(lengths[-8 * _SEVERAL :])
             if lengths[-1] < usual * power_of_two(_SHRUNK):
-                raise Coarse(self._needed(widths, pending))
-            for time in reversed(pending):
+                raise Coarse(self._needed(now, pending))
+            limit = abs(now) + (self.most_steps - len(lengths)) * usual
+            if abs(pending[0]) > limit:
+                time = next(time for time in reversed(pending) if abs(time) > limit)
                 steps = len(lengths) + abs(time - now) / usual
-                if steps > self.most_steps:
-                    raise Unreached(
-                        f"the Taylor series would take about {_brief(steps)} steps to reach "
-                        f"t = {self._shown(time)}; expected at most {self.most_steps}",
-                        time,
-                    )
+                raise Unreached(
+                    f"the Taylor series would take about {_brief(steps)} steps to reach "
+                    f"t = {self._shown(time)}; expected at most {self.most_steps}",
+                    time,
+                )
 
-    def _needed(self, widths: Sequence[tuple[Fraction, float]], pending: Sequence[Fraction]) -> int:
-        """The bits with which the box would reach the last time, if it grows as it did of late."""
-        lost = widths[-1][0]
-        rate = self.bits / lost * _share_of_late(widths)
+    def _needed(self, lost: Fraction, pending: Sequence[Fraction]) -> int:
+        """The bits with which the box would reach the last time, if it grows as it did so far."""
+        rate = self.bits / abs(lost)
         for time in reversed(pending):
-            needed = self.bits + ceil(rate * (abs(time) - lost))
+            needed = ceil(rate * abs(time))
             if needed > self.most_bits:
                 raise Unreached(
                     f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; "
@@ -333,19 +327,6 @@ class Course:
     def _shown(self, time: Fraction) -> str:
         """What the clock shows at that time since the start."""
         return shown(self.begin + time)
-
-
-def _share_of_late(widths: Sequence[tuple[Fraction, float]]) -> Fraction:
-    """The growth of the width in the second half of the time by its mean, but not above one.
-
-    What grew at first only, or as a power of the time, does not need the bits of what grows for ever.
-    """
-    (first, begin), (last, end) = widths[0], widths[-1]
-    half, middle = next(pair for pair in widths if 2 * pair[0] >= last)
-    if begin == float("-inf") or not end > begin or half == last:
-        return Fraction(1)
-    late = Fraction((end - middle) / (end - begin)) * (last - first) / (last - half)
-    return min(max(late, _LEAST_SHARE), Fraction(1))
 
 
 def _log2(length: Fraction) -> float:
