@@ -198,7 +198,7 @@ def encloses(motion: Motion, truth: Any) -> bool:
 
 def measured(found: Enclosure) -> Motion:
     with ctx.workprec(300):
-        return module._motion(found, 1, 300)
+        return module._motion(found, 1)
 
 
 @given(cornered())
@@ -221,8 +221,8 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
     found = {"omega": [_shaped([arb(ball(v), ball(radius)) for v in values], shape)]}
     truth = {"omega": [_shaped([v + radius for v in values], shape)]}
     assert encloses(measured(found), truth)
-    honest = module._width
-    monkeypatch.setattr(module, "_width", lambda balls: honest(balls) / mp.sqrt(10))
+    honest = module.width
+    monkeypatch.setattr(module, "width", lambda balls: honest(balls) / mp.sqrt(10))
     assert not encloses(measured(found), truth)
 
 
@@ -243,17 +243,17 @@ def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
     narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
     with ctx.workprec(200):
         found: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
-        motion = module._motion(found, 2, 200)
+        motion = module._motion(found, 2)
     assert 2**-90 <= motion.radius[0] <= 2**-89
     assert 2**-60 <= motion.radius[1] <= 2**-59
 
 
 def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
     """Zero held exactly has radius zero; a ball about zero has no relative radius at all."""
-    assert module._width([arb(0)] * 3) == 0
-    assert not mp.isfinite(module._width([arb(0), arb(0, 1e-30)]))
-    assert not mp.isfinite(module._width([NOT_A_NUMBER]))
-    assert not mp.isfinite(module._width([arb(1), INFINITE]))
+    assert module.width([arb(0)] * 3) == 0
+    assert not mp.isfinite(module.width([arb(0), arb(0, 1e-30)]))
+    assert not mp.isfinite(module.width([NOT_A_NUMBER]))
+    assert not mp.isfinite(module.width([arb(1), INFINITE]))
 
 
 # Between rationals, balls and mpmath.

@@ -440,8 +440,8 @@ def _one_branch_of_the_start(patch: pytest.MonkeyPatch) -> None:
 
 
 def _half_a_digit_too_narrow(patch: pytest.MonkeyPatch) -> None:
-    right = balls._width
-    patch.setattr(balls, "_width", lambda row: right(row) / mp.sqrt(10))
+    right = balls.width
+    patch.setattr(balls, "width", lambda row: right(row) / mp.sqrt(10))
 
 
 MPMATH, EQUATIONS, INTEGRALS = "agrees with mpmath", "obeys its equations", "keeps its integrals"

@@ -137,31 +137,31 @@ def exact(options: argparse.Namespace) -> Answer:
     from taylor_verify.exact.ellipsoid import formed_to
     from taylor_verify.exact.printed import document
     from taylor_verify.exact.route import solution
-    from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+    from taylor_verify.exact.solution import NoClosedForm
 
     try:
         with working(f"exact {scene.name}"):
             scene = formed_to(scene, options.digits)
-            found = solution(scene, options.route)
-            printed = document(scene, found, times, options.digits)
+            printed = document(scene, solution(scene, options.route), times, options.digits)
     except NoClosedForm as reason:
         because = (
             f"no closed form: {reason}; leave out --route, or use --route taylor @ {scene.name}"
         )
-        return _without_rows(scene, options.digits, options.route, NO_CLOSED_FORM, because)
-    except Unsettled as doubt:
-        because = f"undecided: {doubt} @ {scene.name}"
-        return _without_rows(scene, options.digits, found.route, found.regime, because)
-    return Answer(PASS, printed, partial(exact_text, printed))
+        return _without_rows(scene, options.digits, options.route, because)
+    doubts = [printed["because"]] if "because" in printed else []
+    text = partial(exact_text, printed) if printed["rows"] else _no_text
+    return Answer(UNDECIDED if doubts else PASS, printed, text, doubts)
 
 
-def _without_rows(scene: Scene, digits: int, route: str, regime: str, because: str) -> Answer:
+def _without_rows(scene: Scene, digits: int, route: str, because: str) -> Answer:
     """The answer that there is none, in the shape of one."""
+    from taylor_verify.exact.solution import NO_CLOSED_FORM
+
     found = {
         "scene": scene.name,
         "route": route,
         "digits": digits,
-        "regime": regime,
+        "regime": NO_CLOSED_FORM,
         "rows": [],
         "because": because,
     }

@@ -34,7 +34,8 @@ def exact(
 
     Raises scenes.faults.Refused for a scene that cannot be read, exact.solution.NoClosedForm where the
     route asks for a closed form that is missing, exact.solution.Unsettled where the digits cannot be
-    had, and ValueError for what is no finite time, no number of digits up to ten thousand, no route.
+    had at every time (its ``motion`` has the other rows, and row k is that of ``times[places[k]]``), and
+    ValueError for what is no finite time, no number of digits up to ten thousand, no route.
     """
     from taylor_verify.exact.ellipsoid import formed_to
     from taylor_verify.exact.request import check_digits, exact_times

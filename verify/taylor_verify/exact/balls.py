@@ -30,6 +30,8 @@ _ATTEMPTS: Final = 12
 # an equality that no precision decides.
 _MOST_BITS_PER_BIT: Final = 32
 _LEAST_LIMIT: Final = 8192
+# A width is told to two digits: all that it asks for is that its rounding upwards is small.
+WIDTH_BITS: Final = 64
 
 
 class Undecidable(ArithmeticError):
@@ -60,9 +62,10 @@ class Enclosed(Solution):
     def motion_within(self, attempts: int, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The same, with no more than so many precisions tried."""
         target = ceil(digits * log2(10))
-        bits = target + _FIRST_GUARD_BITS
+        bits, last = target + _FIRST_GUARD_BITS, None
         for _ in range(attempts):
             motion = self._attempt(elapsed, bits)
+            last = last if motion is None else motion
             missing = _missing_bits(motion, target)
             if missing is None:
                 bits = 2 * bits
@@ -72,7 +75,8 @@ class Enclosed(Solution):
                 bits += missing + _FIRST_GUARD_BITS // 2
             if bits > max(_LEAST_LIMIT, _MOST_BITS_PER_BIT * (target + _FIRST_GUARD_BITS)):
                 break
-        raise Unsettled(f"the balls of the exact solution do not shrink to {digits} digits")
+        because = f"the balls of the exact solution do not shrink to {digits} digits"
+        raise Unsettled.beside(because, last, digits)
 
     @final
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
@@ -84,7 +88,7 @@ class Enclosed(Solution):
         try:
             with ctx.workprec(bits):
                 found = self.enclose(elapsed, bits)
-                return _motion(found, len(elapsed), bits)
+                return _motion(found, len(elapsed))
         except (Undecidable, ZeroDivisionError):
             return None
 
@@ -99,28 +103,40 @@ def _missing_bits(motion: Motion | None, target: int) -> int | None:
     return int(mp.mag(widest)) + target if widest else 0
 
 
-def _motion(found: Enclosure, count: int, bits: int) -> Motion:
+def _motion(found: Enclosure, count: int) -> Motion:
     """Midpoints and radii; the radius of a row is that of its widest quantity."""
     quantities, radii = {}, {}
     widest = [mpf(0)] * count
     for name, rows in found.items():
         balls = np.array(rows, dtype=object)
         quantities[name] = np.frompyfunc(midpoint, 1, 1)(balls)
-        widths = [_width(list(row.flat)) for row in balls]
+        widths = [width(list(row.flat)) for row in balls]
         radii[name] = np.array(widths, dtype=object)
-        widest = [max_or_nan(w, width) for w, width in zip(widest, widths, strict=True)]
+        widest = [max_or_nan(w, row) for w, row in zip(widest, widths, strict=True)]
     return Motion(quantities, np.array(widest, dtype=object), radii)
 
 
-def _width(balls: Sequence[arb]) -> mpf:
-    """An upper bound of the error of the vector relative to its norm; absolute where that is zero."""
-    size = _square(balls)
-    if not size.is_finite():
-        return mp.inf
-    error = _square([b.rad() for b in balls])
-    if size.is_zero():
-        return upper(error.sqrt())
-    return upper((error / size.nonnegative_part()).sqrt())
+def width(balls: Sequence[arb]) -> mpf:
+    """The radius of a vector or matrix, as Motion.radius means it, when its midpoints are the answer.
+
+    The norm of the radii by the least norm that the balls allow, rounded upwards: so the bound is
+    relative to the true vector, wherever in the balls that is. Zero where every entry is exact. Infinite
+    where the vector may be zero and is not known exactly: not one digit of it is proven.
+    """
+    with ctx.workprec(WIDTH_BITS):
+        size = _square(balls)
+        if not size.is_finite():
+            return mp.inf
+        error = _square([b.rad() for b in balls])
+        if error.is_zero():
+            return mpf(0)
+        return upper((error / size).sqrt()) if size > 0 else mp.inf
+
+
+def spread(balls: Sequence[arb]) -> mpf:
+    """A bound of the norm of the error of the midpoints, in the unit of the vector or matrix."""
+    with ctx.workprec(WIDTH_BITS):
+        return upper(_square([b.rad() for b in balls]).sqrt())
 
 
 def _square(vector: Sequence[arb]) -> arb:

@@ -12,8 +12,8 @@ from mpmath import mp
 
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NoClosedForm, Solution
-from taylor_verify.scenes.motion import Spin
+from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
+from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
@@ -28,25 +28,33 @@ _LARGEST_RATIONAL = 100_000
 def document(
     scene: Scene, found: Solution, times: Sequence[tuple[str, Fraction]], digits: int
 ) -> dict[str, Any]:
-    """What `exact --json` prints: a row for each time, given as its text and its exact value.
+    """Return what `exact --json` prints: a row for each time, given as its text and its exact value.
 
-    ``radius`` bounds the error of every vector and matrix of the row in the Frobenius norm,
-    relative to its norm (absolute where that is zero). The row at the start is the initial state itself.
+    ``radius`` means what it does in Motion, with the rounding of the printed digits. The row at the start
+    is the initial state itself. Where some times are not reached, ``because`` says why, and ``rows`` has
+    the other ones.
     """
     elapsed = [time - scene.clock.start for _, time in times]
-    motion = found.motion(elapsed, digits + _SPARE_DIGITS)
-    # Half a unit in the last of `digits` significant digits, of every entry.
-    printing = Fraction(1, 2 * 10 ** (digits - 1))
+    because = None
+    motion: Motion | None
+    places: Sequence[int] = range(len(times))
+    try:
+        motion = found.motion(elapsed, digits + _SPARE_DIGITS)
+    except Unsettled as doubt:
+        motion, places, because = doubt.motion, doubt.places, f"undecided: {doubt} @ {scene.name}"
     start = _start(scene)
-    rows = [
-        {"t": text}
-        | {
-            name: _text(values[k] if elapsed[k] else start[name], digits)
+    rows = []
+    for k, place in enumerate(places):
+        assert motion is not None
+        values = {
+            name: values[k] if elapsed[place] else start[name]
             for name, values in motion.quantities.items()
         }
-        | {"radius": decimal_text(exact_value(motion.radius[k]) + printing, 2, ROUND_CEILING)}
-        for k, (text, _) in enumerate(times)
-    ]
+        rows.append(
+            {"t": times[place][0]}
+            | {name: _text(value, digits) for name, value in values.items()}
+            | {"radius": _printed_radius(exact_value(motion.radius[k]), digits)}
+        )
     return {
         "scene": scene.name,
         "route": found.route,
@@ -54,7 +62,16 @@ def document(
         "digits": digits,
         "regime": _regime(scene, found),
         "rows": rows,
-    }
+    } | ({} if because is None else {"because": because})
+
+
+def _printed_radius(radius: Fraction, digits: int) -> str:
+    """The radius with half a unit in the last printed digit of every entry, rounded up to two digits.
+
+    The entries printed are the midpoints, whose norm is at most 1 + radius by that of the vector.
+    """
+    printing = Fraction(1, 2 * 10 ** (digits - 1))
+    return decimal_text(radius + printing * (1 + radius), 2, ROUND_CEILING)
 
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:

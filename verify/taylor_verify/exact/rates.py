@@ -16,7 +16,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.units import units
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import power_of_two
@@ -127,7 +127,7 @@ def _cross_matrices(vectors: Floats) -> Floats:
 
 @lru_cache(maxsize=16)
 def _flow(scene: Scene) -> _Flow:
-    system, scale = posed(scene), units(scene)
+    system, scale = posed_exactly(scene), units(scene)
     n, time = system.size, power_of_two(scale.time)
     # The clock of a manufactured motion is of size one.
     blocks = [*scale.blocks, *[0] * (len(system.blocks) - len(scale.blocks))]
@@ -139,12 +139,12 @@ def _flow(scene: Scene) -> _Flow:
         hessian=np.array(
             [
                 float(c * unit[place // n] * unit[place % n] * time / one) if c else 0.0
-                for row, one in zip(system.hessian, unit, strict=True)
+                for row, one in zip(system.forms.hessian, unit, strict=True)
                 for place, c in enumerate(row)
             ]
         ).reshape(n, n, n),
-        spin=_form(system.spin, unit, time),
-        velocity=_form(system.velocity, unit, time / power_of_two(scale.centre)),
+        spin=_form(system.forms.spin, unit, time),
+        velocity=_form(system.forms.velocity, unit, time / power_of_two(scale.centre)),
     )
 
 

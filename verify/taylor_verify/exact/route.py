@@ -59,12 +59,16 @@ class CheaperSolution(Solution):
             found = self._closed.motion_within(_FEW_PRECISIONS, elapsed, digits)
             self.route = self._closed.route
             return found
+        self.route = self._series.route
+        try:
+            return self._series.motion(elapsed, digits)
+        except Unsettled as doubt:
+            partial = doubt
         with suppress(Unsettled):
-            found = self._series.motion(elapsed, digits)
-            self.route = self._series.route
+            found = self._closed.motion(elapsed, digits)
+            self.route = self._closed.route
             return found
-        self.route = self._closed.route
-        return self._closed.motion(elapsed, digits)
+        raise partial
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """The midpoints of the motion; series lose no digits beside another orbit, so they come first."""

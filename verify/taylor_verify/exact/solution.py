@@ -41,7 +41,26 @@ class NoClosedForm(Exception):
 
 
 class Unsettled(ArithmeticError):
-    """Raising the precision did not make two evaluations agree: there is no truth to compare with."""
+    """The digits cannot be had at every time; the text says why.
+
+    ``motion`` holds the rows that have their digits all the same, and is None where none has. Its row k
+    belongs to time number ``places[k]`` of those that were asked for.
+    """
+
+    def __init__(
+        self, because: str, motion: Motion | None = None, places: Sequence[int] = ()
+    ) -> None:
+        super().__init__(because)
+        self.motion, self.places = motion, tuple(places)
+
+    @classmethod
+    def beside(cls, because: str, motion: Motion | None, digits: int) -> Unsettled:
+        """The doubt with those rows of a motion at all times whose radius is small enough."""
+        if motion is None:
+            return cls(because)
+        # Written so that a NaN is not small.
+        places = [k for k, radius in enumerate(motion.radius) if radius <= mpf(10) ** -digits]
+        return cls(because, motion.at(places), places) if places else cls(because)
 
 
 class Solution(ABC):
@@ -66,7 +85,7 @@ class Solution(ABC):
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The motion at these times since the start, to ``digits`` digits of every vector and matrix.
 
-        Raises Unsettled where that cannot be had.
+        Raises Unsettled where that cannot be had at every time.
         """
 
     @abstractmethod
@@ -104,10 +123,11 @@ class Settled(Solution):
                 if worst <= mpf(10) ** -digits:
                     return Motion(better, radius, radii)
             poorer, below, working = better, working, finer
-        raise Unsettled(
+        because = (
             f"two evaluations of the exact solution at {below} and {working} digits do not agree to "
             f"{digits} digits"
         )
+        raise Unsettled.beside(because, Motion(poorer, radius, radii), digits)
 
 
 def _differences(poorer: Quantities, better: Quantities) -> Quantities:
@@ -126,5 +146,6 @@ def _largest(differences: Iterable[mpf]) -> mpf:
 
 
 def _distance(p: np.ndarray[Any, Any], b: np.ndarray[Any, Any]) -> mpf:
+    """The norm of the difference as Motion.radius measures it: by that of b, absolute where b is zero."""
     size = mp.norm(list(b.flat))
     return mp.norm(list((p - b).flat)) / (size if size > 0 else 1)

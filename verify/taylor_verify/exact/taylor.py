@@ -6,7 +6,7 @@ every operation, the truncation of each series, and what the motion makes of all
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -18,11 +18,10 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.balls import balls, max_or_nan, midpoint, upper
-from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row
-from taylor_verify.exact.enclosure.placing import Place, norm
+from taylor_verify.exact.balls import balls, midpoint, spread, width
+from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
+from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.system import System, moving, posed
-from taylor_verify.exact.enclosure.tube import BOUND_BITS
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
 from taylor_verify.scenes.motion import Impulse, Motion, State
@@ -33,9 +32,24 @@ _MORE_BITS: Final = 16
 _ATTEMPTS: Final = 24
 # Beyond twice the bits of the digits asked for: what a motion may lose.
 _MOST_BITS: Final = 10_000
+# The same for the times before one that is out of reach: seconds of work, not hours.
+_MOST_BITS_BESIDE: Final = 500
 # A vector that may be zero has no relative digits. If it is smaller than this, in bits beyond the digits
 # asked for, beside its own largest size, its error is told absolutely.
 _NEGLIGIBLE_BITS: Final = 200
+# The sizes of vectors that are zero throughout.
+_LEAST_SIZE: Final = -1e9
+
+Times = Mapping[int, Fraction]
+
+
+@dataclass(frozen=True)
+class _Proven:
+    """One row: midpoints and radii of the tracked quantities, and the bits that the widest one lacks."""
+
+    values: Mapping[str, Any]
+    radii: Mapping[str, mpf]
+    lacking: int
 
 
 @dataclass(frozen=True)
@@ -47,8 +61,15 @@ class _Enclosing(Solution):
     route = "taylor"
     regime = NO_CLOSED_FORM
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
-        """A row of balls for each time, at ``bits`` bits, which are the ambient precision already."""
+    def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
+        """A row of balls for the place of each time, at ``bits`` bits, which are the ambient precision.
+
+        What was yielded before Coarse or Unreached was raised stands.
+        """
+        raise NotImplementedError
+
+    def _before(self, times: Times, unreached: Fraction) -> Times:
+        """The times that may be reached although this one is not; all lie on its side of the start."""
         raise NotImplementedError
 
     @final
@@ -56,62 +77,113 @@ class _Enclosing(Solution):
         """The midpoints, and the proven radius of every vector and matrix relative to its norm.
 
         Raises Unsettled where more than a million steps, or ten thousand bits more than the digits
-        take, would be needed.
+        take, would be needed; with the rows of the times that lie before.
         """
         target = ceil(digits * log2(10))
-        was_stuck = False
-        bits, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
-        for _ in range(_ATTEMPTS):
-            if bits > most_bits:
-                break
-            try:
-                with ctx.workprec(bits):
-                    rows = self.rows(elapsed, bits, most_bits)
-                motion, missing = self._measured(rows, target)
-            except Coarse as reason:
-                if reason.stuck and was_stuck:
-                    raise Unsettled("the bounds of no step close, however short it is") from reason
-                bits, was_stuck = reason.bits, reason.stuck
-                continue
-            if missing <= 0:
-                return motion
-            bits += min(missing + _MORE_BITS, bits)
-        raise Unsettled(
-            f"the enclosure of the motion does not shrink to {digits} digits with {most_bits} bits"
-        )
+        first, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
+        proven: dict[int, _Proven] = {}
+        doubts = []
+        for is_later in (True, False):
+            limit, doubt = most_bits, None
+            times: Times = {k: time for k, time in enumerate(elapsed) if (time >= 0) is is_later}
+            while times:
+                try:
+                    self._prove(proven, times, target, first, limit)
+                except Unreached as reason:
+                    # What is said of a nearer time takes the place of what was said of one behind it.
+                    because = (
+                        f"{reason}; ask for it without the times behind it"
+                        if doubt
+                        else str(reason)
+                    )
+                    limit, doubt = min(limit, 2 * target + _MOST_BITS_BESIDE), because
+                    times = self._before(times, reason.time)
+                times = {place: time for place, time in times.items() if place not in proven}
+            if doubt is not None:
+                doubts.append(doubt)
+        places = sorted(proven)
+        motion = self._gathered([proven[place] for place in places])
+        if doubts:
+            raise Unsettled("; ".join(doubts), motion if places else None, places)
+        return motion
 
     @final
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """The midpoints of the motion."""
         return self.motion(elapsed, digits).quantities
 
-    def _measured(self, rows: Sequence[Row], target: int) -> tuple[Motion, int]:
-        """The motion, and how many bits its widest vector lacks."""
-        quantities, radii, missing = {}, {}, 0
-        widest = [mpf(0)] * len(rows)
-        for name, vectors in self._vectors(rows).items():
-            widths = []
-            for vector, largest in vectors:
-                width, lacking = _width(list(np.ravel(vector)), largest, target)
-                widths.append(width)
-                missing = max(missing, lacking)
-            values = np.array([vector for vector, _ in vectors], dtype=object)
-            quantities[name] = np.frompyfunc(midpoint, 1, 1)(values)
-            radii[name] = np.array(widths, dtype=object)
-            widest = [max_or_nan(a, b) for a, b in zip(widest, widths, strict=True)]
-        return Motion(quantities, np.array(widest, dtype=object), radii), missing
+    def _prove(
+        self, proven: dict[int, _Proven], times: Times, target: int, bits: int, most_bits: int
+    ) -> None:
+        """Add the row of every time, with more bits for those that lack some. Raises Unreached."""
+        missing, stuck = dict(times), False
+        for _ in range(_ATTEMPTS):
+            if bits > most_bits:
+                break
+            lacking = 0
+            try:
+                with ctx.workprec(bits):
+                    for place, row in self.rows(missing, bits, most_bits):
+                        measured = self._measured(row, target)
+                        lacking = max(lacking, measured.lacking)
+                        if measured.lacking <= 0:
+                            proven[place] = measured
+            except Coarse as reason:
+                if reason.stuck is not None and stuck:
+                    because = "the bounds of no step close, however short it is"
+                    raise Unreached(because, reason.stuck) from reason
+                more, stuck = reason.bits, reason.stuck is not None
+            else:
+                more = bits + min(lacking + _MORE_BITS, bits)
+            missing = {place: time for place, time in missing.items() if place not in proven}
+            if not missing:
+                return
+            bits = more
+        nearest = min(missing.values(), key=abs)
+        raise Unreached(
+            f"the enclosure does not shrink to a radius of 2^-{target} with {most_bits} bits",
+            nearest,
+        )
 
-    def _vectors(self, rows: Sequence[Row]) -> dict[str, list[tuple[Any, float]]]:
-        """Each tracked quantity at each time as balls, with log2 of its largest size so far."""
-        found: dict[str, list[tuple[Any, float]]] = {}
-        names = ("omega",) if self.scene.model == "euler" else ("linear_impulse", "angular_impulse")
-        for k, name in enumerate(names):
-            found[name] = [(row.state[3 * k : 3 * k + 3], row.largest[k]) for row in rows]
-        if self.scene.track:
-            found["attitude"] = [([row.turn[i : i + 3] for i in (0, 3, 6)], 0.0) for row in rows]
-        if "centre" in self.scene.track:
-            found["centre"] = [(row.centre, row.largest[-1]) for row in rows]
-        return found
+    def _measured(self, row: Row, target: int) -> _Proven:
+        values, radii, lacking = {}, {}, 0
+        for name, (vector, largest) in self._vectors(row).items():
+            balls = np.array(vector, dtype=object)
+            radii[name], missing = _radius(list(balls.flat), largest, target)
+            values[name] = np.frompyfunc(midpoint, 1, 1)(balls)
+            lacking = max(lacking, missing)
+        return _Proven(values, radii, lacking)
+
+    def _vectors(self, row: Row) -> dict[str, tuple[Any, float]]:
+        """Each tracked quantity as balls, with log2 of its largest size so far."""
+        whole = {
+            "attitude": ([row.turn[i : i + 3] for i in range(0, len(row.turn), 3)], 0.0),
+            "centre": (row.centre, row.largest[-1]),
+        }
+        for k, name in enumerate(self._state_names()):
+            whole[name] = row.state[3 * k : 3 * k + 3], row.largest[k]
+        return {name: whole[name] for name in self._names()}
+
+    def _names(self) -> list[str]:
+        """The tracked quantities."""
+        track = self.scene.track
+        return [
+            *self._state_names(),
+            *(["attitude"] if track else []),
+            *(["centre"] if "centre" in track else []),
+        ]
+
+    def _state_names(self) -> tuple[str, ...]:
+        return ("omega",) if self.scene.model == "euler" else ("linear_impulse", "angular_impulse")
+
+    def _gathered(self, rows: Sequence[_Proven]) -> Motion:
+        """The rows as one motion; the radius of a row is that of its widest quantity."""
+        stacked = {
+            n: np.array([row.values[n] for row in rows], dtype=object) for n in self._names()
+        }
+        radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in self._names()}
+        widest = np.array([max(row.radii.values()) for row in rows], dtype=object)
+        return Motion(stacked, widest, radii)
 
 
 @final
@@ -121,16 +193,22 @@ class TaylorSolution(_Enclosing):
 
     most_steps: int = MOST_STEPS
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+    def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         start, place = balls(self._system.start), _place(self.scene, self.scene.initial)
         course = Course.of(self._system, start, place, bits, most_bits)
-        course = replace(course, most_steps=self.most_steps)
-        later = sorted({t for t in elapsed if t > 0})
-        earlier = sorted({t for t in elapsed if t < 0}, reverse=True)
-        rows = {Fraction(0): course.first_row()}
-        for times in filter(None, (later, earlier)):
-            rows.update(course.rows(times))
-        return [rows[t] for t in elapsed]
+        course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
+        places: dict[Fraction, list[int]] = {}
+        for number, time in times.items():
+            places.setdefault(time, []).append(number)
+        later = sorted(time for time in places if time > 0)
+        earlier = sorted((time for time in places if time < 0), reverse=True)
+        yield from ((number, course.first_row()) for number in places.get(Fraction(0), ()))
+        for side in filter(None, (later, earlier)):
+            for time, row in course.rows(side):
+                yield from ((number, row) for number in places[time])
+
+    def _before(self, times: Times, unreached: Fraction) -> Times:
+        return {place: t for place, t in times.items() if abs(t) < abs(unreached)}
 
     @cached_property
     def _system(self) -> System:
@@ -166,17 +244,21 @@ class _Arcs(_Enclosing):
     starts: tuple[State, ...]
     begins: tuple[Fraction, ...]
 
-    def rows(self, elapsed: Sequence[Fraction], bits: int, most_bits: int) -> list[Row]:
+    def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         manufactured = self.scene.body.manufactured
         whole = Course.of(self._system, (), None, bits, most_bits)
-        rows = []
-        for k, (start, span) in enumerate(zip(self.starts, elapsed, strict=True)):
+        for number, span in times.items():
+            start = self.starts[number]
             state = balls(moving(start))
             if manufactured is not None:
-                state += clocks.balls_at(manufactured, self.begins[k])
+                state += clocks.balls_at(manufactured, self.begins[number])
             arc = replace(whole, start=state, place=_place(self.scene, start))
-            rows.append(next(arc.rows([span]))[1] if span else arc.first_row())
-        return rows
+            yield number, next(arc.rows([span]))[1] if span else arc.first_row()
+
+    def _before(self, times: Times, unreached: Fraction) -> Times:
+        """None: each arc is wanted, and each has a start of its own."""
+        del times, unreached
+        return {}
 
     @cached_property
     def _system(self) -> System:
@@ -191,21 +273,17 @@ def _place(scene: Scene, initial: State) -> Place | None:
     return Place.of(rotation_matrix(initial.attitude), centre)
 
 
-def _width(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:
-    """A bound of the error of a vector relative to its norm, and how many bits it lacks.
+def _radius(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:
+    """The width of a vector or matrix, and how many bits it lacks.
 
-    Absolute where the vector is zero, or may be zero and is negligible beside its own ``largest`` size.
+    Its spread, which is absolute, where it may be zero and is negligible beside its own ``largest`` size.
     """
-    with ctx.workprec(BOUND_BITS):
-        error = norm([arb(entry.rad()) for entry in vector])
-        size = sum((entry * entry for entry in vector), arb(0)).nonnegative_part().sqrt().lower()
-        if error.is_zero():
-            return mpf(0), 0
-        if not error.is_finite():
-            return mp.inf, target
-        if size > 0:
-            width = upper(error / size)
-            return width, int(mp.mag(width)) + target
-        width = upper(error)
-        missing = int(mp.mag(width)) + target + _NEGLIGIBLE_BITS - int(max(largest, -1e9))
-        return width, missing
+    relative = width(vector)
+    if mp.isfinite(relative):
+        return relative, int(mp.mag(relative)) + target if relative else 0
+    absolute = spread(vector)
+    if not mp.isfinite(absolute):
+        return mp.inf, target
+    return absolute, int(mp.mag(absolute)) + target + _NEGLIGIBLE_BITS - int(
+        max(largest, _LEAST_SIZE)
+    )

@@ -58,7 +58,8 @@ def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]
 
 def _states(scene: Scene, times: Sequence[Fraction], bits: int) -> list[list[arb]]:
     with ctx.workprec(bits):
-        return [row.state for row in TaylorSolution(scene).rows(times, bits, _MOST_BITS)]
+        rows = dict(TaylorSolution(scene).rows(dict(enumerate(times)), bits, _MOST_BITS))
+        return [rows[k].state for k in range(len(times))]
 
 
 def _relative(deviations: Sequence[arb], truth: Sequence[arb], span: range) -> float:

@@ -68,9 +68,11 @@ class Motion:
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
     ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
-    ``radius`` (n,) bounds the error of every vector and matrix of a row in the Frobenius norm,
-    relative to its norm (absolute where that is zero); zeros where the numbers are held exactly.
-    ``radii`` bounds the error of single quantities likewise, as far as it is known apart.
+    ``radius`` (n,) means one thing on every route: it bounds the error of every vector and matrix of the
+    row in the Frobenius norm, relative to the norm of the true one. It is absolute where a vector is zero
+    or cannot be told from zero, though known to far more digits than were asked for. It is zero where the
+    numbers are held exactly. ``radii`` bounds the error of single quantities likewise, as far as it is
+    known apart.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]

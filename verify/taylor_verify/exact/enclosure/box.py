@@ -89,7 +89,14 @@ def flow(
         sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
     """
     terms, spread = _flow_terms(system, box, state, h)
-    order, size = len(terms) - 1, abs(h).upper()
+    return Flow(terms, spread, flow_defect(bounds, terms, sizes, h, tube))
+
+
+def flow_defect(
+    bounds: Bounds, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
+) -> arb_mat:
+    """A bound of how far V may be from its polynomial: what that leaves out, accumulated in the tube."""
+    order = len(terms) - 1
     beyond = [sum(entries, arb(0)) for entries in zip(*sizes[order:], strict=True)]
     tails = partial_tails([*sizes[:order], beyond])
     magnitude = [magnitudes(term) for term in terms]
@@ -98,8 +105,8 @@ def flow(
     for j in range(1, order + 1):
         everything = everything + magnitude[j]
         left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
-    left = (left + rates_of_change(bounds, tube.width) * everything) * size
-    return Flow(terms, spread, accumulated(tube.growth, magnitudes(left), 1))
+    left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
+    return accumulated(tube.growth, magnitudes(left), 1)
 
 
 def _flow_terms(
@@ -193,21 +200,11 @@ def _frame(
     """
     edges = [[(moved[i, j] / units[i]).mid() for i in free] for j in range(len(units))]
     lengths = [_dot(edge, edge).sqrt() * r for edge, r in zip(edges, radius.entries(), strict=True)]
-    columns: list[list[arb]] = []
-    for j in sorted(range(len(edges)), key=lambda j: -_logarithm(lengths[j])):
-        direction = edges[j]
-        # Twice: one pass leaves what cancels in nearly parallel edges.
-        for _ in range(2):
-            for other in columns:
-                share = _dot(direction, other).mid()
-                direction = [(d - share * o).mid() for d, o in zip(direction, other, strict=True)]
-        length = _dot(direction, direction).sqrt().mid()
-        if length > 0 and len(columns) < len(free):
-            columns.append([(d / length).mid() for d in direction])
+    columns = directions(edges, lengths, len(free))
     count = len(columns)
     turned = arb_mat(count, len(free), [c for direction in columns for c in direction]).transpose()
     try:
-        back = turned.inv() if count == len(free) else None
+        back = inverted(turned) if count == len(free) else None
     except ZeroDivisionError:
         back = None
     if back is None or not all(entry.is_finite() for entry in back.entries()):
@@ -219,6 +216,28 @@ def _frame(
             axes[i, j] = units[i] * turned[row, place]
             inverse[i, j] = back[row, place] / units[j]
     return axes, inverse
+
+
+def directions(edges: Sequence[list[arb]], lengths: Sequence[arb], most: int) -> list[list[arb]]:
+    """Exact vectors, nearly orthogonal and nearly unit, along the edges; the longest one comes first."""
+    columns: list[list[arb]] = []
+    for j in sorted(range(len(edges)), key=lambda j: -_logarithm(lengths[j])):
+        direction = edges[j]
+        # Twice: one pass leaves what cancels in nearly parallel edges.
+        for _ in range(2):
+            for other in columns:
+                share = _dot(direction, other).mid()
+                direction = [(d - share * o).mid() for d, o in zip(direction, other, strict=True)]
+        length = _dot(direction, direction).sqrt().mid()
+        if length > 0 and len(columns) < most:
+            columns.append([(d / length).mid() for d in direction])
+    return columns
+
+
+def inverted(matrix: arb_mat) -> arb_mat:
+    """The inverse in balls. Raises ZeroDivisionError where these do not exclude a singular matrix."""
+    inverse: arb_mat = matrix.inv()
+    return inverse
 
 
 def _dot(a: Sequence[arb], b: Sequence[arb]) -> arb:

@@ -32,6 +32,7 @@ from taylor_verify.exact.enclosure.tube import (
     tube,
 )
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.faults import shown
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 
 # Steps of the radius of convergence over e^2, bits ln 2/2 orders, are the cheapest where the cost of a step
@@ -57,12 +58,21 @@ _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 class Coarse(ArithmeticError):
     """The motion cannot be followed to its end at this precision; ``bits`` may suffice.
 
-    ``stuck`` says that the bounds of a step did not close, however short it was.
+    ``stuck`` is the first time that was not reached because the bounds of a step did not close, however
+    short it was; None where these closed.
     """
 
-    def __init__(self, bits: int, stuck: bool = False) -> None:
+    def __init__(self, bits: int, stuck: Fraction | None = None) -> None:
         super().__init__()
         self.bits, self.stuck = bits, stuck
+
+
+class Unreached(Unsettled):
+    """More steps or more bits would be needed than there may be; ``time`` is the first one to need them."""
+
+    def __init__(self, because: str, time: Fraction) -> None:
+        super().__init__(because)
+        self.time = time
 
 
 @dataclass(frozen=True)
@@ -95,7 +105,8 @@ class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
-    More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for.
+    More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for. ``begin`` is what a clock
+    shows at the start, for messages alone.
     """
 
     system: System
@@ -106,6 +117,7 @@ class Course:
     bits: int
     most_bits: int
     most_steps: int = MOST_STEPS
+    begin: Fraction = Fraction(0)
 
     @classmethod
     def of(
@@ -135,15 +147,18 @@ class Course:
     def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
         """The state at these times, which go away from zero on one side.
 
-        Raises Coarse where more bits are needed, and Unsettled where more than a million steps, or
-        more than ``most_bits`` bits, would be.
+        Raises Coarse where more bits are needed, and Unreached where more than a million steps, or
+        more than ``most_bits`` bits, would be. What was yielded until then stands.
         """
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
         pending, lengths, length = list(times[::-1]), [], last
         largest = self._largest(box, place)
         while pending:
-            step = self._step(box, length, last - now)
+            try:
+                step = self._step(box, length, last - now)
+            except StepTooLong:
+                raise Coarse(2 * self.bits, stuck=pending[-1]) from None
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
@@ -158,7 +173,7 @@ class Course:
                 _progress.info("%.0f %% of the time, with %d bits", done, self.bits)
             lengths.append(abs(step.length))
             if pending:
-                self._watch(box, largest, lengths, now, last)
+                self._watch(box, largest, lengths, now, pending)
 
     def _terms(self, step: _Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""
@@ -203,7 +218,7 @@ class Course:
                 return _Step(length, state, found, moving, there)
             length = length / 2
             state, frame = (scaled(series, arb(1) / 2) for series in (state, frame))
-        raise Coarse(2 * self.bits, stuck=True)
+        raise StepTooLong
 
     def _series(self, box: Box, h: arb) -> tuple[Series, Series]:
         """The coefficients of the state and of the frame, which has none where it is not tracked."""
@@ -276,40 +291,48 @@ class Course:
         self,
         box: Box,
         largest: Sequence[float],
-        lengths: list[Fraction],
+        lengths: Sequence[Fraction],
         now: Fraction,
-        last: Fraction,
+        pending: Sequence[Fraction],
     ) -> None:
         """Raise Coarse where the box is lost: as large as the motion, or steps that end nowhere.
 
-        Raises Unsettled where there would be too many steps.
+        Raises Unreached where there would be too many steps. ``pending`` has the nearest time last.
         """
         apart = box.apart.entries()
         for k, span in enumerate(self.system.spans):
             if _size(apart, span) > largest[k] + _LOST:
-                raise Coarse(self._needed(now, last))
+                raise Coarse(self._needed(now, pending))
         if len(lengths) % _SEVERAL == 0:
             usual = median(lengths[-8 * _SEVERAL :])
             if lengths[-1] < usual * power_of_two(_SHRUNK):
-                raise Coarse(self._needed(now, last))
-            steps = len(lengths) + abs(last - now) / usual
-            if steps > self.most_steps:
-                raise Unsettled(
-                    f"the Taylor series would take about {_brief(steps)} steps to reach a time of "
-                    f"{_brief(last)} from the start; expected at most {self.most_steps}: ask for a shorter "
-                    "time"
+                raise Coarse(self._needed(now, pending))
+            limit = abs(now) + (self.most_steps - len(lengths)) * usual
+            if abs(pending[0]) > limit:
+                time = next(time for time in reversed(pending) if abs(time) > limit)
+                steps = len(lengths) + abs(time - now) / usual
+                raise Unreached(
+                    f"the Taylor series would take about {_brief(steps)} steps to reach "
+                    f"t = {self._shown(time)}; expected at most {self.most_steps}",
+                    time,
                 )
 
-    def _needed(self, lost: Fraction, last: Fraction) -> int:
-        """The bits with which the box would reach the end, if it grows as it did so far."""
+    def _needed(self, lost: Fraction, pending: Sequence[Fraction]) -> int:
+        """The bits with which the box would reach the last time, if it grows as it did so far."""
         rate = self.bits / abs(lost)
-        needed = ceil(rate * abs(last))
-        if needed > self.most_bits:
-            raise Unsettled(
-                f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; a "
-                f"time of {_brief(last)} from the start needs more than {self.most_bits} bits"
-            )
+        for time in reversed(pending):
+            needed = ceil(rate * abs(time))
+            if needed > self.most_bits:
+                raise Unreached(
+                    f"the motion loses about {_brief(rate * _DIGITS_PER_BIT)} digits per unit of time; "
+                    f"t = {self._shown(time)} needs more than {self.most_bits} bits",
+                    time,
+                )
         return min(max(needed, self.bits * 5 // 4), 6 * self.bits)
+
+    def _shown(self, time: Fraction) -> str:
+        """What the clock shows at that time since the start."""
+        return shown(self.begin + time)
 
 
 def _log2(length: Fraction) -> float:

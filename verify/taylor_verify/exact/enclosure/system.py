@@ -1,42 +1,59 @@
-"""The equations of motion as a quadratic system in exact rationals, and the same in balls.
+"""The equations of motion as a quadratic system, and the same in balls.
 
 z' = c + q(z, z), with z = omega, or z = (x, y), and last the clock of a manufactured motion. The body's
-spin Omega = W z and, for a solid in a fluid, the velocity of its origin U = Y z are linear in z.
+spin Omega = W z and, for a solid in a fluid, the velocity of its origin U = Y z are linear in z. All of
+it is exact, but for the coefficients of an ellipsoid, which are irrational: they enter as balls.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact import clocks, equations
-from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.clocks import Polynomial
-from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.exact.balls import balls
+from taylor_verify.exact.enclosure import lamb
+from taylor_verify.scenes.bodies import Body, Ellipsoid, RigidBody
 from taylor_verify.scenes.motion import Spin, State
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector, diagonal
 
 
 @dataclass(frozen=True)
-class System:
-    """z' = constant + rates(z), from ``start``; all of it exact.
+class Forms:
+    """Exact coefficients: ``hessian`` has row i of the second derivatives of rate i by z_a, z_b at a n + b.
 
-    ``blocks`` are the ends of the vectors that z is made of. ``spin`` is W, three rows; ``velocity`` is
-    Y, or no rows for a rigid body. ``start`` is the state at time zero.
+    ``spin`` is W, three rows; ``velocity`` is Y, or no rows for a rigid body.
+    """
+
+    hessian: Matrix
+    spin: Matrix
+    velocity: Matrix
+
+    def minus(self, other: Forms) -> Forms:
+        """The difference, entry by entry."""
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Forms(*(_difference(one, two) for one, two in pairs))
+
+
+@dataclass(frozen=True)
+class System:
+    """z' = constant + q(z, z), from ``start``; all of it exact but for the coefficients of a ``shape``.
+
+    ``blocks`` are the ends of the vectors that z is made of; ``start`` is the state at time zero. The
+    equations are ``forms``, and those in ``shaped`` each times one coefficient of the shape.
     """
 
     constant: Vector
-    rates: tuple[Polynomial, ...]
+    forms: Forms
     blocks: tuple[int, ...]
     start: Vector
-    spin: Matrix
-    velocity: Matrix
+    shape: Ellipsoid | None = None
+    shaped: tuple[Forms, ...] = ()
 
     @property
     def size(self) -> int:
@@ -47,42 +64,49 @@ class System:
         """The places of each block in z."""
         return [range(first, last) for first, last in pairwise((0, *self.blocks))]
 
-    @cached_property
-    def hessian(self) -> tuple[tuple[Fraction, ...], ...]:
-        """Row i: the second derivatives of rate i by z_a and z_b, at place a n + b."""
-        n = self.size
-        rows = [[Fraction(0)] * (n * n) for _ in self.rates]
-        for row, polynomial in zip(rows, self.rates, strict=True):
-            for (a, b), coefficient in polynomial.items():
-                row[a * n + b] += coefficient
-                row[b * n + a] += coefficient
-        return tuple(map(tuple, rows))
-
 
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
-    body, initial = scene.body, scene.initial
+    system, body = posed_exactly(scene), scene.body
+    if isinstance(body, RigidBody) or body.ellipsoid is None:
+        return system
+    clock = system.size - 6
+    without = _forms(lamb.without_coefficients(body), 6, clock)
+    shaped = [_forms(unit, 6, clock).minus(without) for unit in lamb.units(body, body.ellipsoid)]
+    return replace(system, forms=without, shape=body.ellipsoid, shaped=tuple(shaped))
+
+
+def posed_exactly(scene: Scene) -> System:
+    """The same, with the rational coefficients of the scene for an ellipsoid as well."""
+    body, start = scene.body, moving(scene.initial)
     motion = body.manufactured
     clock = () if motion is None else clocks.at(motion, Fraction(0), 0)
-    forms: tuple[Matrix, Matrix]
-    blocks: tuple[int, ...]
-    start = moving(initial)
-    if isinstance(body, RigidBody):
-        forms = diagonal((Fraction(1),) * 3), ()
-        constant, free, blocks = equations.euler_drift(body), equations.euler_rates(body), (3,)
-    else:
-        forms = body.energy_matrix[3:], body.energy_matrix[:3]
-        constant, free, blocks = body.force + body.couple, equations.impulse_rates(body), (3, 6)
-    padding = (Fraction(0),) * len(clock)
-    spin, velocity = (tuple(row + padding for row in rows) for rows in forms)
+    ends = (3,) if isinstance(body, RigidBody) else (3, 6)
+    drift = equations.euler_drift(body) if isinstance(body, RigidBody) else body.force + body.couple
     return System(
-        constant=constant + padding,
-        rates=tuple(equations.driven(free, body, len(start))),
-        blocks=blocks if motion is None else (*blocks, len(start) + len(clock)),
+        constant=drift + (Fraction(0),) * len(clock),
+        forms=_forms(body, len(start), len(clock)),
+        blocks=ends if motion is None else (*ends, len(start) + len(clock)),
         start=start + clock,
-        spin=spin,
-        velocity=velocity,
     )
+
+
+def _forms(body: Body, size: int, clock: int) -> Forms:
+    """The exact coefficients of a body whose state has this size, beside a clock."""
+    matrices: tuple[Matrix, Matrix]
+    if isinstance(body, RigidBody):
+        matrices, free = (diagonal((Fraction(1),) * 3), ()), equations.euler_rates(body)
+    else:
+        matrices = body.energy_matrix[3:], body.energy_matrix[:3]
+        free = equations.impulse_rates(body)
+    n, padding = size + clock, (Fraction(0),) * clock
+    hessian = [[Fraction(0)] * (n * n) for _ in range(n)]
+    for row, polynomial in zip(hessian, equations.driven(free, body, size), strict=True):
+        for (a, b), coefficient in polynomial.items():
+            row[a * n + b] += coefficient
+            row[b * n + a] += coefficient
+    spin, velocity = (tuple(row + padding for row in rows) for rows in matrices)
+    return Forms(tuple(map(tuple, hessian)), spin, velocity)
 
 
 def moving(state: State) -> Vector:
@@ -104,13 +128,13 @@ class Balls:
     def of(cls, system: System) -> Balls:
         """The balls at the ambient precision."""
         n = system.size
-        entries = [ball(c) if c else arb(0) for row in system.hessian for c in row]
+        hessian, spin, velocity = _matrices(system)
         return cls(
             constant=balls(system.constant),
-            hessian=arb_mat(n, n * n, entries),
-            second=arb_mat(n * n, n, entries),
-            spin=_matrix(system.spin),
-            velocity=_matrix(system.velocity) if system.velocity else None,
+            hessian=hessian,
+            second=arb_mat(n * n, n, hessian.entries()),
+            spin=spin,
+            velocity=velocity if system.forms.velocity else None,
         )
 
 
@@ -142,5 +166,30 @@ def column(entries: Sequence[arb]) -> arb_mat:
     return arb_mat(len(entries), 1, list(entries))
 
 
+def _matrices(system: System) -> list[arb_mat]:
+    """Hessian, spin and velocity: exact ones in the smallest balls, and a shape's by its coefficients."""
+    matrices = [_matrix(rows) for rows in vars(system.forms).values()]
+    if system.shape is None:
+        return matrices
+    # Differences of nearly equal coefficients are to be as sharp as these.
+    with ctx.workprec(ctx.prec + lamb.cancelled_bits(system.shape)):
+        for factor, forms in zip(lamb.factors(system.shape), system.shaped, strict=True):
+            parts = map(_matrix, vars(forms).values())
+            matrices = [whole + part * factor for whole, part in zip(matrices, parts, strict=True)]
+    return [_rounded(matrix) for matrix in matrices]
+
+
 def _matrix(rows: Matrix) -> arb_mat:
     return arb_mat([balls(row) for row in rows])
+
+
+def _rounded(matrix: arb_mat) -> arb_mat:
+    """The matrix at the ambient precision."""
+    return arb_mat(matrix.nrows(), matrix.ncols(), [entry + 0 for entry in matrix.entries()])
+
+
+def _difference(one: Matrix, two: Matrix) -> Matrix:
+    return tuple(
+        tuple(a - b for a, b in zip(left, right, strict=True))
+        for left, right in zip(one, two, strict=True)
+    )

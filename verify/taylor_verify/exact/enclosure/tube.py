@@ -61,7 +61,7 @@ def tube(bounds: Bounds, sizes: Series, h: arb, apart: arb_mat) -> Tube:
     defect = truncation(bounds, sizes, h)
     around = column([arb(0)] * len(sizes[0]))
     for _ in range(_TRIES):
-        growth = rates_of_change(bounds, reach + around) * h
+        growth = rates_of_change(bounds, reached(reach, around)) * h
         error = accumulated(growth, defect, 1)
         width = magnitudes(error + accumulated(growth, apart, 0))
         if is_within(width, around):
@@ -69,6 +69,11 @@ def tube(bounds: Bounds, sizes: Series, h: arb, apart: arb_mat) -> Tube:
         # Twice as wide: a component that is zero so far may be reached through the others' width.
         around = width * 2
     raise StepTooLong
+
+
+def reached(polynomial: arb_mat, around: arb_mat) -> arb_mat:
+    """How far from zero a component may be within the tube: on the polynomial, and around it."""
+    return polynomial + around
 
 
 def truncation(bounds: Bounds, sizes: Series, h: arb) -> arb_mat:

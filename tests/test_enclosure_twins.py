@@ -1,0 +1,203 @@
+"""Each ingredient of an enclosure counts: without it a motion that is known leaves its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import product
+from types import SimpleNamespace
+from typing import Any
+from unittest import mock
+
+import pytest
+from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
+from samples import one_instant, vector
+
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.enclosure import box, system, tube
+from taylor_verify.exact.enclosure.box import Box, carried
+from taylor_verify.exact.enclosure.course import Course, _Step
+from taylor_verify.exact.enclosure.system import Forms, System, column
+from taylor_verify.exact.enclosure.tube import Tube
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.tensors import diagonal
+
+ZERO = Fraction(0)
+# z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2.
+SQUARE = System(
+    constant=(ZERO,),
+    forms=Forms(hessian=((Fraction(2),),), spin=((ZERO,),) * 3, velocity=()),
+    blocks=(1,),
+    start=(Fraction(1),),
+)
+STEP, WIDE = Fraction(1, 10), Fraction(1, 2)
+ORDER = 40
+BITS = 80
+
+
+def square(start: Fraction, time: Fraction) -> Fraction:
+    return start / (1 - start * time)
+
+
+def step_of(order: int = ORDER, apart: Fraction = WIDE) -> _Step:
+    """One step of z' = z^2, to order ``order``, from all within ``apart`` of 1."""
+    with ctx.workprec(BITS), mock.patch.object(Course, "order", order):
+        start = [arb(1, ball(apart))]
+        run = Course.of(SQUARE, start, None, BITS, 10_000)
+        return run._step(Box.about(start), STEP, STEP)
+
+
+def polynomial(step: Fraction, s: Fraction, order: int) -> Fraction:
+    """The Taylor polynomial from 1 at the share s of a step."""
+    return sum(((s * step) ** k for k in range(order + 1)), ZERO)
+
+
+def is_in_the_tube(order: int, apart: Fraction) -> bool:
+    """Return True if the motions from 1 and from both ends of the box stay within the tube's bounds."""
+    step = step_of(order, apart)
+    for share, start in product((Fraction(1, 2), Fraction(1)), (-apart, ZERO, apart)):
+        end = square(1 + start, share * step.length)
+        error = abs(end - polynomial(step.length, share, order))
+        bound = step.tube.width if start else step.tube.truncation
+        if not ball(error) <= bound[0, 0]:
+            return False
+    return True
+
+
+def test_the_tail_of_the_polynomial_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the products of high orders the truncation is nothing, and the motion is elsewhere."""
+    assert is_in_the_tube(4, ZERO)
+    zero = column([arb(0)])
+    monkeypatch.setattr(tube, "truncation", lambda *_: zero)
+    assert not is_in_the_tube(4, ZERO)
+
+
+def test_the_width_of_the_tube_counts_in_its_own_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rates of change on the polynomial alone are too small for motions beside it."""
+    assert is_in_the_tube(ORDER, WIDE)
+    monkeypatch.setattr(tube, "reached", lambda polynomial, around: polynomial)
+    assert not is_in_the_tube(ORDER, WIDE)
+
+
+def is_in_the_box(start: Fraction) -> bool:
+    """Return True if the balls of a wide box of starts hold the motion from one of its ends."""
+    with ctx.workprec(BITS):
+        wide = [arb(1, ball(WIDE))]
+        run = Course.of(SQUARE, wide, None, BITS, 10_000)
+        ((_, row),) = run.rows([STEP])
+        return bool(row.state[0].contains(ball(square(start, STEP))))
+
+
+def test_what_the_variational_polynomial_misses_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The derivative at the middle of a box is none for its ends: the motion from one end leaves."""
+    ends = 1 - WIDE, 1 + WIDE
+    assert all(map(is_in_the_box, ends))
+    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    assert not all(map(is_in_the_box, ends))
+
+
+def test_the_derivative_of_the_flow_holds_that_of_every_start(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At both ends of the box and in its middle; without the defect only in the middle."""
+
+    def holds() -> list[bool]:
+        step = step_of()
+        assert step.flow is not None
+        with ctx.workprec(BITS):
+            starts = (1 - WIDE, Fraction(1), 1 + WIDE)
+            true = [ball(1 / (1 - z * step.length) ** 2) for z in starts]
+            return [step.flow.at(arb(1))[0, 0].overlaps(value) for value in true]
+
+    assert holds() == [True, True, True]
+    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    assert holds()[::2] == [False, False]
+
+
+# Frames whose inverse is known badly: nearly parallel axes, which are sound as any others are.
+
+PARALLEL = [
+    [[1, 3, 7], [3, 9 + Fraction(k, 2**46), 21], [7, 21, 49 + Fraction(1, 2**44 + k)]]
+    for k in range(1, 9)
+]
+
+
+def rational(value: arb) -> fmpq:
+    mantissa, exponent = value.mid().man_exp()
+    return fmpq(mantissa) * fmpq(2) ** int(exponent)
+
+
+def is_carried(axes: Sequence[Sequence[Fraction | int]], patch: pytest.MonkeyPatch) -> bool:
+    """Return True if the new box holds every corner of the old one, moved: in exact rationals."""
+    with ctx.workprec(64):
+        columns = [[ball(Fraction(entry)).mid() for entry in row] for row in axes]
+        patch.setattr(box, "directions", lambda *_: columns)
+        moved = arb_mat([[2, 1, 0], [0, 3, 1], [1, 0, 5]])
+        radius = column([arb(1), arb(1) / 8, arb(3) / 4])
+        zero = column([arb(0)] * 3)
+        still: Any = SimpleNamespace(at=lambda s: moved)
+        held = Box([arb(1)] * 3, box.identity(3), radius)
+        around = Tube(zero, column([arb(1)] * 3), arb_mat(3, 3))
+        new = carried(held, [[arb(1)] * 3], around, still, [range(3)])
+    turned = fmpq_mat(3, 3, [rational(entry) for entry in new.axes.entries()])
+    for signs in product((-1, 1), repeat=3):
+        corner = [s * rational(r) for s, r in zip(signs, radius.entries(), strict=True)]
+        image = fmpq_mat(3, 3, [rational(m) for m in moved.entries()]) * fmpq_mat(3, 1, corner)
+        shares = (turned.inv() * image).entries()
+        pairs = zip(shares, new.radius.entries(), strict=True)
+        if any(abs(share) > rational(bound) for share, bound in pairs):
+            return False
+    return True
+
+
+def test_the_width_of_the_inverse_counts_in_the_radius(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Axes that are nearly parallel have an inverse with few digits: its midpoint makes a box too small."""
+    assert all(is_carried(axes, monkeypatch) for axes in PARALLEL)
+    honest = box.inverted
+
+    def midpoints(matrix: arb_mat) -> arb_mat:
+        inverse = honest(matrix)
+        return arb_mat(3, 3, [entry.mid() for entry in inverse.entries()])
+
+    monkeypatch.setattr(box, "inverted", midpoints)
+    assert not all(is_carried(axes, monkeypatch) for axes in PARALLEL)
+
+
+def test_axes_that_cannot_be_inverted_are_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The coordinate axes are always sound: the box is wider, and holds what it held."""
+    assert is_carried([[1, 2, 3], [2, 4, 6], [1, 0, 0]], monkeypatch)
+    assert is_carried([[1, 2, 3]], monkeypatch)
+
+
+# The data.
+
+
+def is_at_its_speed(bits: int, start: Fraction, moment: Fraction) -> bool:
+    """Return True if a body that is pushed about one axis has, at t = 4, the speed start + 4 moment."""
+    pushed = RigidBody(diagonal(vector(1, 2, 3)), (moment, ZERO, ZERO))
+    asked = TaylorSolution(one_instant(pushed, Spin((start, ZERO, ZERO))))
+    with ctx.workprec(bits):
+        ((_, row),) = asked.rows({0: Fraction(4)}, bits, 10_000)
+    with ctx.workprec(2 * bits):
+        return bool(row.state[0].overlaps(ball(start + 4 * moment)))
+
+
+@pytest.mark.parametrize("bits", [40, 80, 200])
+def test_the_rounding_of_the_data_counts(bits: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A third is no binary number: with its nearest one in its place the motion is another one."""
+    third = Fraction(1, 3)
+    assert is_at_its_speed(bits, ZERO, third)
+    monkeypatch.setattr(system, "balls", lambda numbers: [b.mid() for b in balls(numbers)])
+    assert not is_at_its_speed(bits, ZERO, third)
+
+
+@pytest.mark.parametrize("bits", [40, 80, 200])
+def test_the_rounding_of_the_start_counts(bits: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A start of a third is a box, however small."""
+    third = Fraction(1, 3)
+    assert is_at_its_speed(bits, third, ZERO)
+    honest = Box.about
+    monkeypatch.setattr(Box, "about", lambda numbers: honest([b.mid() for b in numbers]))
+    assert not is_at_its_speed(bits, third, ZERO)
