@@ -14,7 +14,7 @@ from operator import mul
 
 from mpmath import libmp
 
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -54,10 +54,10 @@ class Equations:
 
 def equations(scene: Scene) -> Equations:
     """Those of the state and, where it is tracked, of a quaternion and of the way in body axes."""
-    system = posed(scene)
+    system = posed_exactly(scene)
     n, with_centre = system.size, "centre" in scene.track
-    rates: list[Polynomial] = list(system.rates)
-    start, forms = list(system.start), list(system.spin) if scene.track else []
+    rates: list[Polynomial] = [polynomial(row, n) for row in system.forms.hessian]
+    start, forms = list(system.start), list(system.forms.spin) if scene.track else []
     added: dict[int, int] = {}
     if scene.track:
         size = n + (7 if with_centre else 4)
@@ -69,7 +69,7 @@ def equations(scene: Scene) -> Equations:
             rates.append({(q, size + i): half, **turned})
         start += [Fraction(int(i == 0)) for i in range(4)]
         if with_centre:
-            forms += system.velocity
+            forms += system.forms.velocity
             for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
                 rates.append({(d + j, size + k): Fraction(1), (d + k, size + j): Fraction(-1)})
                 added[d + i] = size + 3 + i
@@ -88,6 +88,16 @@ def equations(scene: Scene) -> Equations:
         combined,
         added,
     )
+
+
+def polynomial(hessian: Sequence[Fraction], size: int) -> Polynomial:
+    """The quadratic form with these second derivatives, row after row."""
+    return {
+        (a, b): hessian[a * size + b] / (2 if a == b else 1)
+        for a in range(size)
+        for b in range(a, size)
+        if hessian[a * size + b]
+    }
 
 
 def combination(coefficients: Sequence[Fraction]) -> tuple[list[int], int]:
