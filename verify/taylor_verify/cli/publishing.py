@@ -107,7 +107,7 @@ def controls(folder: Path) -> Answer:
     from taylor_verify.publish import report, traps
 
     finished = _counting(len(DEFECTS) + len(table.TRAPS))
-    seen = sight.document(sight.sights(DEFECTS, finished))
+    seen = sight.study(sight.sights(DEFECTS, finished))
     trapped = table.study(table.TRAPS, finished)
     return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
 
