@@ -14,8 +14,8 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Final
 
-from test_claims_command import CITED, ROWS
-from test_extremes_page import document as extremes_document
+from test_claims_command import STUDY
+from test_extremes_page import study as extremes_study
 from test_hunt import found_of
 from test_reach_page import document as reach_document
 from test_trade_page import NUMBERS_MADE, TIMES_MADE
@@ -81,7 +81,7 @@ def write_portraits(place: Path, scenes: Iterable[str]) -> None:
 def write_controls(place: Path) -> None:
     """Write what each gate sees of some solvers that are broken on purpose."""
     defects = [defect for defect in DEFECTS if defect.name in _BROKEN]
-    report.publish_controls(place, sight.document(sight.sights(defects)))
+    report.publish_controls(place, sight.study(sight.sights(defects)))
 
 
 @cache
@@ -122,7 +122,7 @@ def small() -> Path:
     reach.write(place, reach_document())
     growth.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
     worst.write(place, hunt.study([found_of("euler-a", 1.5)], 60.0, 3))
-    extremes.write(place, extremes_document())
-    claims.write(place, ROWS, CITED)
+    extremes.write(place, extremes_study())
+    claims.write(place, STUDY)
     report.publish(place)
     return place

@@ -299,7 +299,8 @@ def test_a_check_that_comes_to_no_number_is_a_nan() -> None:
     found = measured(check)
     assert math.isnan(found.size)
     assert "do not agree" in found.because
-    assert examine(replace(SOUND, check=check)).row()["residual"]["statement"] is None
+    row = examine(replace(SOUND, check=check)).row()
+    assert row.document()["residual"] == {"statement": None}
 
 
 def test_the_worse_of_two_is_the_one_that_matters() -> None:

@@ -10,14 +10,21 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from test_publish import NAN, PROVENANCE, VERSIONS, passed
+from test_publish import NAN, VERSIONS, passed
 
 from taylor_verify.cli import main
 from taylor_verify.publish import data, extremes
-from taylor_verify.publish.extremes import Expected
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.report import publish, write
+from taylor_verify.records.answers import LeftOut
+from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.extremes import (
+    Expected,
+    ExtremesStudy,
+    ExtremeVerdict,
+    Titled,
+)
 from taylor_verify.records.verdict import Verdict
 
 WHY = "one roundoff grows to the size of the motion"
@@ -27,20 +34,32 @@ DRIFT = passed("extremes/near", "f64", "T", ratio=0.75)
 LOST = passed("extremes/vast", "f64", "impulse", verdict=Status.FAIL, **dict.fromkeys(NAN))
 ALL = (VACUOUS, SOUND, DRIFT, LOST)
 FORESEEN = {
-    ("extremes/long", "f64", "omega"): Expected("vacuous", WHY),
-    ("extremes/near", "f64", "omega"): Expected("pass", ""),
-    ("extremes/near", "f64", "T"): Expected("pass", ""),
-    ("extremes/vast", "f64", "impulse"): Expected("refused", "out of range"),
+    ("extremes/long", "f64", "omega"): Expected(Status.VACUOUS, WHY),
+    ("extremes/near", "f64", "omega"): Expected(Status.PASS, ""),
+    ("extremes/near", "f64", "T"): Expected(Status.PASS, ""),
+    ("extremes/vast", "f64", "impulse"): Expected(Status.REFUSED, "out of range"),
 }
 MISMATCH = "expected refused (out of range), got fail @ extremes/vast f64 impulse"
 
 
-def document(
+KNOWN = {name: version for name, version in VERSIONS.items() if name != "python"}
+MACHINE = Machine(python="3.12.1", processor="A chip", command="taylor-verify run")
+
+
+def study(
     verdicts: tuple[Verdict, ...] = ALL, mismatches: tuple[str, ...] = (MISMATCH,)
-) -> dict[str, Any]:
-    titles = {verdict.scene: f"Title of {verdict.scene}" for verdict in verdicts}
-    left_out = [{"scene": "extremes/endless", "rung": "mp237", "why": "it takes a week"}]
-    return extremes.document(verdicts, FORESEEN, mismatches, titles, left_out)
+) -> ExtremesStudy:
+    scenes = dict.fromkeys(verdict.scene for verdict in verdicts)
+    return ExtremesStudy(
+        versions=KNOWN,
+        machine=MACHINE,
+        scenes=tuple(Titled(scene, f"Title of {scene}") for scene in scenes),
+        left_out=(LeftOut("extremes/endless", "mp237", "it takes a week"),),
+        mismatches=mismatches,
+        verdicts=tuple(
+            ExtremeVerdict.of(v, FORESEEN.get((v.scene, v.rung, v.quantity))) for v in verdicts
+        ),
+    )
 
 
 def lines(text: str, *words: str) -> list[str]:
@@ -51,21 +70,49 @@ def lines(text: str, *words: str) -> list[str]:
 
 @pytest.fixture
 def page(tmp_path: Path) -> str:
-    extremes.write(tmp_path, document())
+    extremes.write(tmp_path, study())
     return (tmp_path / extremes.PAGE).read_text(encoding="utf-8")
 
 
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     """Verdicts without their seconds, expectations, titles and what made them are the same again."""
-    extremes.write(tmp_path, document())
+    extremes.write(tmp_path, study())
     found = extremes.load(tmp_path)
-    assert found.verdicts == tuple(replace(v, seconds=None) for v in ALL)
-    assert found.expected == FORESEEN
-    assert found.mismatches == (MISMATCH,)
+    stored = [
+        replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
+        for v in study().verdicts
+    ]
+    assert found == replace(study(), verdicts=tuple(stored))
+    assert [found.expected(verdict) for verdict in ALL] == list(FORESEEN.values())
+    assert [found.is_met(verdict) for verdict in ALL] == [True, True, True, False]
     assert found.titles["extremes/long"] == "Title of extremes/long"
-    assert found.provenance["processor"] == PROVENANCE["processor"]
-    known = {name: version for name, version in VERSIONS.items() if name != "python"}
-    assert found.provenance["versions"] == known
+
+
+def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
+    """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
+    absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
+    extremes.write(tmp_path, study((absent,), ()))
+    (row,) = data.read_document(tmp_path / extremes.EXTREMES)["verdicts"]
+    assert row["expected"] is None
+    found = extremes.load(tmp_path)
+    assert found.expected(absent) is None
+    assert found.is_met(absent)
+
+
+def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
+    """A row with its reason in a sentence alone tells it on the page, and is written anew with it."""
+    odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
+    extremes.write(tmp_path, study((odd,), ()))
+    file = tmp_path / extremes.EXTREMES
+    document = data.read_document(file)
+    (row,) = document["verdicts"]
+    row["because"] = "the truth is wider than the bound"
+    del row["reason"]
+    file.write_text(json.dumps(document), encoding="utf-8")
+    assert "the truth is wider than the bound" in extremes.pages(tmp_path)[extremes.PAGE]
+    extremes.write(tmp_path, extremes.load(tmp_path))
+    (again,) = data.read_document(file)["verdicts"]
+    assert again["reason"]["remarks"][0]["text"] == row["because"] == again["because"]
 
 
 def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
@@ -98,7 +145,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
 def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
     """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
-    extremes.write(tmp_path, document((lucky,), ("a mismatch",)))
+    extremes.write(tmp_path, study((lucky,), ("a mismatch",)))
     (_, reason) = lines((tmp_path / extremes.PAGE).read_text(encoding="utf-8"), "`long`")
     assert "| pass" in reason
     assert "**vacuous**" in reason
@@ -115,7 +162,7 @@ def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
 
 def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
-    extremes.write(tmp_path, document())
+    extremes.write(tmp_path, study())
     text = (tmp_path / extremes.SHEET).read_text(encoding="utf-8")
     found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
     assert set(found) == {(v.scene, v.quantity) for v in ALL}
@@ -130,7 +177,7 @@ def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
     write(tmp_path, [passed("euler/a", "f64", "omega")], [])
     publish(tmp_path)
     assert not (tmp_path / extremes.PAGE).exists()
-    paths = extremes.write(tmp_path, document())
+    paths = extremes.write(tmp_path, study())
     before = {path: path.read_bytes() for path in paths}
     for path in paths[1:]:
         path.unlink()
@@ -147,7 +194,8 @@ def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
     file = tmp_path / extremes.EXTREMES
     file.parent.mkdir()
     file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected a run of the extremes.*extremes\.json"):
+    fault = r"expected a key solver, got none @ verdicts\[0\] @ .*extremes\.json"
+    with pytest.raises(ValueError, match=fault):
         extremes.pages(tmp_path)
 
 

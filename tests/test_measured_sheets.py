@@ -18,6 +18,8 @@ from test_traps import as_measured
 from taylor_verify.controls.traps import table
 from taylor_verify.controls.traps.table import TRAPS
 from taylor_verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.studies.claims import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 
 
 @cache
@@ -122,21 +124,21 @@ def test_worst_has_a_row_for_every_family() -> None:
 
 def test_claims_have_a_row_for_every_entry() -> None:
     """Statement, verdict and both residuals; text over several lines is on one."""
-    row: dict[str, Any] = {
-        **dict.fromkeys(("correction", "condition", "counterexample", "lost", "open", "void")),
-        "id": "hydromechanics 49 (17)",
-        "verdict": "false as transcribed",
-        "statement": "a,\n b",
-        "residual": {"statement": 0.0, "transcribed": 4.3},
-        "mutations": ["one", "two"],
-        "bound": 1e-35,
-        "because": "it is",
-        "domain": "all",
-        "method": "expansion",
-        "remark": None,
-    }
-    (found,) = read(measured.claims([row]))
-    assert (found["id"], found["statement"]) == (row["id"], "a, b")
+    row = ClaimRow(
+        id="hydromechanics 49 (17)",
+        statement="a,\n b",
+        domain="all",
+        verdict=Verdict.FALSE,
+        recorded=Verdict.FALSE,
+        method="expansion",
+        mutations=("one", "two"),
+        residual=ClaimResiduals(0.0, 4.3),
+        bound=1e-35,
+        because="it is",
+    )
+    (found,) = read(measured.claims(ClaimsStudy(Provenance(), {}, (row,))))
+    assert (found["id"], found["statement"]) == (row.id, "a, b")
+    assert (found["verdict"], found["remark"]) == ("false as transcribed", "")
     assert (found["residual"], found["residual_transcribed"]) == ("0.0", "4.3")
     assert found["mutations"] == "one; two"
 

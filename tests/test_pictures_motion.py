@@ -36,6 +36,8 @@ from taylor_verify.publish.pictures.palette import lightness
 from taylor_verify.publish.pictures.picture import Picture, plotting, save
 from taylor_verify.publish.pictures.solids import norm_of, scale
 from taylor_verify.publish.pictures.view import Ellipsoid, View, pieces
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 FREE = ("euler/generic", "euler/with-attitude", "euler/separatrix", "euler/tennis-racket")
@@ -276,20 +278,17 @@ def test_a_record_of_the_state_alone_has_one_panel() -> None:
 
 def test_shifts_are_those_of_rows_that_have_one() -> None:
     """No number, no shift or a shift that explains nothing: no line. The best explained comes first."""
-    row = {
-        "quantity": "omega",
-        "max": 1e-3,
-        "residual": 1e-4,
-        "time_shift": 0.5,
-        "shift": "constant",
-    }
+    row = Verdict(
+        *("euler/a", "a", "f64", "control", "omega", Status.FAIL, "reached the last sample"),
+        **{"max": 1e-3, "residual": 1e-4, "time_shift": 0.5, "shift": "constant"},
+    )
     rows = [
-        {**row, "solver": "a"},
-        {**row, "solver": "b", "residual": 1e-9},
-        {**row, "solver": "c", "shift": "none"},
-        {**row, "solver": "d", "max": None},
-        {**row, "solver": "e", "residual": nan},
-        {"solver": "f", "quantity": "T", "max": 1.0},
+        row,
+        replace(row, solver="b", residual=1e-9),
+        replace(row, solver="c", shift="none"),
+        replace(row, solver="d", max=None),
+        replace(row, solver="e", residual=nan),
+        replace(row, solver="f", residual=None, time_shift=None, shift=None),
     ]
     assert [one["solver"] for one in shifts.series(rows)] == ["b", "a"]
     with pytest.raises(ValueError, match="expected an error with its shift of time"):

@@ -162,20 +162,21 @@ def test_pages_and_tables_are_made_of_the_published_data(clone: Path) -> None:
 
 def test_the_ledger_is_made_of_the_published_rows() -> None:
     """claims.md and its sheet are those of data/claims.json, entry by entry as the ledger has them."""
-    stored = data.read_document(REPORTS / claims_page.CLAIMS)
-    assert text_of(claims_page.PAGE) == claims_page.page(stored["claims"], stored["cited"])
-    assert text_of(claims_page.SHEET) == measured.claims(stored["claims"])
-    assert stored["cited"] == dict(CITED)
+    stored = claims_page.load(REPORTS)
+    assert text_of(claims_page.PAGE) == claims_page.page(stored)
+    assert text_of(claims_page.SHEET) == measured.claims(stored)
+    assert stored.cited == dict(CITED)
     assert text_of(claims_page.PAGE).startswith(MADE_BY)
-    told = {row["id"]: row["statement"] for row in stored["claims"]}
+    told = {row.id: row.statement for row in stored.claims}
     assert told == {claim.id: claim.statement for claim in claims()}
 
 
 @pytest.mark.slow
 def test_the_published_ledger_can_be_remade() -> None:
     """The whole ledger, run anew, makes the page that is published."""
-    rows = [finding.row() for finding in examined(claims())]
-    assert claims_page.page(rows, CITED) == text_of(claims_page.PAGE)
+    rows = tuple(finding.row() for finding in examined(claims()))
+    stored = replace(claims_page.load(REPORTS), claims=rows)
+    assert claims_page.page(stored) == text_of(claims_page.PAGE)
 
 
 def test_data_are_laid_out_as_the_code_writes_them() -> None:
@@ -196,7 +197,7 @@ def test_every_scene_is_published_as_it_is_now() -> None:
 def test_every_extreme_is_published_as_it_is_now() -> None:
     """Each extreme that is run is there with the digest of its text."""
     published = {v.scene: v.provenance["scene"] for v in extremes.load(REPORTS).verdicts}
-    left_out = {row["scene"] for row in extremes.load(REPORTS).left_out}
+    left_out = {row.scene for row in extremes.load(REPORTS).left_out}
     assert published == {name: load(name).digest for name in published}
     assert set(names(EXTREMES)) - left_out <= set(published)
 

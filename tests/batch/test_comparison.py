@@ -15,7 +15,7 @@ from taylor_verify.batch.comparison import compare_with_baseline, read_baseline
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     compare_with_published,
-    extremes_document,
+    extremes_study,
     read_report,
     remarks,
     shown_verdicts,
@@ -148,9 +148,9 @@ def test_a_junit_file_is_as_red_as_the_result(
 
 def test_the_page_of_the_extremes_has_what_was_run() -> None:
     """Its document has the verdicts, the titles of the scenes and what was expected of each row."""
-    found = extremes_document(taylor_verify.run_many([LONG]))
-    assert [scene["scene"] for scene in found["scenes"]] == [LONG]
-    assert found["mismatches"] == []
-    expected = {row["quantity"]: row["expected"]["verdict"] for row in found["verdicts"]}
-    assert expected["omega"] == "vacuous"
-    assert expected["T"] == "pass"
+    found = extremes_study(taylor_verify.run_many([LONG]))
+    assert [scene.scene for scene in found.scenes] == [LONG]
+    assert found.mismatches == ()
+    expected = {row.quantity: row.expected.verdict for row in found.verdicts if row.expected}
+    assert expected["omega"] is Status.VACUOUS
+    assert expected["T"] is Status.PASS

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from taylor_verify.batch.comparison import Comparison, Earlier
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import Departure
-from taylor_verify.records.json_text import complete
+from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.extremes import (
+    Expected,
+    ExtremesStudy,
+    ExtremeVerdict,
+    Titled,
+)
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -77,20 +83,24 @@ def write_junit(
     replace_files(place.parent, {place.name: text})
 
 
-def extremes_document(results: Judgements) -> dict[str, Any]:
-    """Return the document that the page of the extremes is made from."""
-    from taylor_verify.publish import extremes
+def extremes_study(results: Judgements) -> ExtremesStudy:
+    """Return the document that the page of the extremes is made from.
 
-    agreement = results.agreement
-    return extremes.document(
-        results.verdicts,
-        expected={
-            row: extremes.Expected(each.verdict, each.why)
-            for row, each in agreement.expected.items()
-        },
-        mismatches=[str(mismatch) for mismatch in agreement.mismatches],
-        titles={scene.name: scene.title for scene in results.selection.scenes_run},
-        left_out=[complete(one) for one in results.left_out],
+    Raises ValueError for verdicts of unlike versions.
+    """
+    from taylor_verify.publish import data
+
+    agreement, verdicts = results.agreement, results.verdicts
+    expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}
+    return ExtremesStudy(
+        versions=data.versions(verdicts),
+        machine=Machine(**data.machine(verdicts[0])) if verdicts else Machine(),
+        scenes=tuple(Titled(scene.name, scene.title) for scene in results.selection.scenes_run),
+        left_out=results.left_out,
+        mismatches=tuple(str(mismatch) for mismatch in agreement.mismatches),
+        verdicts=tuple(
+            ExtremeVerdict.of(v, expected.get((v.scene, v.rung, v.quantity))) for v in verdicts
+        ),
     )
 
 

@@ -4,20 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import Any, Final
+from typing import Final
 
-
-class Verdict(StrEnum):
-    """What became of a statement; only the first three count as holding, the third on a condition."""
-
-    HOLDS = "holds"
-    RESTORED = "holds as restored"
-    ONLY_IF = "holds only if"
-    FALSE = "false as transcribed"
-    UNDECIDED = "undecided"
-    VACUOUS = "vacuous"
-
+from taylor_verify.records.studies.claims import ClaimResiduals, ClaimRow
+from taylor_verify.records.studies.claims import Verdict as Verdict
 
 # What is called false must miss its bound by more than any carelessness in the bound could explain.
 _CLEARLY: Final = 1e6
@@ -95,35 +85,30 @@ class Finding:
     def is_as_recorded(self) -> bool:
         return self.verdict is self.claim.verdict
 
-    def row(self) -> dict[str, Any]:
-        """The entry as JSON. A size that is not finite is null, and satisfies nothing."""
-        claim = self.claim
-        residual: dict[str, Any] = {"statement": _number(self.statement.size)}
-        if self.transcribed is not None:
-            residual["transcribed"] = _number(self.transcribed.size)
-        return {
-            "id": claim.id,
-            "statement": claim.statement,
-            "domain": claim.domain,
-            "verdict": self.verdict.value,
-            "recorded": claim.verdict.value,
-            "correction": claim.correction,
-            "condition": claim.condition or None,
-            "lost": claim.lost or None,
-            "open": claim.gap or None,
-            "void": claim.void or None,
-            "counterexample": claim.counterexample or None,
-            "method": claim.method,
-            "mutations": list(claim.mutants),
-            "residual": residual,
-            "bound": _number(self.statement.bound),
-            "because": self.statement.because,
-            "remark": claim.remark or None,
-        }
-
-
-def _number(size: float) -> float | None:
-    return size if abs(size) < float("inf") else None
+    def row(self) -> ClaimRow:
+        """Return the entry of the ledger."""
+        claim, transcribed = self.claim, self.transcribed
+        return ClaimRow(
+            id=claim.id,
+            statement=claim.statement,
+            domain=claim.domain,
+            verdict=self.verdict,
+            recorded=claim.verdict,
+            correction=claim.correction,
+            condition=claim.condition or None,
+            lost=claim.lost or None,
+            open=claim.gap or None,
+            void=claim.void or None,
+            counterexample=claim.counterexample or None,
+            method=claim.method,
+            mutations=tuple(claim.mutants),
+            residual=ClaimResiduals(
+                self.statement.size, None if transcribed is None else transcribed.size
+            ),
+            bound=self.statement.bound,
+            because=self.statement.because,
+            remark=claim.remark or None,
+        )
 
 
 def worse(*residuals: Residual) -> Residual:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from taylor_verify.cli.answer import FAIL, PASS, Answer, WrongCall, files_written
 
 if TYPE_CHECKING:
     from taylor_verify.claims.claim import Claim
+    from taylor_verify.records.studies.claims import ClaimRow
 
 
 def claims(options: argparse.Namespace) -> Answer:
@@ -26,7 +27,8 @@ def claims(options: argparse.Namespace) -> Answer:
     rows = _examined(asked)
     missed = _missed(rows)
     text = partial(claims_text, rows, in_full=bool(options.ids))
-    return Answer(FAIL if missed else PASS, rows, text, missed)
+    document = [row.document() for row in rows]
+    return Answer(FAIL if missed else PASS, document, text, missed)
 
 
 def publish_claims(folder: Path) -> Answer:
@@ -35,16 +37,18 @@ def publish_claims(folder: Path) -> Answer:
     from taylor_verify.claims.numbers import CITED
     from taylor_verify.judge.provenance import command, processor, versions
     from taylor_verify.publish.claims import write
+    from taylor_verify.records.provenance import Provenance
+    from taylor_verify.records.studies.claims import ClaimsStudy
 
     rows = _examined(ledger())
     missed = _missed(rows)
     if missed:
         return Answer(FAIL, {"written": []}, lambda: "", missed)
-    provenance = {"versions": versions(), "processor": processor(), "command": command()}
-    return files_written(write(folder, rows, CITED, provenance))
+    made_by = Provenance(versions(), processor(), command())
+    return files_written(write(folder, ClaimsStudy(made_by, dict(CITED), tuple(rows))))
 
 
-def _examined(asked: Sequence[Claim]) -> list[dict[str, Any]]:
+def _examined(asked: Sequence[Claim]) -> list[ClaimRow]:
     from taylor_verify.claims.ledger import examined
     from taylor_verify.cli.progress import working
 
@@ -52,9 +56,9 @@ def _examined(asked: Sequence[Claim]) -> list[dict[str, Any]]:
         return [finding.row() for finding in examined(asked)]
 
 
-def _missed(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+def _missed(rows: Sequence[ClaimRow]) -> list[str]:
     return [
-        f"expected the verdict {row['recorded']!r}, got {row['verdict']!r} @ {row['id']}"
+        f"expected the verdict {row.recorded.value!r}, got {row.verdict.value!r} @ {row.id}"
         for row in rows
-        if row["verdict"] != row["recorded"]
+        if not row.is_as_recorded
     ]

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from math import isfinite
 
 from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
+from taylor_verify.records.studies.claims import ClaimRow, Verdict
 
 _COLOURS = {
-    "holds": "green",
-    "holds as restored": "green",
-    "holds only if": "yellow",
-    "false as transcribed": "bold red",
+    Verdict.HOLDS: "green",
+    Verdict.RESTORED: "green",
+    Verdict.ONLY_IF: "yellow",
+    Verdict.FALSE: "bold red",
 }
 # What is told of an entry below the table, in this order, with its label.
 _TOLD = (
@@ -35,7 +36,7 @@ _IN_FULL = (
 )
 
 
-def claims_text(rows: Sequence[Mapping[str, Any]], in_full: bool) -> str:
+def claims_text(rows: Sequence[ClaimRow], in_full: bool) -> str:
     """A line for each entry, then what is not plainly true with its reason, then the counts.
 
     Entries that were asked for are told in full.
@@ -47,7 +48,7 @@ def claims_text(rows: Sequence[Mapping[str, Any]], in_full: bool) -> str:
     for heading in ("residual", "bound", "as transcribed"):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(Text(row["id"]), _verdict(row["verdict"]), *_numbers(row))
+        table.add_row(Text(row.id), _verdict(row.verdict), *_numbers(row))
     console.print(table)
     print_line(console)
     print_line(
@@ -56,27 +57,29 @@ def claims_text(rows: Sequence[Mapping[str, Any]], in_full: bool) -> str:
         "residual of the form as transcribed, or without its condition.",
     )
     for row in rows:
-        told = [(key, label) for key, label in (_IN_FULL if in_full else _TOLD) if row[key]]
+        told = [
+            (key, label) for key, label in (_IN_FULL if in_full else _TOLD) if getattr(row, key)
+        ]
         if told:
             print_line(console)
-            print_line(console, Text(row["id"], "bold"), "  ", _verdict(row["verdict"]))
+            print_line(console, Text(row.id, "bold"), "  ", _verdict(row.verdict))
         for key, label in told:
-            print_indented(console, f"  {label}", row[key])
-    verdicts = [row["verdict"] for row in rows]
+            print_indented(console, f"  {label}", getattr(row, key))
+    verdicts = [row.verdict.value for row in rows]
     counts = (f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
     print_line(console, f"\n{', '.join(counts)}")
     return text_of(console)
 
 
-def _verdict(verdict: str) -> Text:
-    return Text(verdict, _COLOURS.get(verdict, "magenta"))
+def _verdict(verdict: Verdict) -> Text:
+    return Text(verdict.value, _COLOURS.get(verdict, "magenta"))
 
 
-def _numbers(row: Mapping[str, Any]) -> tuple[str, str, str]:
-    residual = row["residual"]
-    transcribed = _short(residual["transcribed"]) if "transcribed" in residual else ""
-    return _short(residual["statement"]), _short(row["bound"]), transcribed
+def _numbers(row: ClaimRow) -> tuple[str, str, str]:
+    residual = row.residual
+    transcribed = "" if residual.transcribed is None else _short(residual.transcribed)
+    return _short(residual.statement), _short(row.bound), transcribed
 
 
 def _short(size: float | None) -> str:
-    return "not finite" if size is None else f"{size:.2g}"
+    return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"

@@ -125,7 +125,7 @@ def controls(folder: Path) -> Answer:
     from taylor_verify.publish import report, traps
 
     finished = counting(len(DEFECTS) + len(table.TRAPS))
-    seen = sight.document(sight.sights(DEFECTS, finished))
+    seen = sight.study(sight.sights(DEFECTS, finished))
     trapped = table.study(table.TRAPS, finished)
     return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
 
@@ -165,7 +165,7 @@ def reach(folder: Path) -> Answer:
 
 def extremes(folder: Path) -> Answer:
     """Run the extremes on float64; fail where an answer is not the expected one."""
-    from taylor_verify.batch.report import extremes_document
+    from taylor_verify.batch.report import extremes_study
     from taylor_verify.batch.selection import select
     from taylor_verify.cli.progress import advancing
     from taylor_verify.publish import extremes as pages
@@ -174,10 +174,10 @@ def extremes(folder: Path) -> Answer:
 
     with advancing() as progress:
         results = run_many(select([EXTREMES], [_ON]), progress=progress)
-    document = extremes_document(results)
-    answer = files_written(pages.write(folder, document))
+    study = extremes_study(results)
+    answer = files_written(pages.write(folder, study))
     # An unexpected answer is published too, where it stands out.
-    return answer._replace(status=results.exit_status, messages=document["mismatches"])
+    return answer._replace(status=results.exit_status, messages=study.mismatches)
 
 
 def paper(folder: Path) -> Answer:

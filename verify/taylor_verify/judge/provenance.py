@@ -9,6 +9,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from taylor_verify.records.provenance import Machine
+
 PACKAGES = ("taylor-verify", "heyoka", "numpy", "mpmath", "python-flint")
 
 
@@ -36,6 +38,16 @@ def processor() -> str:
 
 def command() -> str:
     return " ".join(["taylor-verify", *sys.argv[1:]])
+
+
+def packages() -> dict[str, str]:
+    """Return the versions of the packages, without Python's, on which no number depends."""
+    return {package: found for package, found in versions().items() if package != "python"}
+
+
+def machine() -> Machine:
+    """Return this machine: Python's version, the processor's name, and the command line."""
+    return Machine(python=versions()["python"], processor=processor(), command=command())
 
 
 def provenance(scene_digest: str) -> dict[str, Any]:

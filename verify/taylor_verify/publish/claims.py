@@ -6,27 +6,23 @@ made the rows stands beside them, in data/claims.json.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from math import isfinite
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, measured
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import read
+from taylor_verify.records.studies.claims import ClaimRow, ClaimsStudy, Verdict
 
 PAGE: Final = "claims.md"
 SHEET: Final = "tables/claims.csv"
 CLAIMS: Final = f"{data.FOLDER}/claims.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --claims; do not edit"}
-
-Row = Mapping[str, Any]
-
-_FALSE: Final = "false as transcribed"
-_ONLY_IF: Final = "holds only if"
-_RESTORED: Final = "holds as restored"
-_NEITHER: Final = ("undecided", "vacuous")
 
 _INTRODUCTION: Final = (
     "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
@@ -49,8 +45,9 @@ _REMAKE: Final = (
 )
 
 
-def page(rows: Sequence[Row], cited: Mapping[str, str]) -> str:
-    """The whole page."""
+def page(study: ClaimsStudy) -> str:
+    """Return the whole page."""
+    rows = study.claims
     blocks = [
         f"{MADE_BY}\n# What the two texts claim",
         _INTRODUCTION,
@@ -67,100 +64,110 @@ def page(rows: Sequence[Row], cited: Mapping[str, str]) -> str:
         _HOW,
         *_ledger(rows),
         "## Cited, but not on the page",
-        bullets(f"{code(number)}: {prose(what)}" for number, what in cited.items()),
+        bullets(f"{code(number)}: {prose(what)}" for number, what in study.cited.items()),
         "## To remake this",
         _REMAKE,
     ]
     return "\n\n".join(blocks) + "\n"
 
 
-def write(
-    folder: Path, rows: Sequence[Row], cited: Mapping[str, str], provenance: Row | None = None
-) -> list[Path]:
-    """Store the rows, and put page and sheet in place; ``provenance`` is what made them.
+def write(folder: Path, study: ClaimsStudy) -> list[Path]:
+    """Store the ledger below ``folder``, with its page and sheet. Raises OSError."""
+    stored = data.laid_out({**_MADE_BY, **study.document()})
+    return list(replace_files(folder, {CLAIMS: stored, **_pages(study)}))
 
-    Raises OSError for a folder that cannot be written.
+
+def load(folder: Path) -> ClaimsStudy:
+    """Return the ledger that is stored below ``folder``.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
-    stored = {**_MADE_BY, "provenance": dict(provenance or {}), "cited": dict(cited)}
-    texts = {
-        CLAIMS: data.laid_out({**stored, "claims": list(rows)}),
-        PAGE: page(rows, cited),
-        SHEET: measured.claims(rows),
-    }
-    return list(replace_files(folder, texts))
+    return read(folder / CLAIMS, ClaimsStudy)
 
 
-def _of(rows: Sequence[Row], *verdicts: str) -> list[Row]:
-    return [row for row in rows if row["verdict"] in verdicts]
+def pages(folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError and ValueError as `load` does.
+    """
+    return _pages(load(folder)) if (folder / CLAIMS).exists() else {}
 
 
-def _counts(rows: Sequence[Row]) -> str:
-    verdicts = [row["verdict"] for row in rows]
+def _pages(study: ClaimsStudy) -> dict[str, str]:
+    return {PAGE: page(study), SHEET: measured.claims(study)}
+
+
+def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
+    return [row for row in rows if row.verdict in verdicts]
+
+
+def _counts(rows: Sequence[ClaimRow]) -> str:
+    verdicts = [row.verdict.value for row in rows]
     found = list(dict.fromkeys(verdicts))
     columns = [Column(verdict, to_right=True) for verdict in found]
     return table(columns, [[str(verdicts.count(verdict)) for verdict in found]])
 
 
-def _errata(rows: Sequence[Row]) -> str:
+def _errata(rows: Sequence[ClaimRow]) -> str:
     """For each false entry: as transcribed, correct, and where the first form fails."""
     return "\n\n".join(
         _entry(
             row,
             [
-                f"as transcribed: {_math(row['statement'])}",
-                f"correct: {_math(row['correction'])}",
-                f"counterexample: {prose(row['counterexample'])}",
-                f"residual as transcribed {_short(row['residual']['transcribed'])}, corrected "
+                f"as transcribed: {_math(row.statement)}",
+                f"correct: {_math(row.correction)}",
+                f"counterexample: {prose(row.counterexample or '')}",
+                f"residual as transcribed {_short(row.residual.transcribed)}, corrected "
                 f"{_residual(row)}",
-                prose(row["remark"] or ""),
+                prose(row.remark or ""),
             ],
         )
-        for row in _of(rows, _FALSE)
+        for row in _of(rows, Verdict.FALSE)
     )
 
 
-def _on_condition(rows: Sequence[Row]) -> str:
+def _on_condition(rows: Sequence[ClaimRow]) -> str:
     return "\n\n".join(
         _entry(
             row,
             [
-                _math(row["statement"]),
-                f"only if {prose(row['condition'])}",
-                f"correct: {_math(row['correction'])}" if row["correction"] else "",
-                f"else, for one: {prose(row['counterexample'])}" if row["counterexample"] else "",
-                prose(row["remark"] or ""),
+                _math(row.statement),
+                f"only if {prose(row.condition or '')}",
+                f"correct: {_math(row.correction)}" if row.correction else "",
+                f"else, for one: {prose(row.counterexample)}" if row.counterexample else "",
+                prose(row.remark or ""),
             ],
         )
-        for row in _of(rows, _ONLY_IF)
+        for row in _of(rows, Verdict.ONLY_IF)
     )
 
 
-def _neither(rows: Sequence[Row]) -> str:
+def _neither(rows: Sequence[ClaimRow]) -> str:
     return "\n\n".join(
         _entry(
             row,
             [
-                _math(row["statement"]),
-                f"{bold(row['verdict'])}: {prose(row['open'] or row['void'] or '')}",
-                f"what is true: {_math(row['correction'])}" if row["correction"] else "",
-                f"checked: {prose(row['method'])}",
+                _math(row.statement),
+                f"{bold(row.verdict.value)}: {prose(row.open or row.void or '')}",
+                f"what is true: {_math(row.correction)}" if row.correction else "",
+                f"checked: {prose(row.method)}",
             ],
         )
-        for row in _of(rows, *_NEITHER)
+        for row in _of(rows, Verdict.UNDECIDED, Verdict.VACUOUS)
     )
 
 
-def _restored(rows: Sequence[Row]) -> str:
+def _restored(rows: Sequence[ClaimRow]) -> str:
     """What the scan lost, where the equation is true once that is put back."""
-    lost = [[code(row["id"]), prose(row["lost"])] for row in _of(rows, _RESTORED)]
+    lost = [[code(row.id), prose(row.lost or "")] for row in _of(rows, Verdict.RESTORED)]
     return table([Column("equation"), Column("what the scan lost")], lost)
 
 
-def _entry(row: Row, lines: Sequence[str]) -> str:
-    return "\n".join([f"{bold(code(row['id']))}\n", bullets(line for line in lines if line)])
+def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
+    return "\n".join([f"{bold(code(row.id))}\n", bullets(line for line in lines if line)])
 
 
-def _ledger(rows: Sequence[Row]) -> list[str]:
+def _ledger(rows: Sequence[ClaimRow]) -> list[str]:
     """One table of verdicts for each text, and below it the statements with domain and check."""
     blocks: list[str] = []
     columns = [
@@ -170,10 +177,10 @@ def _ledger(rows: Sequence[Row]) -> list[str]:
         own = [row for row in rows if _text_of(row) == text]
         cells = [
             [
-                code(row["id"]),
-                row["verdict"],
+                code(row.id),
+                row.verdict.value,
                 _residual(row),
-                prose("; ".join(row["mutations"])),
+                prose("; ".join(row.mutations)),
             ]
             for row in own
         ]
@@ -185,17 +192,17 @@ def _ledger(rows: Sequence[Row]) -> list[str]:
     return blocks
 
 
-def _text_of(row: Row) -> str:
-    author, number, *_ = row["id"].split()
+def _text_of(row: ClaimRow) -> str:
+    author, number, *_ = row.id.split()
     return "Heinbockel" if author == "heinbockel" else f"Hydromechanics {number}"
 
 
-def _statement(row: Row) -> str:
+def _statement(row: ClaimRow) -> str:
     lines = [
-        _math(row["statement"]),
-        f"domain: {prose(row['domain'])}",
-        f"checked by: {prose(row['method'])}",
-        f"remark: {prose(row['remark'])}" if row["remark"] else "",
+        _math(row.statement),
+        f"domain: {prose(row.domain)}",
+        f"checked by: {prose(row.method)}",
+        f"remark: {prose(row.remark)}" if row.remark else "",
     ]
     return _entry(row, lines)
 
@@ -205,10 +212,10 @@ def _math(latex: str | None) -> str:
     return f"$`{latex}`$" if latex else ""
 
 
-def _residual(row: Row) -> str:
+def _residual(row: ClaimRow) -> str:
     """Zero where the check is exact; else the bound that holds, which no machine's rounding moves."""
-    return "0, exactly" if not row["bound"] else f"within {_short(row['bound'])}"
+    return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
 
 
 def _short(size: float | None) -> str:
-    return "not finite" if size is None else f"{size:.2g}"
+    return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"

@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from taylor_verify.publish import sheets
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
 from taylor_verify.publish.proof import (
@@ -19,9 +18,11 @@ from taylor_verify.publish.proof import (
     times_bound,
     title,
 )
-from taylor_verify.publish.sights import CONTROLS, Sight
+from taylor_verify.publish.sights import CONTROLS
+from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.controls import ControlsStudy, DefectRow, Sight
 
 # Where the short table stands in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish --controls; do not edit -->"
@@ -66,8 +67,9 @@ _HOW: Final = (
 )
 
 
-def page(sights: Sequence[Sight]) -> str:
-    """The whole page: what it proves, a table for each kind of body, every defect in words."""
+def page(study: ControlsStudy) -> str:
+    """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
+    sights = study.sights
     blocks = [
         f"{MADE_BY}\n# What each gate sees",
         _WHAT,
@@ -87,16 +89,10 @@ def page(sights: Sequence[Sight]) -> str:
         "## To remake this",
         f"`taylor-verify publish --controls` runs every defect and its twin, and writes "
         f"[controls.json](../{CONTROLS}); this page, its [CSV](controls.csv) and the table in the "
-        f"README of the project are made from that alone. {_traced(sights)}",
+        f"README of the project are made from that alone. "
+        f"{traced({'versions': study.versions, **plain(study.machine)})}",
     ]
     return "\n\n".join(block for block in blocks if block) + "\n"
-
-
-def _traced(sights: Iterable[Sight]) -> str:
-    """All of them are of one run."""
-    verdicts = [v for sight in sights for v in sight.verdicts.values()]
-    given = verdicts[0].provenance if verdicts else {}
-    return traced({**given, "versions": versions(verdicts)})
 
 
 # The tables.
@@ -180,8 +176,11 @@ def _in_words(sights: Sequence[Sight]) -> str:
         Column("what is wrong"),
         Column("why it shows so"),
     ]
-    rows = [[title(s), code(s.scene), prose(s.what), prose(s.why)] for s in sights]
-    return table(columns, rows)
+    return table(columns, [[title(sight), *_words(sight.defect)] for sight in sights])
+
+
+def _words(defect: DefectRow) -> list[str]:
+    return [code(defect.scene), prose(defect.what), prose(defect.why)]
 
 
 def _twins(sights: Sequence[Sight]) -> str:
@@ -197,9 +196,9 @@ def _twins(sights: Sequence[Sight]) -> str:
         judged = list(sight.sound.values())
         passed = sum(verdict.verdict is Status.PASS for verdict in judged)
         worst = max((v.ratio for v in judged if v.ratio is not None), default=math.inf)
-        row = [code(sight.twin), code(sight.scene)]
-        rows[sight.twin, sight.scene] = [
-            *row,
+        twin, scene = sight.defect.sound_solver, sight.defect.scene
+        rows[twin, scene] = [
+            *(code(twin), code(scene)),
             f"{passed} of {len(judged)}",
             figure(worst / sight.factor),
         ]
@@ -209,9 +208,9 @@ def _twins(sights: Sequence[Sight]) -> str:
 # The short table.
 
 
-def short(sights: Sequence[Sight]) -> str:
-    """Some fifteen rows and four columns, between the marks BEGIN and END."""
-    told = [sight for sight in _blindest_first(sights) if sight.told and sight.is_finished]
+def short(study: ControlsStudy) -> str:
+    """Return some fifteen rows and four columns, between the marks BEGIN and END."""
+    shown = [s for s in _blindest_first(study.sights) if s.defect.told and s.is_finished]
     columns = [
         Column("what was broken"),
         Column("energy", True),
@@ -220,12 +219,12 @@ def short(sights: Sequence[Sight]) -> str:
     ]
     rows = [
         [
-            prose(sight.what),
+            prose(sight.defect.what),
             _summed(sight, lambda name: name == "T"),
             _summed(sight, lambda name: name != "T" and is_conserved(name)),
             _summed(sight, lambda name: name in STATES),
         ]
-        for sight in told
+        for sight in shown
     ]
     legend = (
         "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
@@ -263,9 +262,9 @@ _FIELDS: Final = (
 )
 
 
-def sheet(sights: Iterable[Sight]) -> str:
-    """A row for every defect and gate, with every digit."""
-    return sheets.sheet(_FIELDS, (row for sight in sights for row in _rows_of(sight)))
+def sheet(study: ControlsStudy) -> str:
+    """Return a row for every defect and gate, with every digit."""
+    return sheets.sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
 
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
@@ -273,10 +272,10 @@ def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
         # A sound quaternion is a unit one, and has no row that says so.
         twin = sight.sound.get(name)
         yield verdict.row() | {
-            "defect": sight.name,
+            "defect": sight.defect.name,
             "seen": "yes" if sight.is_seen_by(name) else "no",
             "error_over_bound": sight.over_bound(name),
-            "twin": sight.twin,
+            "twin": sight.defect.sound_solver,
             "twin_verdict": None if twin is None else twin.verdict.value,
             "twin_ratio": None if twin is None else twin.ratio,
         }

@@ -9,8 +9,7 @@ is a mismatch: the page tells the two apart and shows both.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,8 +19,10 @@ from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, t
 from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
 from taylor_verify.publish.replacement import replace_files
 from taylor_verify.publish.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
+from taylor_verify.records.studies.extremes import ExtremesStudy
+from taylor_verify.records.verdict import Verdict, read_study
 
 EXTREMES: Final = f"{data.FOLDER}/extremes.json"
 PAGE: Final = "tables/extremes.md"
@@ -47,67 +48,23 @@ _LEGEND: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Expected:
-    """What was expected of one verdict: a word, and its reason where that is no pass."""
-
-    verdict: str
-    why: str
-
-
-@dataclass(frozen=True)
-class Stored:
-    """One run of all extremes; ``expected`` by scene, rung and quantity."""
-
-    verdicts: tuple[Verdict, ...]
-    expected: Mapping[tuple[str, str, str], Expected]
-    mismatches: tuple[str, ...]
-    titles: Mapping[str, str]
-    left_out: Sequence[Mapping[str, str]]
-    provenance: Mapping[str, Any]
-
-    def is_met(self, verdict: Verdict) -> bool:
-        """What was not held to the file was held to nothing, and is no mismatch."""
-        found = self.expected.get((verdict.scene, verdict.rung, verdict.quantity))
-        return found is None or found.verdict == verdict.verdict.value
-
-
 # The files.
 
 
-def write(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
-    """Store a run below ``folder``: rows of `document`; and make its page. Raises OSError."""
+def write(folder: Path | str, study: ExtremesStudy) -> list[Path]:
+    """Store a run below ``folder``, without its seconds, and make its page. Raises OSError."""
     place = Path(folder)
-    stored = replace_files(place, {EXTREMES: data.laid_out({**_MADE_BY, **document})})
+    rows = {
+        "machine": plain(study.machine),
+        "verdicts": [data.row(verdict) for verdict in study.verdicts],
+    }
+    text = data.laid_out({**_MADE_BY, **complete(study), **rows})
+    stored = replace_files(place, {EXTREMES: text})
     return [*stored, *replace_files(place, pages(place))]
 
 
-def document(
-    verdicts: Sequence[Verdict],
-    expected: Mapping[tuple[str, str, str], Expected],
-    mismatches: Sequence[str],
-    titles: Mapping[str, str],
-    left_out: Sequence[Mapping[str, str]],
-) -> dict[str, Any]:
-    """What is stored of a run: no seconds, which are another number every time."""
-    first = verdicts[0] if verdicts else None
-    rows = []
-    for verdict in verdicts:
-        wanted = expected.get((verdict.scene, verdict.rung, verdict.quantity))
-        told = {"verdict": wanted.verdict, "why": wanted.why} if wanted else None
-        rows.append({**data.row(verdict), "expected": told})
-    return {
-        "versions": data.versions(verdicts),
-        "machine": data.machine(first) if first else {},
-        "scenes": [{"scene": scene, "title": title} for scene, title in titles.items()],
-        "left_out": list(left_out),
-        "mismatches": list(mismatches),
-        "verdicts": rows,
-    }
-
-
 def pages(folder: Path) -> dict[str, str]:
-    """The page and its sheet by their paths below ``folder``; none where nothing is stored.
+    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
 
     Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
@@ -117,33 +74,15 @@ def pages(folder: Path) -> dict[str, str]:
     return {PAGE: page(found), SHEET: sheet(found)}
 
 
-def load(folder: Path) -> Stored:
-    """What is stored below ``folder``. Raises OSError and ValueError as `pages` does."""
-    file = folder / EXTREMES
-    stored = data.read_document(file)
-    with data.expecting("a run of the extremes", file):
-        verdicts, expected = [], {}
-        for row in stored["verdicts"]:
-            own = dict(row)
-            wanted = own.pop("expected")
-            verdict = data.verdict(own, stored["versions"], {"machine": stored["machine"]})
-            verdicts.append(verdict)
-            if wanted is not None:
-                expected[verdict.scene, verdict.rung, verdict.quantity] = Expected(**wanted)
-        return Stored(
-            verdicts=tuple(verdicts),
-            expected=expected,
-            mismatches=tuple(stored["mismatches"]),
-            titles={row["scene"]: row["title"] for row in stored["scenes"]},
-            left_out=stored["left_out"],
-            provenance={"versions": stored["versions"], **stored["machine"]},
-        )
+def load(folder: Path) -> ExtremesStudy:
+    """Return what is stored below ``folder``. Raises OSError and ValueError as `pages` does."""
+    return read_study(folder / EXTREMES, ExtremesStudy)
 
 
 # The page.
 
 
-def page(found: Stored) -> str:
+def page(found: ExtremesStudy) -> str:
     """The counts, a line a scene, and every answer that is no pass with its reason."""
     own = runs(found.verdicts)
     blocks = [
@@ -161,7 +100,7 @@ def page(found: Stored) -> str:
         f"[extremes.json](../{EXTREMES}), this page and its [CSV](extremes.csv), which has every quantity. "
         "`taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it runs them "
         "on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
-        traced(found.provenance),
+        traced({"versions": found.versions, **plain(found.machine)}),
     ]
     return "\n\n".join(block for block in blocks if block) + "\n"
 
@@ -170,7 +109,7 @@ def _models(own: Iterable[Run]) -> list[str]:
     return list(dict.fromkeys(run.model for run in own))
 
 
-def _held(found: Stored) -> str:
+def _held(found: ExtremesStudy) -> str:
     """How many were foreseen, and whatever was not, in full."""
     met = sum(found.is_met(v) for v in found.verdicts if v.verdict is not Status.PASS)
     others = sum(v.verdict is not Status.PASS for v in found.verdicts)
@@ -181,7 +120,7 @@ def _held(found: Stored) -> str:
     return f"{told} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
 
 
-def _section(found: Stored, own: Sequence[Run], model: str) -> str:
+def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
     columns = [
         *(Column("scene"), Column("rung"), Column("what it is")),
         *(Column("state", True), Column("over attainable", True)),
@@ -191,7 +130,7 @@ def _section(found: Stored, own: Sequence[Run], model: str) -> str:
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
 
-def _cells(found: Stored, run: Run) -> list[str]:
+def _cells(found: ExtremesStudy, run: Run) -> list[str]:
     main = run.state[0] if run.state else run.verdicts[0]
     met = sum(found.is_met(verdict) for verdict in run.verdicts)
     told = f"{met} of {len(run.verdicts)}"
@@ -223,7 +162,7 @@ def _worst(run: Run) -> str:
     return f"{ratio(worst)} ({code(worst.quantity)})"
 
 
-def _not_passed(found: Stored) -> str:
+def _not_passed(found: ExtremesStudy) -> str:
     """A line for every answer that is no pass, as the solver's run has it and as it was foreseen."""
     columns = [
         *(Column("scene"), Column("quantity"), Column("verdict"), Column("expected")),
@@ -233,13 +172,13 @@ def _not_passed(found: Stored) -> str:
     return table(columns, rows) if rows else "Every answer is a pass."
 
 
-def _is_told(found: Stored, verdict: Verdict) -> bool:
+def _is_told(found: ExtremesStudy, verdict: Verdict) -> bool:
     return verdict.verdict is not Status.PASS or not found.is_met(verdict)
 
 
-def _told(found: Stored, verdict: Verdict) -> list[str]:
-    wanted = found.expected.get((verdict.scene, verdict.rung, verdict.quantity))
-    expected = wanted.verdict if wanted else NOTHING
+def _told(found: ExtremesStudy, verdict: Verdict) -> list[str]:
+    wanted = found.expected(verdict)
+    expected = wanted.verdict.value if wanted else NOTHING
     return [
         code(verdict.scene.removeprefix(_FOLDER)),
         code(verdict.quantity),
@@ -250,19 +189,19 @@ def _told(found: Stored, verdict: Verdict) -> list[str]:
     ]
 
 
-def _left_out(found: Stored) -> str:
-    told = [f"{code(row['scene'])}, {row['rung']}: {prose(row['why'])}" for row in found.left_out]
+def _left_out(found: ExtremesStudy) -> str:
+    told = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
     return f"Not run:\n\n{bullets(told)}" if told else ""
 
 
-def sheet(found: Stored) -> str:
+def sheet(found: ExtremesStudy) -> str:
     """A row for every quantity of every scene."""
 
     def expected(verdict: Verdict) -> dict[str, Any]:
-        wanted = found.expected.get((verdict.scene, verdict.rung, verdict.quantity))
+        wanted = found.expected(verdict)
         return {
             "title": found.titles.get(verdict.scene),
-            "expected": wanted.verdict if wanted else None,
+            "expected": wanted.verdict.value if wanted else None,
             "why_expected": wanted.why if wanted else None,
             "as_expected": "yes" if found.is_met(verdict) else "no",
         }

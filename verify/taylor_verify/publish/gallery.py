@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data, figures, portraits, reference_files
+from taylor_verify.publish import data, figures, portraits, reference_files, sights
 from taylor_verify.publish.file_names import of_scene
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.pictures import (
@@ -25,8 +25,8 @@ from taylor_verify.publish.pictures import (
 )
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.replacement import replace_files
-from taylor_verify.publish.sights import CONTROLS
 from taylor_verify.records.quantities import COLUMNS, place_of_rung
+from taylor_verify.records.verdict import Verdict
 
 PAGE: Final = f"{figures.FOLDER}/README.md"
 
@@ -101,9 +101,9 @@ class Stored:
         with file.open(encoding="utf-8", newline="") as lines:
             return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
 
-    def controls(self) -> list[Document]:
-        found: list[Document] = data.read_document(self.folder / CONTROLS)["verdicts"]
-        return found
+    def controls(self) -> tuple[Verdict, ...]:
+        """The verdicts on solvers that were broken on purpose, and on their sound twins."""
+        return sights.load(self.folder).verdicts
 
     @staticmethod
     def portrait_name(scene: str) -> str:
@@ -235,7 +235,7 @@ def _shifts(stored: Stored) -> Shown:
         "samples are late."
     )
     drawn = shifts.picture(stored.controls(), "controls")
-    return Shown("Errors split in lateness and the rest", drawn, caption, (CONTROLS,))
+    return Shown("Errors split in lateness and the rest", drawn, caption, (sights.CONTROLS,))
 
 
 Kind = Callable[[Stored, str], Shown]

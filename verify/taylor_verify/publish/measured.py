@@ -6,12 +6,13 @@ every row what it belongs to: a program needs no page to read it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import zip_longest
 from typing import Any, Final
 
 from taylor_verify.publish.sheets import sheet
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.studies.claims import ClaimRow, ClaimsStudy
 from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.records.studies.worst import WorstStudy
 
@@ -145,16 +146,16 @@ def worst(study: WorstStudy) -> str:
     return sheet(_WORST, rows)
 
 
-def claims(rows: Sequence[Row]) -> str:
-    """A row for every entry of the ledger."""
-    return sheet(_CLAIMS, (_claimed(row) for row in rows))
+def claims(study: ClaimsStudy) -> str:
+    """Return a row for every entry of the ledger."""
+    return sheet(_CLAIMS, (_claimed(row) for row in study.claims))
 
 
-def _claimed(row: Row) -> dict[str, Any]:
-    residual = row["residual"]
+def _claimed(row: ClaimRow) -> dict[str, Any]:
+    residual = complete(row.residual)
     return {
-        **row,
+        **complete(row),
         "residual": residual["statement"],
-        "residual_transcribed": residual.get("transcribed"),
-        "mutations": "; ".join(row["mutations"]),
+        "residual_transcribed": residual["transcribed"],
+        "mutations": "; ".join(row.mutations),
     }

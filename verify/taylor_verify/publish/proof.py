@@ -8,8 +8,8 @@ from typing import Final
 
 from taylor_verify.publish.cells import INFINITE, figure
 from taylor_verify.publish.markdown import bold, code, prose
-from taylor_verify.publish.sights import Sight
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.controls import Sight
 
 MAIN: Final = ("omega", "impulse")
 
@@ -134,7 +134,8 @@ def _said(sights: Sequence[Sight]) -> str:
 
 def _all_caught(sights: Sequence[Sight]) -> str:
     lost = [s for s in sights if s.is_finished and not s.seen_by]
-    faulty = {s.twin for s in sights for v in s.sound.values() if v.verdict is not Status.PASS}
+    unsound = [s for s in sights if any(v.verdict is not Status.PASS for v in s.sound.values())]
+    faulty = {sight.defect.sound_solver for sight in unsound}
     if lost:
         return f"{bold('Not seen by any gate')}: {_names(lost)}."
     if faulty:
@@ -157,7 +158,7 @@ def _listed(words: Sequence[str]) -> str:
 
 def title(sight: Sight) -> str:
     """The name in words."""
-    return prose(" ".join(_SPELT.get(word, word) for word in sight.name.split("-")))
+    return prose(" ".join(_SPELT.get(word, word) for word in sight.defect.name.split("-")))
 
 
 def times_bound(sight: Sight, quantity: str) -> str:

@@ -41,9 +41,10 @@ def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
     if place.name != _FOLDER:
         return {}
     blocks: dict[tuple[str, str], Callable[[], str]] = {
-        (controls.BEGIN, controls.END): lambda: controls.short(sights.load(folder)),
         (BEGIN, END): lambda: accuracy(verdicts),
     }
+    if (folder / sights.CONTROLS).exists():
+        blocks[controls.BEGIN, controls.END] = lambda: controls.short(sights.load(folder))
     pages = {name: place.parent / name for name in _PAGES}
     texts = {n: page.read_text(encoding="utf-8") for n, page in pages.items() if page.is_file()}
     return {

@@ -29,6 +29,7 @@ from taylor_verify.publish.front import front
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.replacement import first_line, replace_files
 from taylor_verify.records.record import Record
+from taylor_verify.records.studies.controls import ControlsStudy
 from taylor_verify.records.verdict import Verdict
 
 TABLES = "tables"
@@ -90,13 +91,13 @@ def publish_gates(folder: Path | str) -> list[Path]:
     return list(replace_files(Path(folder), _gates(load(folder))))
 
 
-def publish_controls(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
-    """Store the rows of a controls run in ``folder``/data and make ``folder``/tables/controls of them.
+def publish_controls(folder: Path | str, study: ControlsStudy) -> list[Path]:
+    """Store a controls run in ``folder``/data and make ``folder``/tables/controls of it.
 
     Raises OSError for a folder that cannot be written.
     """
     place = Path(folder)
-    stored = sights.write(place, document)
+    stored = sights.write(place, study)
     return [stored, *replace_files(place, _controls(place))]
 
 
@@ -125,12 +126,12 @@ def _gates(verdicts: Sequence[Verdict]) -> dict[str, str]:
 
 def _controls(place: Path) -> dict[str, str]:
     """The table of what each gate sees, in Markdown and as a sheet; nothing without stored rows."""
-    found = sights.load(place)
-    if not found:
+    if not (place / sights.CONTROLS).exists():
         return {}
+    study = sights.load(place)
     return {
-        f"{TABLES}/controls.md": controls.page(found),
-        f"{TABLES}/controls.csv": controls.sheet(found),
+        f"{TABLES}/controls.md": controls.page(study),
+        f"{TABLES}/controls.csv": controls.sheet(study),
     }
 
 

@@ -59,7 +59,7 @@ def publish(folder: Path, study: TrapsStudy) -> list[Path]:
 
     Raises OSError for a folder that cannot be written.
     """
-    text = data.laid_out({**_MADE_BY, **complete(study)})
+    text = data.laid_out({**_MADE_BY, **complete(study), "machine": plain(study.machine)})
     stored = replace_files(folder, {TRAPS: text})
     return [*stored, *replace_files(folder, pages(folder))]
 

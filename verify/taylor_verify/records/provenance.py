@@ -14,10 +14,10 @@ class Provenance:
     command: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Machine:
     """The machine that a measurement was made on; no number but a time depends on it."""
 
+    python: str = ""
     processor: str = ""
     command: str = ""
-    python: str = ""

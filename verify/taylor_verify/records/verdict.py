@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import Annotated, Any
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
 
 from msgspec import Meta
 
-from taylor_verify.records.json_text import Count, Size, converted, finite, plain
+from taylor_verify.records.json_text import Count, Size, converted, finite, plain, read
 from taylor_verify.records.quantities import COMPLETE, is_conserved
 from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
 from taylor_verify.records.status import Status
+
+Study = TypeVar("Study")
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,8 @@ class Verdict:
         Its ``provenance`` is the verdict's own.
         """
         found: dict[str, Any] = {}
-        for name, value in vars(self).items():
+        # A verdict that was read has its attributes in the order of the file.
+        for name, value in ((each.name, getattr(self, each.name)) for each in fields(self)):
             if name == "reason":
                 found |= {"because": self.because, "reason": plain(value)}
             else:
@@ -134,9 +138,29 @@ def read_row(row: Mapping[str, Any]) -> Verdict:
     A row that says its reason in a sentence alone has that sentence as its remark. Raises ValueError, with
     the place in the row, for a row that is none.
     """
-    if "reason" not in row and row.get("because"):
-        row = {**row, "reason": plain(stated(Cause.STATED, str(row["because"])))}
-    return converted(row, Verdict)
+    return converted(_with_reason(row), Verdict)
+
+
+def read_study(file: Path, kind: type[Study]) -> Study:
+    """Return the document of a type in a file, each of its ``verdicts`` read as `read_row` reads it.
+
+    Raises OSError, and ValueError with the file for one that holds something else.
+    """
+    document = read(file, dict[str, Any])
+    rows = document.get("verdicts")
+    if isinstance(rows, list):
+        stated_rows = [_with_reason(row) if isinstance(row, dict) else row for row in rows]
+        document = {**document, "verdicts": stated_rows}
+    try:
+        return converted(document, kind)
+    except ValueError as error:
+        raise ValueError(f"{error} @ {file}") from error
+
+
+def _with_reason(row: Mapping[str, Any]) -> Mapping[str, Any]:
+    if "reason" in row or not row.get("because"):
+        return row
+    return {**row, "reason": plain(stated(Cause.STATED, str(row["because"])))}
 
 
 def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:

@@ -10,7 +10,7 @@ from taylor_verify.controls.traps.clock import CLOCK
 from taylor_verify.controls.traps.numbers import NUMBERS
 from taylor_verify.controls.traps.outcomes import OUTCOMES
 from taylor_verify.controls.traps.trap import Trap
-from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.judge.provenance import command, packages, processor
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.studies.traps import TrapsStudy
@@ -34,5 +34,5 @@ def study(
         rows.append(trap.row())
         if finished is not None:
             finished(trap.title)
-    known = {package: found for package, found in versions().items() if package != "python"}
-    return TrapsStudy(known, Machine(processor(), command()), GATE_FACTOR, tuple(rows))
+    made_on = Machine(processor=processor(), command=command())
+    return TrapsStudy(packages(), made_on, GATE_FACTOR, tuple(rows))

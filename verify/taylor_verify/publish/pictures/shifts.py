@@ -18,12 +18,12 @@ from taylor_verify.publish.pictures.panels import BELOW, HEADING, Frame
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
 from taylor_verify.publish.pictures.wording import plain, power_of_ten, stem_of
+from taylor_verify.records.reason import Kind
+from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-Row = Mapping[str, Any]
 
 # In inches.
 _LEFT: Final = 2.75
@@ -34,15 +34,15 @@ _REST: Final = "#0072B2"
 _NOTE: Final = "On the right the shift of time, late above zero."
 
 
-def series(verdicts: Sequence[Row]) -> list[dict[str, Any]]:
-    """{solver, quantity, error, residual, shift, kind} of the rows in which a shift was looked for.
+def series(verdicts: Sequence[Verdict]) -> list[dict[str, Any]]:
+    """Return {solver, quantity, error, residual, shift, kind} of the rows that a shift explains.
 
     The rows of one solver stay together, those for which a shift explains the most first.
     """
-    found = [
+    found: list[dict[str, Any]] = [
         {
-            **{"solver": row["solver"], "quantity": row["quantity"], "kind": row["shift"]},
-            **{"error": row["max"], "residual": row["residual"], "shift": row["time_shift"]},
+            **{"solver": row.solver, "quantity": row.quantity, "kind": row.shift},
+            **{"error": row.max, "residual": row.residual, "shift": row.time_shift},
         }
         for row in verdicts
         if _is_drawable(row)
@@ -54,14 +54,14 @@ def series(verdicts: Sequence[Row]) -> list[dict[str, Any]]:
     return sorted(found, key=lambda one: (best[one["solver"]], one["solver"]))
 
 
-def _is_drawable(row: Row) -> bool:
-    """Whether there is a shift that explains anything, and both sizes can stand on a logarithmic axis."""
-    sizes = (row.get("max"), row.get("residual"))
-    is_told = row.get("time_shift") is not None and row.get("shift") not in (None, "none")
-    return is_told and all(size is not None and isfinite(size) and size > 0 for size in sizes)
+def _is_drawable(row: Verdict) -> bool:
+    """Return True if a shift explains anything, and both sizes can stand on a logarithmic axis."""
+    sizes = (row.max, row.residual)
+    is_shifted = row.time_shift is not None and row.shift not in (None, Kind.NONE)
+    return is_shifted and all(size is not None and isfinite(size) and size > 0 for size in sizes)
 
 
-def picture(verdicts: Sequence[Row], scene: str) -> Picture:
+def picture(verdicts: Sequence[Verdict], scene: str) -> Picture:
     """``scene`` says what the rows have in common. Raises ValueError for rows without any shift."""
     found = series(verdicts)
     if not found:

@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import figure
 from taylor_verify.publish.runs import Run, is_scored
-from taylor_verify.publish.sights import Sight
 from taylor_verify.publish.site.figure import (
     WIDE,
     Drawing,
@@ -22,6 +21,7 @@ from taylor_verify.publish.site.figure import (
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of, rungs_upwards
 from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.studies.controls import Sight
 from taylor_verify.records.verdict import Verdict
 
 Record = Mapping[str, Any]
@@ -180,7 +180,7 @@ def _spread(place: int, number: int) -> list[float]:
 
 def _failures(sight: Sight) -> list[tuple[str, Verdict]]:
     return [
-        (sight.name.replace("-", " "), sight.verdicts[name])
+        (sight.defect.name.replace("-", " "), sight.verdicts[name])
         for name in sight.seen_by
         if name in STATES and sight.verdicts[name].ratio
     ]
@@ -231,7 +231,7 @@ _SHIFTED: Final = ("constant", "drifting", "wandering")
 def shifts(sights: Iterable[Sight], fallback: str | None = None) -> Figure | None:
     """Of every broken solver whose error is for most a shift of time: the error, and what is left."""
     found = [
-        (sight.name.replace("-", " "), name, verdict)
+        (sight.defect.name.replace("-", " "), name, verdict)
         for sight in sights
         for name, verdict in sight.verdicts.items()
         if name in STATES and verdict.shift in _SHIFTED and verdict.residual and verdict.max

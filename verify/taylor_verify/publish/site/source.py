@@ -16,9 +16,9 @@ from typing import Any, Final
 from taylor_verify.publish import data, portraits, sights, trades
 from taylor_verify.publish.file_names import of_scene, of_solver
 from taylor_verify.publish.runs import Run, runs
-from taylor_verify.publish.sights import Sight
 from taylor_verify.publish.trades import Trade, Trades
 from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.studies.controls import Sight
 
 GROWTH: Final = "growth.json"
 REACH: Final = "reach.json"
@@ -74,8 +74,10 @@ class Report:
 
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
-        """What each gate saw of the solvers that were broken on purpose."""
-        return sights.load(self.folder)
+        """The solvers that were broken on purpose with their verdicts; none where none are stored."""
+        if not (self.folder / sights.CONTROLS).exists():
+            return ()
+        return sights.load(self.folder).sights
 
     @cached_property
     def trades(self) -> Trades | None:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from taylor_verify.records.provenance import Machine
+from taylor_verify.records.quantities import STATES, is_conserved
+from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class DefectRow:
-    """One defect in words; ``twin`` names the sound solver that differs from it by the defect alone."""
+    """One defect in words; ``twin`` names the sound solver that differs from it by the defect alone.
+
+    ``gate`` is the quantity that must see it, and ``told`` marks what is in the short table.
+    """
 
     name: str
     setting: str
@@ -22,13 +29,90 @@ class DefectRow:
     twin: str
     twin_setting: str
 
+    @property
+    def sound_solver(self) -> str:
+        """The twin with its setting."""
+        return ", ".join(word for word in (self.twin, self.twin_setting) if word)
+
+
+@dataclass(frozen=True)
+class Sight:
+    """One defect beside its sound twin: the verdicts on both by quantity.
+
+    ``factor`` is the bound of every gate over what is attainable.
+    """
+
+    defect: DefectRow
+    verdicts: Mapping[str, Verdict]
+    sound: Mapping[str, Verdict]
+    factor: int
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The gates of the scene: the sound twin came to a verdict on all of them."""
+        return tuple(self.sound)
+
+    @property
+    def conserved(self) -> tuple[str, ...]:
+        """The conserved quantities among them."""
+        return tuple(name for name in self.quantities if is_conserved(name))
+
+    @property
+    def state(self) -> tuple[str, ...]:
+        """The quantities of state among them."""
+        return tuple(name for name in self.quantities if name in STATES)
+
+    @property
+    def is_finished(self) -> bool:
+        """True if the solver claimed success: only then is anything compared."""
+        return any(verdict.is_compared for verdict in self.verdicts.values())
+
+    def is_seen_by(self, quantity: str) -> bool:
+        """Return True if the gate fails the defect and passes the sound twin."""
+        judged, twin = self.verdicts.get(quantity), self.sound.get(quantity)
+        if judged is None or not self.is_finished:
+            return False
+        sound = twin is None or twin.verdict is Status.PASS
+        return judged.verdict is Status.FAIL and sound
+
+    def is_missed_by(self, quantity: str) -> bool:
+        """Return True if the gate passes the defect."""
+        judged = self.verdicts.get(quantity)
+        return judged is not None and judged.verdict is Status.PASS
+
+    def over_bound(self, quantity: str) -> float | None:
+        """Return the largest error over its bound; None where that is no finite number."""
+        ratio = self.verdicts[quantity].ratio
+        return None if ratio is None else ratio / self.factor
+
+    @property
+    def seen_by(self) -> tuple[str, ...]:
+        """The gates that see the defect."""
+        return tuple(name for name in self.quantities if self.is_seen_by(name))
+
 
 @dataclass(frozen=True)
 class ControlsStudy:
-    """All defects, and the verdicts on them by solver and setting."""
+    """All defects, and the verdicts on them and on their twins by solver and setting."""
 
     versions: dict[str, str]
     machine: Machine
     factor: int
     defects: tuple[DefectRow, ...]
     verdicts: tuple[Verdict, ...]
+
+    @cached_property
+    def sights(self) -> tuple[Sight, ...]:
+        """Every defect with its verdicts. Raises ValueError for one without, or with a twin without."""
+        return tuple(self._sights())
+
+    def _sights(self) -> Iterator[Sight]:
+        for defect in self.defects:
+            found = self._verdicts_on(defect.scene, defect.name, defect.setting)
+            sound = self._verdicts_on(defect.scene, defect.twin, defect.twin_setting)
+            if not found or not sound:
+                raise ValueError(f"expected verdicts on {defect.name} and its twin, got none")
+            yield Sight(defect, found, sound, self.factor)
+
+    def _verdicts_on(self, *run: str) -> dict[str, Verdict]:
+        return {v.quantity: v for v in self.verdicts if (v.scene, v.solver, v.setting) == run}

@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 from taylor_verify.records.answers import LeftOut
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class ExpectedOfRow:
-    """What was expected of one row."""
+class Expected:
+    """The verdict that was expected of a row, and the reason where that is no pass."""
 
-    scene: str
-    rung: str
-    quantity: str
     verdict: Status
     why: str
+
+
+@dataclass(frozen=True)
+class ExtremeVerdict(Verdict):
+    """A verdict beside what was expected of it; None where the row was compared with nothing."""
+
+    expected: Expected | None = None
+
+    @classmethod
+    def of(cls, verdict: Verdict, expected: Expected | None) -> ExtremeVerdict:
+        """Return a verdict with what was expected of it."""
+        return cls(**vars(verdict), expected=expected)
+
+    def row(self) -> dict[str, Any]:
+        """Return the row as JSON holds it."""
+        return {**super().row(), "expected": complete(self.expected)}
 
 
 @dataclass(frozen=True)
@@ -31,12 +47,29 @@ class Titled:
 
 @dataclass(frozen=True)
 class ExtremesStudy:
-    """All verdicts, what was expected of the rows that were compared with the file, and what differs."""
+    """All verdicts with what was expected of them, what differs, and the runs that were not made."""
 
     versions: dict[str, str]
     machine: Machine
     scenes: tuple[Titled, ...]
     left_out: tuple[LeftOut, ...]
     mismatches: tuple[str, ...]
-    expected: tuple[ExpectedOfRow, ...]
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[ExtremeVerdict, ...]
+
+    @cached_property
+    def titles(self) -> dict[str, str]:
+        """The title of each scene."""
+        return {each.scene: each.title for each in self.scenes}
+
+    def expected(self, verdict: Verdict) -> Expected | None:
+        """Return what was expected of one of the verdicts; None where it was compared with nothing."""
+        return self._expected.get((verdict.scene, verdict.rung, verdict.quantity))
+
+    def is_met(self, verdict: Verdict) -> bool:
+        """Return False for a mismatch; a verdict that was compared with nothing is none."""
+        expected = self.expected(verdict)
+        return expected is None or expected.verdict is verdict.verdict
+
+    @cached_property
+    def _expected(self) -> dict[tuple[str, str, str], Expected | None]:
+        return {(each.scene, each.rung, each.quantity): each.expected for each in self.verdicts}
