@@ -127,7 +127,7 @@ def test_nothing_is_published_without_heyoka(option: str, tmp_path: Path) -> Non
     assert done.returncode == 2
     expected = f"expected heyoka, got no such package: {INSTALL} @ --{option}"
     assert done.stderr.splitlines() == [f"taylor-verify: {expected}"]
-    assert not tmp_path.joinpath("reports").exists()
+    assert not (tmp_path / "reports").exists()
 
 
 def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
