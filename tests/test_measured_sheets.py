@@ -33,18 +33,18 @@ def number(cell: str) -> float | None:
 
 def test_growth_has_a_row_for_every_exponent() -> None:
     """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
-    runs = stored(growth.GROWTH)["runs"]
+    runs = growth.load(REPORTS).runs
     found = read(measured.growth(runs))
-    asked = [(run, row) for run in runs for row in run["quantities"]]
+    asked = [(run, row) for run in runs for row in run.quantities]
     assert len(found) == len(asked)
     for cells, (run, row) in zip(found, asked, strict=True):
         assert (cells["scene"], cells["rung"], cells["quantity"]) == (
-            *(run["scene"], run["rung"], row["quantity"]),
+            *(run.scene, run.rung, row.quantity),
         )
         kept = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
-        assert kept == [row["exponent"], row["low"], row["high"], row["rms"][-1]]
-        assert [number(cells[f"late{end}"]) for end in ("", "_low", "_high")] == row["late"]
-        assert cells["gate"] == (row["gate"]["verdict"] if row["gate"] else "")
+        assert kept == [row.exponent, row.low, row.high, row.rms[-1]]
+        assert tuple(number(cells[f"late{end}"]) for end in ("", "_low", "_high")) == row.late
+        assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
 def test_reach_has_a_row_for_every_number_of_periods() -> None:

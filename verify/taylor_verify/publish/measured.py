@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.sheets import sheet
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.studies.growth import Ensemble, GrowthOfQuantity
 from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.records.studies.worst import WorstStudy
 
@@ -56,31 +57,30 @@ _CLAIMS: Final = (
 )
 
 
-def growth(runs: Iterable[Row]) -> str:
-    """A row for every quantity of every ensemble: its exponent with the interval, and its gate."""
-    return sheet(_GROWTH, (_grown(run, row) for run in runs for row in run["quantities"]))
+def growth(runs: Iterable[Ensemble]) -> str:
+    """Return a row for every quantity of every ensemble: its exponent with the interval, and its gate."""
+    return sheet(_GROWTH, (_grown(run, row) for run in runs for row in run.quantities))
 
 
-def _grown(run: Row, row: Row) -> dict[str, Any]:
-    gate = row["gate"] or {}
-    late, late_low, late_high = row["late"]
+def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
+    late, late_low, late_high = row.late
+    shared = ("scene", "solver", "rung", "lost", "period")
+    own = ("quantity", "in_walks", "exponent", "low", "high", "word", "late_word", "level")
     return {
-        **{name: run[name] for name in ("scene", "solver", "rung", "lost", "period")},
-        **{name: row[name] for name in ("quantity", "in_walks", "exponent", "low", "high", "word")},
-        "starts": run["lanes"],
-        "periods_first": run["counts"][0],
-        "periods_last": run["counts"][-1],
-        "steps_last": run["steps"][-1],
-        "rms_first": row["rms"][0],
-        "rms_last": row["rms"][-1],
+        **{name: getattr(run, name) for name in shared},
+        **{name: getattr(row, name) for name in own},
+        "starts": run.lanes,
+        "periods_first": run.counts[0],
+        "periods_last": run.counts[-1],
+        "steps_last": run.steps[-1],
+        "rms_first": row.rms[0],
+        "rms_last": row.rms[-1],
         "late": late,
         "late_low": late_low,
         "late_high": late_high,
-        "late_word": row["late_word"],
-        "level": row["level"],
-        "gate": gate.get("verdict"),
-        **{name: gate.get(name) for name in ("law", "chance", "false_alarm")},
-        "scene_sha256": run["digest"],
+        "gate": row.gate.verdict.value if row.gate else None,
+        **{name: getattr(row.gate, name, None) for name in ("law", "chance", "false_alarm")},
+        "scene_sha256": run.digest,
     }
 
 

@@ -152,7 +152,7 @@ class _Pages:
             pictures += [found] if found else []
         if growth:
             drawn = self.links.drawing("ensembles-of-starts-growth")
-            found = work.growth(growth, self.palette, drawn)
+            found = work.growth(growth.runs, self.palette, drawn)
             pictures += [found] if found else []
         body = self._html(self._template("extremes.md"), "extremes.md", page)
         worst = self._read("tables/worst.md")

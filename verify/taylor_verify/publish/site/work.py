@@ -20,6 +20,7 @@ from taylor_verify.publish.site.figure import (
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of
 from taylor_verify.publish.trades import Trade
+from taylor_verify.records.studies.growth import Ensemble
 
 Row = Mapping[str, Any]
 
@@ -187,9 +188,11 @@ def _colours() -> Layout:
 # Growth.
 
 
-def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figure | None:
-    """The root mean square of each quantity over an ensemble, against the periods."""
-    drawings = [_growing(run, palette) for run in document["runs"]]
+def growth(
+    runs: Sequence[Ensemble], palette: Palette, fallback: str | None = None
+) -> Figure | None:
+    """Return the root mean square of each quantity over an ensemble, against the periods."""
+    drawings = [_growing(run, palette) for run in runs]
     drawings = [one for one in drawings if one.traces]
     if not drawings:
         return None
@@ -200,9 +203,9 @@ def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figu
         "roundings grows with the square root of time, a phase with its power 3/2; a bias would show "
         "as the powers 1 and 2.",
         alt="; ".join(
-            f"{run['scene']} on {run['rung']}: "
-            + ", ".join(f"{q['quantity']} {figure(q['exponent'])}" for q in run["quantities"])
-            for run in document["runs"]
+            f"{run.scene} on {run.rung}: "
+            + ", ".join(f"{q.quantity} {figure(q.exponent)}" for q in run.quantities)
+            for run in runs
         ),
         drawings=drawings,
         shape=WIDE,
@@ -211,19 +214,19 @@ def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figu
     )
 
 
-def _growing(run: Row, palette: Palette) -> Drawing:
+def _growing(run: Ensemble, palette: Palette) -> Drawing:
     traces = [
         {
-            **{"type": "scatter", "mode": "lines+markers", "x": on_log(run["counts"])},
-            **{"y": on_log(one["rms"]), "name": f"{one['quantity']}: {figure(one['exponent'])}"},
+            **{"type": "scatter", "mode": "lines+markers", "x": on_log(run.counts)},
+            **{"y": on_log(one.rms), "name": f"{one.quantity}: {figure(one.exponent)}"},
             **{"line": {"color": palette.line(n), "width": 1.4}, "marker": {"size": 6}},
             "hovertemplate": "%{x:.3g} periods<br>rms %{y:.3g}<extra></extra>",
         }
-        for n, one in enumerate(run["quantities"])
+        for n, one in enumerate(run.quantities)
     ]
     axes = {
         "xaxis": log_axis("periods"),
         "yaxis": log_axis("root mean square"),
         "legend": {"title": {"text": "exponent of growth"}},
     }
-    return Drawing(f"{run['scene']}, {run['rung']}, {run['solver']}", traces, axes)
+    return Drawing(f"{run.scene}, {run.rung}, {run.solver}", traces, axes)
