@@ -49,16 +49,16 @@ def test_growth_has_a_row_for_every_exponent() -> None:
 
 def test_reach_has_a_row_for_every_number_of_periods() -> None:
     """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    rows = stored(reach.REACH)["rows"]
+    rows = reach.load(REPORTS).rows
     found = read(measured.reach(rows))
-    assert len(found) == sum(len(row["periods"]) if row["errors"] else 1 for row in rows)
+    assert len(found) == sum(len(row.periods) if row.errors else 1 for row in rows)
     made = [cells for cells in found if cells["periods"]]
     assert {cells["lost"] for cells in made} == {"yes", "no"}
     assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
     assert all(cells["why"] for cells in found if not cells["periods"])
     first = rows[0]
-    kept = [number(cells["error"]) for cells in found[: len(first["periods"])]]
-    assert kept == first["errors"]
+    kept = [number(cells["error"]) for cells in found[: len(first.periods)]]
+    assert tuple(kept) == first.errors
 
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:

@@ -132,9 +132,9 @@ def tradeoff(folder: Path, outside: bool) -> Answer:
 def reach(folder: Path) -> Answer:
     """How far each precision carries in every family of extremes."""
     from taylor_verify.publish import reach as pages
-    from taylor_verify.trade.reach import document, members
+    from taylor_verify.trade.reach import members, study
 
-    return files_written(pages.write(folder, document(_counting(members()))))
+    return files_written(pages.write(folder, study(_counting(members()))))
 
 
 def extremes(folder: Path) -> Answer:

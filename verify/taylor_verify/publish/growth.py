@@ -90,7 +90,8 @@ def pages(folder: Path) -> dict[str, str]:
     study = load(folder)
     if not study.runs:
         return {}
-    return {PAGE: page(study, _shown(folder, study)), SHEET: measured.growth(study.runs)}
+    with data.expecting("ensembles", folder / GROWTH):
+        return {PAGE: page(study, _shown(folder, study)), SHEET: measured.growth(study.runs)}
 
 
 def load(folder: Path) -> GrowthStudy:

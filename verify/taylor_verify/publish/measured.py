@@ -13,6 +13,7 @@ from typing import Any, Final
 from taylor_verify.publish.sheets import sheet
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.studies.growth import Ensemble, GrowthOfQuantity
+from taylor_verify.records.studies.reach import ReachRow
 from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.records.studies.worst import WorstStudy
 
@@ -84,18 +85,18 @@ def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
     }
 
 
-def reach(rows: Iterable[Row]) -> str:
-    """A row for every number of periods that was looked at; one, with the reason, where none was."""
+def reach(rows: Iterable[ReachRow]) -> str:
+    """Return a row for every number of periods; one row, with the reason, where nothing was run."""
     return sheet(_REACH, (found for row in rows for found in _reached(row)))
 
 
-def _reached(row: Row) -> Iterator[dict[str, Any]]:
-    """An error that is missing was so large that nobody followed it on: the run is lost."""
-    own = {name: row[name] for name in ("family", "value", "rung", "steps", "why")}
-    if not row["errors"]:
+def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a run. An error that is missing stands for a motion that was lost."""
+    own = {name: getattr(row, name) for name in ("family", "value", "rung", "steps", "why")}
+    if not row.errors:
         yield own
         return
-    for periods, error, floor in zip_longest(row["periods"], row["errors"], row["floors"]):
+    for periods, error, floor in zip_longest(row.periods, row.errors, row.floors):
         lost = "yes" if error is None else "no"
         yield {**own, "periods": periods, "error": error, "attainable": floor, "lost": lost}
 

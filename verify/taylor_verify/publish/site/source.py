@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from taylor_verify.publish import data, growth, portraits, sights, trades
+from taylor_verify.publish import data, growth, portraits, reach, sights, trades
 from taylor_verify.publish.file_names import of_scene, of_solver
 from taylor_verify.publish.runs import Run, runs
 from taylor_verify.publish.sights import Sight
@@ -21,8 +21,7 @@ from taylor_verify.publish.trades import Trade, Trades
 from taylor_verify.records import json_text
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.studies.growth import GrowthStudy
-
-REACH: Final = "reach.json"
+from taylor_verify.records.studies.reach import ReachStudy
 
 Document = Mapping[str, Any]
 Study = TypeVar("Study")
@@ -93,8 +92,8 @@ class Report:
         return self._study(growth.GROWTH, GrowthStudy)
 
     @cached_property
-    def reach(self) -> Document | None:
-        return self._stored(REACH)
+    def reach(self) -> ReachStudy | None:
+        return self._study(reach.REACH, ReachStudy)
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"

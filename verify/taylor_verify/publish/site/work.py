@@ -8,6 +8,7 @@ from math import floor, log10
 from typing import Any, Final
 
 from taylor_verify.publish.cells import figure
+from taylor_verify.publish.pictures.digits_map import ACHIEVED, ATTAINABLE, numbers_of
 from taylor_verify.publish.pictures.style import place
 from taylor_verify.publish.site.figure import (
     WIDE,
@@ -21,6 +22,7 @@ from taylor_verify.publish.site.figure import (
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of
 from taylor_verify.publish.trades import Trade
 from taylor_verify.records.studies.growth import Ensemble
+from taylor_verify.records.studies.reach import ReachFamily, ReachRow
 
 Row = Mapping[str, Any]
 
@@ -84,22 +86,22 @@ def _series(family: str, rung: str, rows: Sequence[Row], key: str, palette: Pale
 # The extremes.
 
 
-def digits_map(family: Row, rows: Sequence[Row], fallback: str | None = None) -> Figure | None:
-    """Digits left over the family's number and the periods, achieved and attainable, by rung."""
-    drawings = [
-        _maps(family, [row for row in rows if row["rung"] == r], r) for r in family["rungs"]
-    ]
+def digits_map(
+    family: ReachFamily, rows: Sequence[ReachRow], fallback: str | None = None
+) -> Figure | None:
+    """Return digits left over the family's number and the periods, achieved and attainable, by rung."""
+    drawings = [_maps(family, [row for row in rows if row.rung == r], r) for r in family.rungs]
     drawings = [one for one in drawings if one.traces]
     if not drawings:
         return None
-    towards = f"; {family['symbol']} leads to {family['extreme']}" if family["symbol"] else ""
+    towards = f"; {family.symbol} leads to {family.extreme}" if family.symbol else ""
     return Figure(
-        name=f"reach-{family['name']}",
-        title=f"Digits left: {family['name']}",
-        caption=f"{family['title'][0].upper()}{family['title'][1:]}{towards}. The number in a cell is "
+        name=f"reach-{family.name}",
+        title=f"Digits left: {family.name}",
+        caption=f"{family.title[0].upper()}{family.title[1:]}{towards}. The number in a cell is "
         "the whole decimal digits that are left after so many periods; an empty cell was not run, or "
         "the rung cannot hold the scene.",
-        alt=f"Decimal digits left of {family['title']}, over {family['symbol'] or 'its number'} and "
+        alt=f"Decimal digits left of {family.title}, over {family.symbol or 'its number'} and "
         "the periods, for each rung; the table of the same family has the numbers.",
         drawings=drawings,
         layout={_MAP: _colours()},
@@ -110,14 +112,14 @@ def digits_map(family: Row, rows: Sequence[Row], fallback: str | None = None) ->
     )
 
 
-def _maps(family: Row, rows: Sequence[Row], rung: str) -> Drawing:
-    run = [row for row in rows if row["errors"]]
+def _maps(family: ReachFamily, rows: Sequence[ReachRow], rung: str) -> Drawing:
+    run = [row for row in rows if row.errors]
     if not run:
         return Drawing(rung, [])
-    periods = max((row["periods"] for row in run), key=len)
-    values = family["values"]
+    periods = max((row.periods for row in run), key=len)
     traces = [
-        _map(values, periods, run, key, n) for n, key in enumerate(("errors", "floors"), start=1)
+        _map(family.values, periods, run, key, n)
+        for n, key in enumerate((ACHIEVED, ATTAINABLE), start=1)
     ]
     heading = {"showarrow": False, "yref": "paper", "y": 1.02, "yanchor": "bottom"}
     layout: Layout = {
@@ -126,7 +128,7 @@ def _maps(family: Row, rows: Sequence[Row], rung: str) -> Drawing:
             {**heading, "text": text, "xref": f"x{n} domain", "x": 0.5}
             for n, text in ((1, "achieved"), (2, "attainable"))
         ],
-        "yaxis": _categories(family["symbol"] or "value"),
+        "yaxis": _categories(family.symbol or "value"),
         "yaxis2": {**_categories(""), "showticklabels": False},
         "xaxis": _categories("periods"),
         "xaxis2": _categories("periods"),
@@ -140,12 +142,12 @@ def _categories(title: str) -> Layout:
 
 
 def _map(
-    values: Sequence[str], periods: Sequence[int], rows: Sequence[Row], key: str, number: int
+    values: Sequence[str], periods: Sequence[int], rows: Sequence[ReachRow], key: str, number: int
 ) -> Trace:
     found = {
-        (row["value"], count): digits_left(error)
+        (row.value, count): digits_left(error)
         for row in rows
-        for count, error in zip(row["periods"], row[key], strict=False)
+        for count, error in zip(row.periods, numbers_of(row, key), strict=False)
     }
     cells = [[found.get((value, count)) for count in periods] for value in values]
     suffix = "" if number == 1 else str(number)
