@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +11,6 @@ import pytest
 from taylor_verify.publish import contents, growth, measured, prices, reach, tables, traps, worst
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
-
-
-def stored(name: str) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads((REPORTS / name).read_text(encoding="utf-8"))
-    return document
 
 
 def read(text: str) -> list[dict[str, str]]:
@@ -63,14 +57,13 @@ def test_reach_has_a_row_for_every_number_of_periods() -> None:
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     """With both intervals; the price at equal error stands in the rows of f64 alone."""
-    document = stored(prices.PRICES)
-    found = read(measured.prices(document["rows"], document["equal"]))
-    assert len(found) == len(document["rows"])
-    for cells, row in zip(found, document["rows"], strict=True):
-        assert [number(cells[f"step_{end}"]) for end in ("ratio", "low", "high")] == row[
-            "step_ratio"
-        ]
-    equal = {row["variant"]: row["ratio"] for row in document["equal"]}
+    study = prices.load(REPORTS)
+    found = read(measured.prices(study))
+    assert len(found) == len(study.rows)
+    for cells, row in zip(found, study.rows, strict=True):
+        ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
+        assert ends == row.step_ratio
+    equal = {one.variant: one.ratio for one in study.equal}
     told = {c["variant"]: number(c["ratio_at_equal_error"]) for c in found if c["rung"] == "f64"}
     assert {name: told[name] for name in equal} == equal
     assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}

@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from taylor_verify.publish import data, growth, reach
+from taylor_verify.publish import data, growth, prices, reach
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.studies.growth import GrowthStudy
+from taylor_verify.records.studies.prices import PricesStudy
 from taylor_verify.records.studies.reach import ReachStudy
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
@@ -21,6 +22,7 @@ REPORTS = Path(__file__).resolve().parents[1] / "reports"
         (growth.GROWTH, "growth", GrowthStudy),
         (growth.LONG, "growth", GrowthStudy),
         (reach.REACH, "reach", ReachStudy),
+        (prices.PRICES, "prices", PricesStudy),
     ],
 )
 def test_a_stored_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:

@@ -115,9 +115,9 @@ def controls(folder: Path) -> Answer:
 def prices(folder: Path) -> Answer:
     """What each thing that a scene may ask for costs, measured."""
     from taylor_verify.publish import prices as pages
-    from taylor_verify.trade.prices import RUNGS, document
+    from taylor_verify.trade.prices import RUNGS, study
 
-    return files_written(pages.write(folder, document(_counting(len(RUNGS)))))
+    return files_written(pages.write(folder, study(_counting(len(RUNGS)))))
 
 
 def tradeoff(folder: Path, outside: bool) -> Answer:

@@ -13,6 +13,7 @@ from typing import Any, Final
 from taylor_verify.publish.sheets import sheet
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.studies.growth import Ensemble, GrowthOfQuantity
+from taylor_verify.records.studies.prices import PriceRow, PricesStudy
 from taylor_verify.records.studies.reach import ReachRow
 from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.records.studies.worst import WorstStudy
@@ -101,21 +102,21 @@ def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
         yield {**own, "periods": periods, "error": error, "attainable": floor, "lost": lost}
 
 
-def prices(rows: Iterable[Row], equal: Iterable[Row]) -> str:
-    """A row for every variant and rung; ``equal`` has the prices at equal error, which are of f64."""
-    at_equal = {row["variant"]: row["ratio"] for row in equal}
-    return sheet(_PRICES, (_priced(row, at_equal) for row in rows))
+def prices(study: PricesStudy) -> str:
+    """Return a row for every variant and rung; the prices at equal error are those of f64."""
+    at_equal = {one.variant: one.ratio for one in study.equal}
+    return sheet(_PRICES, (_priced(row, at_equal) for row in study.rows))
 
 
-def _priced(row: Row, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
-    step, step_low, step_high = row["step_ratio"]
-    time, time_low, time_high = row["time_ratio"]
+def _priced(row: PriceRow, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
+    step, step_low, step_high = row.step_ratio
+    time, time_low, time_high = row.time_ratio
     intervals = {
         **{"step_ratio": step, "step_low": step_low, "step_high": step_high},
         **{"time_ratio": time, "time_low": time_low, "time_high": time_high},
     }
-    equal = at_equal.get(row["variant"]) if row["rung"] == "f64" else None
-    return {**row, **intervals, "ratio_at_equal_error": equal}
+    equal = at_equal.get(row.variant) if row.rung == "f64" else None
+    return {**complete(row), **intervals, "ratio_at_equal_error": equal}
 
 
 def traps(rows: Iterable[TrapRow]) -> str:
