@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 
-from taylor_verify.publish import data, growth, prices, reach
+from taylor_verify.publish import data, growth, prices, reach, trades
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.studies.growth import GrowthStudy
 from taylor_verify.records.studies.prices import PricesStudy
 from taylor_verify.records.studies.reach import ReachStudy
+from taylor_verify.records.studies.tradeoff import TradeNumbers, TradeTimings
 
 REPORTS = Path(__file__).resolve().parents[1] / "reports"
 
@@ -23,6 +24,8 @@ REPORTS = Path(__file__).resolve().parents[1] / "reports"
         (growth.LONG, "growth", GrowthStudy),
         (reach.REACH, "reach", ReachStudy),
         (prices.PRICES, "prices", PricesStudy),
+        (trades.NUMBERS, "tradeoff", TradeNumbers),
+        (trades.TIMINGS, "tradeoff", TradeTimings),
     ],
 )
 def test_a_stored_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:

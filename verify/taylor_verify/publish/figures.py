@@ -44,10 +44,10 @@ def of_trade(found: Trade) -> list[Picture]:
 def of_rungs(found: Sequence[Trade]) -> list[Picture]:
     """Taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
-        Ratio(one.scene, row["rung"], row["ratio"], row["low"], row["high"])
+        Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
         for one in found
         for row in one.sound
-        if row["solver"] == "taylor"
+        if row.point.solver == "taylor"
     ]
     return [time_by_rung.picture("published", rows)] if rows else []
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from math import floor, log10
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish.cells import figure
 from taylor_verify.publish.pictures.digits_map import ACHIEVED, ATTAINABLE, numbers_of
@@ -20,11 +20,10 @@ from taylor_verify.publish.site.figure import (
     on_log,
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of
-from taylor_verify.publish.trades import Trade
+from taylor_verify.publish.trades import TimedPoint, Trade
 from taylor_verify.records.studies.growth import Ensemble
 from taylor_verify.records.studies.reach import ReachFamily, ReachRow
-
-Row = Mapping[str, Any]
+from taylor_verify.records.studies.tradeoff import TradePoint
 
 _WORK: Final = {
     "seconds": "time of a solve (s)",
@@ -46,15 +45,15 @@ def precision(trade: Trade, palette: Palette, fallback: str | None = None) -> Fi
         )
         for key, title in _WORK.items()
     ]
-    best = min(trade.sound, key=lambda row: row["error"], default=None)
-    told = f" The least error is {figure(best['error'])}, of {best['solver']}." if best else ""
+    best = min(trade.sound, key=lambda row: row.error, default=None)
+    told = f" The least error is {figure(best.error)}, of {best.point.solver}." if best else ""
     return Figure(
         name=f"work-{trade.scene.replace('/', '-')}",
         title=f"Work and precision: {trade.scene}",
-        caption=f"{trade.title}: every setting that gave a sound answer, a line for each family of "
+        caption=f"{trade.about.title}: every setting that gave a sound answer, a line for each family of "
         "solvers. Further left is faster, further down more accurate.",
         alt=f"Largest error against work on {trade.scene}, both logarithmic, for "
-        f"{len({row['family'] for row in trade.sound})} families of solvers.{told}",
+        f"{len({row.point.family for row in trade.sound})} families of solvers.{told}",
         drawings=[one for one in drawings if one.traces],
         shape=WIDE,
         asks="work as",
@@ -63,20 +62,31 @@ def precision(trade: Trade, palette: Palette, fallback: str | None = None) -> Fi
 
 
 def _families(trade: Trade, key: str, palette: Palette) -> list[Trace]:
-    rows = [row for row in trade.sound if row.get(key) and row["error"]]
-    rows.sort(key=lambda row: (*place(row["family"], row["rung"]), row["rung"], row[key]))
+    rows = [row for row in trade.sound if _work(row, key) and row.error]
+    rows.sort(key=lambda row: (*place(*_family(row.point)), row.point.rung, _work(row, key)))
     return [
         _series(family, rung, list(found), key, palette)
-        for (family, rung), found in groupby(rows, key=lambda row: (row["family"], row["rung"]))
+        for (family, rung), found in groupby(rows, key=lambda row: _family(row.point))
     ]
 
 
-def _series(family: str, rung: str, rows: Sequence[Row], key: str, palette: Palette) -> Trace:
+def _work(row: TimedPoint, key: str) -> float:
+    counted = {"evaluations": row.point.evaluations, "steps": row.point.steps}
+    return row.timing.seconds if key == "seconds" else counted[key]
+
+
+def _family(point: TradePoint) -> tuple[str, str]:
+    return point.family, point.rung
+
+
+def _series(
+    family: str, rung: str, rows: Sequence[TimedPoint], key: str, palette: Palette
+) -> Trace:
     colour = palette.family(family, rung)
     return {
         **{"type": "scatter", "mode": "lines+markers", "name": family},
-        **{"x": on_log(row[key] for row in rows), "y": on_log(row["error"] for row in rows)},
-        "text": [f"{row['solver']} {rung}" for row in rows],
+        **{"x": on_log(_work(row, key) for row in rows), "y": on_log(row.error for row in rows)},
+        "text": [f"{row.point.solver} {rung}" for row in rows],
         "marker": {**marker_of(family, rung), "color": colour},
         "line": {**line_of(family, rung), "color": colour},
         "hovertemplate": "%{text}<br>%{x:.3g}<br>error %{y:.3g}<extra></extra>",
