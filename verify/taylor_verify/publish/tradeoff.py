@@ -7,13 +7,13 @@ from math import log10
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import figures, sheets
+from taylor_verify.publish import data, figures, sheets
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.doubles import doubles_table
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.timing_method import how_it_was_timed, remake, what_is_timed
-from taylor_verify.publish.trades import TimedPoint, Trade, Trades, load
+from taylor_verify.publish.trades import NUMBERS, TimedPoint, Trade, Trades, load
 from taylor_verify.records.studies.tradeoff import Standing, TradePoint
 
 DIGITS: Final = (6, 9, 12)
@@ -81,11 +81,18 @@ def page(found: Trades, folder: Path) -> str:
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The page and its sheet by their paths below ``folder``; none where nothing is stored."""
+    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
     found = load(folder)
     if found is None:
         return {}
-    return {"tables/tradeoff.md": page(found, folder), "tables/tradeoff.csv": sheet(found.trades)}
+    with data.expecting("a measurement of speed and accuracy", folder / NUMBERS):
+        return {
+            "tables/tradeoff.md": page(found, folder),
+            "tables/tradeoff.csv": sheet(found.trades),
+        }
 
 
 # What so many digits cost.
