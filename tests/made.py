@@ -17,7 +17,7 @@ from typing import Final
 from test_claims_command import STUDY
 from test_extremes_page import study as extremes_study
 from test_hunt import found_of
-from test_reach_page import document as reach_document
+from test_reach_page import study as reach_study
 from test_trade_page import NUMBERS_MADE, TIMES_MADE
 
 from taylor_verify import hunt
@@ -119,7 +119,7 @@ def small() -> Path:
     write_portraits(place, SCENES)
     write_controls(place)
     report.publish_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
-    reach.write(place, reach_document())
+    reach.write(place, reach_study())
     growth.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
     worst.write(place, hunt.study([found_of("euler-a", 1.5)], 60.0, 3))
     extremes.write(place, extremes_study())

@@ -135,12 +135,12 @@ def test_the_table_of_failures_has_them_all() -> None:
     """Sound, falsely successful and failed cases are in it, each of a scene that can be posed."""
     rows = list(plain_doubles())
     assert len(rows) == len(list(cases()))
-    assert {row["standing"] for row in rows} == {"sound", "false success", "failed"}
-    separatrices = [row for row in rows if row["scene"].startswith("euler/separatrix")]
+    assert {row.standing for row in rows} == {"sound", "false success", "failed"}
+    separatrices = [row for row in rows if row.scene.startswith("euler/separatrix")]
     assert separatrices
     # On the separatrix 1 - m is zero exactly.
-    assert all(row["m_prime"] == 0 for row in separatrices)
-    near = [row["m_prime"] for row in rows if "from omega" in row["what"]]
+    assert all(row.m_prime == 0 for row in separatrices)
+    near = [row.m_prime for row in rows if "from omega" in row.what]
     assert near == sorted(near, reverse=True)
 
 

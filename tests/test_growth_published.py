@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,14 @@ from taylor_verify.growth.errors import PHASE
 from taylor_verify.growth.experiment import Experiment, Found, experiment
 from taylor_verify.growth.published import Entry
 from taylor_verify.growth.question import Question
-from taylor_verify.judge.growth import BIAS
+from taylor_verify.judge.growth import BIAS, Law, growth
 from taylor_verify.publish import growth as pages
 from taylor_verify.publish.pictures import growth as diagram
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.records.json_text import complete, converted
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.growth import Ensemble, GrowthOfQuantity
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 
@@ -54,7 +57,7 @@ def test_the_integrator_walks(name: str) -> None:
     found = followed(name)
     assert found.lost == 0
     assert {verdict(found, one.quantity) for one in found.found if one.growth.gate} == {Status.PASS}
-    walks = {row["quantity"]: row["in_walks"] for row in found.document()["quantities"]}
+    walks = {row.quantity: row.in_walks for row in found.ensemble().quantities}
     # A step rounds its end once, to half a unit in the last place at most, and each of its sums
     # once more, much smaller: a walk of steps of about u. Ten of them would be another integrator.
     assert 0.01 <= walks["T"] <= 10
@@ -217,16 +220,44 @@ def test_checkpoints_have_names_of_their_own() -> None:
     assert len({entry.file for entry in entries}) == len(entries)
 
 
+def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
+    """An ensemble is the same when it is read again; one without a finite error has no numbers."""
+    found = followed("euler/about-max-axis", lanes=2)
+    errors = np.full((2, len(found.steps)), np.nan)
+    nothing = growth(np.array(found.course.question.counts), errors, Law.WALK, 1e-16)
+    lost = replace(found, found=(Found("T", errors, nothing),))
+    for one in (found.ensemble("a test"), lost.ensemble()):
+        assert converted(complete(one), Ensemble) == one
+    (row,) = lost.ensemble().quantities
+    assert row.rms == (None,) * len(found.steps)
+    assert row.exponent is row.in_walks is row.gate.chance is None
+
+
+def test_a_file_of_something_else_is_named(tmp_path: Path) -> None:
+    """Stored ensembles without their runs are a ValueError that names file and key."""
+    file = tmp_path / pages.GROWTH
+    file.parent.mkdir()
+    file.write_text('{"runs": [{"scene": "euler/generic"}], "left_out": []}', encoding="utf-8")
+    said = r"expected a key digest, got none @ runs\[0\] @ .*growth\.json"
+    with pytest.raises(ValueError, match=said):
+        pages.pages(tmp_path)
+
+
 # The picture
 
 
-def run(scene: str, solver: str = "taylor", factor: float = 1.0) -> dict[str, Any]:
-    counts = [10 ** (k / 2) for k in range(4, 13)]
-    rows = [
-        {"quantity": "T", "rms": [factor * 1e-16 * n**0.5 for n in counts]},
-        {"quantity": "phase", "rms": [None, *(factor * 1e-15 * n**1.5 for n in counts[1:])]},
-    ]
-    return {"scene": scene, "rung": "f64", "solver": solver, "counts": counts, "quantities": rows}
+def run(scene: str, solver: str = "taylor", factor: float = 1.0) -> Ensemble:
+    counts = tuple(10 ** (k / 2) for k in range(4, 13))
+    rows = {
+        "T": tuple(factor * 1e-16 * n**0.5 for n in counts),
+        "phase": (None, *(factor * 1e-15 * n**1.5 for n in counts[1:])),
+    }
+    quantities = tuple(
+        GrowthOfQuantity(name, rms, 1.0, 0.5, 0.4, 0.6, 0.99, 8, "", (0.5, 0.4, 0.6), "")
+        for name, rms in rows.items()
+    )
+    steps = tuple(20 * n for n in counts)
+    return Ensemble(scene, "", solver, "f64", counts[-1], 8, 1, 6.0, 0, counts, steps, quantities)
 
 
 RUNS = [
@@ -241,21 +272,21 @@ RUNS = [
 
 def test_each_ensemble_is_a_line_of_its_own() -> None:
     """Left and right, every ensemble is drawn once with its numbers; what is no number is left out."""
-    picture = pages.picture_of({"runs": RUNS})
+    picture = pages.picture_of(RUNS)
     assert picture is not None
     with plotting():
         left, right = picture.figure().axes
     for axes, quantity in ((left, 0), (right, 1)):
         for label, one in zip(diagram.labels_of(RUNS), RUNS, strict=True):
             (line,) = [line for line in axes.get_lines() if line.get_gid() == label]
-            expected = [e for e in one["quantities"][quantity]["rms"] if e is not None]
+            expected = [e for e in one.quantities[quantity].rms if e is not None]
             assert line.get_ydata().tolist() == expected
             assert all(map(isfinite, line.get_xdata()))
 
 
 def test_thin_lines_rise_as_they_are_named() -> None:
     """From the first point of a line on, each is a pure power of time, and stays in its panel."""
-    picture = pages.picture_of({"runs": RUNS})
+    picture = pages.picture_of(RUNS)
     assert picture is not None
     with plotting():
         axes = picture.figure().axes
@@ -272,7 +303,7 @@ def test_thin_lines_rise_as_they_are_named() -> None:
 
 def test_nothing_of_the_picture_is_cut_off() -> None:
     """Names of scenes that are long, and six of them, are on the page."""
-    picture = pages.picture_of({"runs": RUNS})
+    picture = pages.picture_of(RUNS)
     assert picture is not None
     with plotting():
         figure = picture.figure()
@@ -296,4 +327,4 @@ def test_scenes_with_one_ending_keep_their_whole_names() -> None:
 
 def test_without_errors_there_is_no_picture() -> None:
     """Ensembles that are exact have nothing that a logarithmic axis can show."""
-    assert pages.picture_of({"runs": [run("euler/rest", factor=0)]}) is None
+    assert pages.picture_of([run("euler/rest", factor=0)]) is None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import shutil
 from dataclasses import replace
 from functools import cache
@@ -37,11 +36,6 @@ def measured_report() -> Path:
 _TRAPS = ("T1", "T3")
 
 
-def stored(name: str) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads((measured_report() / name).read_text(encoding="utf-8"))
-    return document
-
-
 def read(text: str) -> list[dict[str, str]]:
     """The rows, each with as many cells as there are headings, of which no two are alike."""
     lines = list(csv.reader(text.splitlines()))
@@ -56,44 +50,43 @@ def number(cell: str) -> float | None:
 
 def test_growth_has_a_row_for_every_exponent() -> None:
     """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
-    runs = stored(growth.GROWTH)["runs"]
+    runs = growth.load(measured_report()).runs
     found = read(measured.growth(runs))
-    asked = [(run, row) for run in runs for row in run["quantities"]]
+    asked = [(run, row) for run in runs for row in run.quantities]
     assert len(found) == len(asked)
     for cells, (run, row) in zip(found, asked, strict=True):
         assert (cells["scene"], cells["rung"], cells["quantity"]) == (
-            *(run["scene"], run["rung"], row["quantity"]),
+            *(run.scene, run.rung, row.quantity),
         )
         kept = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
-        assert kept == [row["exponent"], row["low"], row["high"], row["rms"][-1]]
-        assert [number(cells[f"late{end}"]) for end in ("", "_low", "_high")] == row["late"]
-        assert cells["gate"] == (row["gate"]["verdict"] if row["gate"] else "")
+        assert kept == [row.exponent, row.low, row.high, row.rms[-1]]
+        assert tuple(number(cells[f"late{end}"]) for end in ("", "_low", "_high")) == row.late
+        assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
 def test_reach_has_a_row_for_every_number_of_periods() -> None:
     """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    rows = stored(reach.REACH)["rows"]
+    rows = reach.load(measured_report()).rows
     found = read(measured.reach(rows))
-    assert len(found) == sum(len(row["periods"]) if row["errors"] else 1 for row in rows)
+    assert len(found) == sum(len(row.periods) if row.errors else 1 for row in rows)
     made = [cells for cells in found if cells["periods"]]
     assert {cells["lost"] for cells in made} == {"yes", "no"}
     assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
     assert all(cells["why"] for cells in found if not cells["periods"])
     first = rows[0]
-    kept = [number(cells["error"]) for cells in found[: len(first["periods"])]]
-    assert kept == first["errors"]
+    kept = [number(cells["error"]) for cells in found[: len(first.periods)]]
+    assert tuple(kept) == first.errors
 
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     """With both intervals; the price at equal error stands in the rows of f64 alone."""
-    document = stored(prices.PRICES)
-    found = read(measured.prices(document["rows"], document["equal"]))
-    assert len(found) == len(document["rows"])
-    for cells, row in zip(found, document["rows"], strict=True):
-        assert [number(cells[f"step_{end}"]) for end in ("ratio", "low", "high")] == row[
-            "step_ratio"
-        ]
-    equal = {row["variant"]: row["ratio"] for row in document["equal"]}
+    study = prices.load(measured_report())
+    found = read(measured.prices(study))
+    assert len(found) == len(study.rows)
+    for cells, row in zip(found, study.rows, strict=True):
+        ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
+        assert ends == row.step_ratio
+    equal = {one.variant: one.ratio for one in study.equal}
     told = {c["variant"]: number(c["ratio_at_equal_error"]) for c in found if c["rung"] == "f64"}
     assert {name: told[name] for name in equal} == equal
     assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}

@@ -3,7 +3,7 @@
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise
 from math import inf, log10, nan
@@ -22,6 +22,7 @@ from taylor_verify.publish.pictures import prices, time_by_rung, trade
 from taylor_verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
 from taylor_verify.publish.pictures.panels import panels_of
 from taylor_verify.publish.pictures.picture import Picture, plotting, save
+from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.pictures.series import front_of, series_of
 from taylor_verify.publish.pictures.style import (
     KINDS,
@@ -441,7 +442,7 @@ def assert_all_is_on_the_page(figure: Figure) -> None:
 def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
     """Drawn twice, in another order and with other settings of the user, every file is the same."""
     rows = family("taylor f64", "f64", 0.01, 9.0) + family("scipy RK45", "f64", 0.05, 4.0)
-    made = [trade.pictures(document(rows))[0], prices.picture(PRICES)]
+    made = [trade.pictures(document(rows))[0], priced()]
     first = save(made, tmp_path / "a")
     with matplotlib.rc_context({"font.size": 20, "lines.linewidth": 9, "svg.hashsalt": "other"}):
         save(reversed(made), tmp_path / "b")
@@ -479,7 +480,7 @@ def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
 def test_settings_of_the_user_stay(tmp_path: Path) -> None:
     """Drawing leaves matplotlib's settings as they were."""
     before = dict(matplotlib.rcParams)
-    prices.draw(PRICES, tmp_path)
+    save([priced()], tmp_path)
     assert dict(matplotlib.rcParams) == before
 
 
@@ -489,9 +490,9 @@ def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
     def broken() -> Figure:
         raise ZeroDivisionError
 
-    prices.draw(PRICES, tmp_path)
+    save([priced()], tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
-    sound = replace(prices.picture(PRICES), figure=lambda: Figure())
+    sound = replace(priced(), figure=lambda: Figure())
     with pytest.raises(ZeroDivisionError):
         save([sound, Picture("broken", "", "", broken)], tmp_path)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
@@ -503,7 +504,7 @@ def test_without_matplotlib_the_error_says_what_to_install(
     """One sentence with the extra's name, and no file."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
-        prices.draw(PRICES, tmp_path / "there")
+        save([priced()], tmp_path / "there")
     assert not (tmp_path / "there").exists()
 
 
@@ -547,44 +548,40 @@ def test_uncounted_work_makes_no_picture() -> None:
 # Ratios
 
 
-PRICES = {
-    "scene": "euler/generic",
-    "yardstick": "omega on f64",
-    "prices": [
-        {"label": "omega", "rung": "f64", "ratio": 1, "low": 1, "high": 1.2},
-        {"label": "attitude", "rung": "f64", "ratio": 2.1},
-        {"label": "omega", "rung": "f32", "ratio": 0.8, "low": 0.7, "high": 1.1},
-        {"label": "attitude", "rung": "mp237", "ratio": 214.0, "low": 200.0, "high": 290.0},
-    ],
-}
-TIMES_BY_RUNG = {
-    "scene": "two scenes",
-    "rungs": [
-        {"label": label, "rung": rung, "ratio": factor * (bits_of(rung) / 53) ** 2}
-        for label, factor in (("euler", 1), ("kirchhoff", 1.3))
-        for rung in reversed(RUNGS)
-    ],
-}
+PRICES = (
+    Ratio("omega", "f64", 1.0, 1.0, 1.2),
+    Ratio("attitude", "f64", 2.1),
+    Ratio("omega", "f32", 0.8, 0.7, 1.1),
+    Ratio("attitude", "mp237", 214.0, 200.0, 290.0),
+)
+TIMES_BY_RUNG = tuple(
+    Ratio(label, rung, factor * (bits_of(rung) / 53) ** 2)
+    for label, factor in (("euler", 1), ("kirchhoff", 1.3))
+    for rung in reversed(RUNGS)
+)
+
+
+def priced(ratios: Sequence[Ratio] = PRICES) -> Picture:
+    return prices.picture("euler/generic", "omega on f64", ratios)
 
 
 def test_a_bar_ends_at_its_ratio() -> None:
     """Every bar reaches from 1 to its ratio, the cheaper ones to the left, with the number beside."""
     with plotting():
-        (axes,) = prices.picture(PRICES).figure().axes
+        (axes,) = priced().figure().axes
     ends = [{bar.get_x(), bar.get_x() + bar.get_width()} for bar in axes.patches]
-    for found, one in zip(ends, PRICES["prices"], strict=True):
-        assert min(found) == pytest.approx(min(1, one["ratio"]), rel=1e-15)
-        assert max(found) == pytest.approx(max(1, one["ratio"]), rel=1e-15)
+    for found, one in zip(ends, PRICES, strict=True):
+        assert min(found) == pytest.approx(min(1, one.ratio), rel=1e-15)
+        assert max(found) == pytest.approx(max(1, one.ratio), rel=1e-15)
     numbers = [text.get_text() for text in axes.texts if text.get_gid() == "number"]
     assert [float(text.split()[0]) for text in numbers] == [1.0, 2.1, 0.8, 214.0]
 
 
 def test_numbers_of_bars_are_on_the_page() -> None:
     """Neither the names on the left nor the numbers on the right are cut off."""
-    long = PRICES["prices"][3] | {"label": "attitude, centre, force and couple", "ratio": 288.0}
-    wide = PRICES | {"prices": [*PRICES["prices"], long]}
+    long = replace(PRICES[3], label="attitude, centre, force and couple", ratio=288.0)
     with plotting():
-        figure = prices.picture(wide).figure()
+        figure = priced([*PRICES, long]).figure()
         everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
     assert everything.x0 >= 0
     assert everything.x1 <= PAGE_WIDTH
@@ -593,7 +590,7 @@ def test_numbers_of_bars_are_on_the_page() -> None:
 def test_time_is_drawn_by_bits() -> None:
     """Each label is one line from the shortest rung to the longest, its ratios as given."""
     with plotting():
-        figure = time_by_rung.picture(TIMES_BY_RUNG).figure()
+        figure = time_by_rung.picture("two scenes", TIMES_BY_RUNG).figure()
         (axes,) = figure.axes
     assert_names_are_apart(figure)
     for label, factor in (("euler", 1), ("kirchhoff", 1.3)):
@@ -605,38 +602,33 @@ def test_time_is_drawn_by_bits() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rows", "said"),
+    ("ratios", "said"),
     [
-        (None, r"expected a list of ratios, got None @ prices"),
-        ([], r"expected a list of ratios, got \[\] @ prices"),
-        ([7], r"expected a row .*, got 7 @ prices\[0\]"),
-        ([{"label": "", "rung": "f64", "ratio": 1}], r"expected a text, got '' @ prices\[0\]\.label"),
-        ([{"label": "a", "rung": "f64"}], r"got None @ prices\[0\]\.ratio"),
-        ([{"label": "a", "rung": "f64", "ratio": nan}], r"got nan @ prices\[0\]\.ratio"),
-        ([{"label": "a", "rung": "f64", "ratio": inf}], r"got inf @ prices\[0\]\.ratio"),
-        ([{"label": "a", "rung": "f64", "ratio": -1}], r"got -1 @ prices\[0\]\.ratio"),
-        ([{"label": "a", "rung": "f64", "ratio": True}], r"got True @ prices\[0\]\.ratio"),
-        ([{"label": "a", "rung": "f64", "ratio": 3, "high": 2}], r"between 3 and 2, got 3"),
+        ([], r"expected ratios, got none @ ratios"),
+        ([Ratio("", "f64", 1)], r"expected a text, got '' @ ratios\[0\]\.label"),
+        ([Ratio("a", "f64", nan)], r"got nan @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", inf)], r"got inf @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", -1)], r"got -1 @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", 1, low=0.0)], r"got 0.0 @ ratios\[0\]\.low"),
+        ([Ratio("a", "f64", 3, high=2)], r"between 3 and 2, got 3"),
     ],
-)  # fmt: skip
-def test_a_ratio_that_is_none_is_refused(rows: object, said: str) -> None:
-    """What is no row, no text, no positive number or outside its range is named with its place."""
+)
+def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], said: str) -> None:
+    """What has no text, no positive number or is outside its range is named with its place."""
     with pytest.raises(ValueError, match=said):
-        prices.picture(PRICES | {"prices": rows})
+        priced(ratios)
 
 
 def test_every_fault_is_said_at_once() -> None:
-    """Two faulty rows give two lines."""
-    rows = [{"label": "a", "rung": "f64", "ratio": 0}, {"label": "b", "rung": "", "ratio": 1}]
-    with pytest.raises(ValueError, match=r"prices\[0\]\.ratio\n.*prices\[1\]\.rung"):
-        prices.picture(PRICES | {"prices": rows})
+    """Two faulty ratios give two lines."""
+    with pytest.raises(ValueError, match=r"ratios\[0\]\.ratio\n.*ratios\[1\]\.rung"):
+        priced([Ratio("a", "f64", 0), Ratio("b", "", 1)])
 
 
 def test_a_rung_without_bits_is_refused() -> None:
     """A rung without a number of bits has no place on the axis."""
-    rows = [{"label": "a", "rung": "double", "ratio": 1}]
-    with pytest.raises(ValueError, match=r"expected a rung.*, got 'double' @ rungs\[0\]"):
-        time_by_rung.picture(TIMES_BY_RUNG | {"rungs": rows})
+    with pytest.raises(ValueError, match=r"expected a rung.*, got 'double' @ ratios\[0\]"):
+        time_by_rung.picture("two scenes", [Ratio("a", "double", 1)])
 
 
 @pytest.mark.parametrize(("value", "text"), [(1.0, "10⁰"), (1e-33, "10⁻³³"), (1e12, "10¹²")])

@@ -15,6 +15,7 @@ import pytest
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.publish import prices as page
+from taylor_verify.records.studies.prices import PricesStudy
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.trade import prices
@@ -68,7 +69,7 @@ def test_variants_of_one_scene_take_the_same_steps(name: str) -> None:
 
 
 @cache
-def short() -> dict[str, Any]:
+def short() -> PricesStudy:
     """A short measurement of a few variants."""
     patch = pytest.MonkeyPatch()
     kept = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
@@ -77,7 +78,7 @@ def short() -> dict[str, Any]:
     patch.setattr(prices, "_LEAST_SECONDS", 1e-4)
     told: list[str] = []
     try:
-        found = prices.document(told.append)
+        found = prices.study(told.append)
     finally:
         patch.undo()
     assert told == ["f64"]
@@ -85,27 +86,27 @@ def short() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def measured() -> dict[str, Any]:
+def measured() -> PricesStudy:
     return short()
 
 
-def test_the_barest_form_costs_one(measured: dict[str, Any]) -> None:
+def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
     """Its ratio to itself is 1 in every round, so that median and interval are exactly 1."""
-    for row in measured["rows"]:
-        if row["variant"] == row["against"]:
-            assert row["step_ratio"] == row["time_ratio"] == [1.0, 1.0, 1.0]
+    for row in measured.rows:
+        if row.variant == row.against:
+            assert row.step_ratio == row.time_ratio == (1.0, 1.0, 1.0)
 
 
-def test_rows_count_what_is_built(measured: dict[str, Any]) -> None:
+def test_rows_count_what_is_built(measured: PricesStudy) -> None:
     """States and operations are those of the form, and the error is one of the rung's roundings."""
-    for row in measured["rows"]:
-        form = named(row["variant"]).posed(F64).form
-        assert row["states"] == len(form.states)
-        assert {k: row[k] for k in ("sums", "products", "quotients")} == form.operations()
-        low, high = row["step_ratio"][1:]
-        assert 0 < low <= row["step_ratio"][0] <= high
+    for row in measured.rows:
+        form = named(row.variant).posed(F64).form
+        assert row.states == len(form.states)
+        assert {k: getattr(row, k) for k in ("sums", "products", "quotients")} == form.operations()
+        median, low, high = row.step_ratio
+        assert 0 < low <= median <= high
         # Scores of periods, each some roundings long: a thousand units, and no coarser number.
-        assert row["error"] <= 1000 * 2.0**-53
+        assert row.error <= 1000 * 2.0**-53
 
 
 def test_equal_error_is_read_between_two_tolerances() -> None:
@@ -118,7 +119,7 @@ def test_equal_error_is_read_between_two_tolerances() -> None:
     assert prices._between([math.nan, e / 100], [1.0, 4.0]) is None
 
 
-def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: dict[str, Any]) -> None:
+def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
     """Every row is on it, it is the same when made again, and without a measurement there is none."""
     assert page.pages(tmp_path) == {}
     stored, *drawn, made, flat = page.write(tmp_path, measured)
@@ -126,9 +127,10 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: dict[str, Any
     text = made.read_text(encoding="utf-8")
     sheet = flat.read_text(encoding="utf-8")
     assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
-    for row in measured["rows"]:
-        assert f"| {row['variant']} " in text
+    assert page.load(tmp_path) == measured
+    for row in measured.rows:
+        assert f"| {row.variant} " in text
     assert "attitude and centre" in text
     stored.write_text('{"rows": 3}', encoding="utf-8")
-    with pytest.raises(ValueError, match="expected measured prices"):
+    with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
         page.pages(tmp_path)

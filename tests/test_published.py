@@ -15,6 +15,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import made
 import pytest
@@ -38,11 +39,16 @@ from taylor_verify.publish import (
     drawings,
     extremes,
     gallery,
+    growth,
     measured,
+    prices,
+    reach,
     reference_files,
     report,
     sights,
+    trades,
     traps,
+    worst,
 )
 from taylor_verify.publish import widths as widths_page
 from taylor_verify.publish.attainable import attainable
@@ -52,8 +58,16 @@ from taylor_verify.publish.paper import files as paper
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.publish.replacement import first_line
 from taylor_verify.publish.site.builder import build
+from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.enclosure import EnclosureStudy
+from taylor_verify.records.studies.growth import GrowthStudy
+from taylor_verify.records.studies.prices import PricesStudy
+from taylor_verify.records.studies.reach import ReachStudy
+from taylor_verify.records.studies.tradeoff import TradeNumbers, TradeTimings
+from taylor_verify.records.studies.traps import TrapsStudy
+from taylor_verify.records.studies.worst import WorstStudy
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reader import load
@@ -185,6 +199,27 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
     assert len(documents) > 10
     unlike = [p for p in documents if data.laid_out(json.loads(text_of(p))) != text_of(p)]
     assert unlike == []
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "kind"),
+    [
+        (growth.GROWTH, "growth", GrowthStudy),
+        (growth.LONG, "growth", GrowthStudy),
+        (reach.REACH, "reach", ReachStudy),
+        (prices.PRICES, "prices", PricesStudy),
+        (trades.NUMBERS, "tradeoff", TradeNumbers),
+        (trades.TIMINGS, "tradeoff", TradeTimings),
+        (traps.TRAPS, "controls", TrapsStudy),
+        (worst.WORST, "worst", WorstStudy),
+        (widths_page.STORED, "enclosure", EnclosureStudy),
+    ],
+)
+def test_a_published_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:
+    """Keys, their order, lines and every digit are those of the committed file."""
+    made_by = {"made_by": f"taylor-verify publish --{option}; do not edit"}
+    text = data.laid_out({**made_by, **complete(read(REPORTS / name, kind))})
+    assert text == text_of(name)
 
 
 def test_every_scene_is_published_as_it_is_now() -> None:

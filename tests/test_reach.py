@@ -13,6 +13,7 @@ from mpmath import mp
 import taylor_verify
 from taylor_verify.exact.elements import elements
 from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.studies.reach import ReachRow
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -34,7 +35,7 @@ def short(name: str, far: Mapping[str, int]) -> Family:
     return replace(family(name), far=dict(far))
 
 
-def measured(one: Family, value: str, *names: str) -> dict[str, reach.Reach]:
+def measured(one: Family, value: str, *names: str) -> dict[str, ReachRow]:
     return {r.rung: r for r in reach.reaches(one, value, map(rung, names or one.far))}
 
 
@@ -120,13 +121,13 @@ def test_errors_and_floors_are_the_judges(name: str, value: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def axis() -> dict[str, dict[str, reach.Reach]]:
+def axis() -> dict[str, dict[str, ReachRow]]:
     """Two members beside the unstable axis, by value and rung."""
     one = short("unstable-axis", {"f32": 3, "f64": 3, "f80": 3})
     return {value: measured(one, value) for value in ("1e-2", "1e-10")}
 
 
-def test_digits_only_get_fewer(axis: dict[str, dict[str, reach.Reach]]) -> None:
+def test_digits_only_get_fewer(axis: dict[str, dict[str, ReachRow]]) -> None:
     """Errors and floors are the largest so far: neither falls with the periods."""
     for by_rung in axis.values():
         for found in by_rung.values():
@@ -135,7 +136,7 @@ def test_digits_only_get_fewer(axis: dict[str, dict[str, reach.Reach]]) -> None:
             assert len(found.errors) == len(found.periods)
 
 
-def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, reach.Reach]]) -> None:
+def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
     """Floors are as the roundoffs, but for the steps that each rung takes; and so are the errors."""
     f64, f80 = axis["1e-2"]["f64"], axis["1e-2"]["f80"]
     ratio = f80.floors[0] / f64.floors[0] * 2**11
@@ -143,14 +144,14 @@ def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, reach.Reach]]) -> No
     assert f80.errors[0] < f64.errors[0] < axis["1e-2"]["f32"].errors[0]
 
 
-def test_solvers_come_near_the_floor(axis: dict[str, dict[str, reach.Reach]]) -> None:
+def test_solvers_come_near_the_floor(axis: dict[str, dict[str, ReachRow]]) -> None:
     """What is not lost is within the judge's factor of the attainable error."""
     for found in axis["1e-2"].values():
         for error, least in zip(found.errors, found.floors, strict=True):
             assert error <= GATE_FACTOR * least or least >= 0.1
 
 
-def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, reach.Reach]]) -> None:
+def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> None:
     """1e-10 beside the axis doubles are lost in the first period: none is run after, and none told."""
     found = axis["1e-10"]["f64"]
     assert found.errors[0] >= 1
@@ -158,7 +159,7 @@ def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, reach.Reach]]) -
     assert found.floors[0] >= 1
     one = short("unstable-axis", {"f64": 1})
     assert found.steps == measured(one, "1e-10")["f64"].steps
-    assert found.row()["errors"][1:] == [None] * (len(found.periods) - 1)
+    assert reach.stored(found).errors[1:] == (None,) * (len(found.periods) - 1)
 
 
 @pytest.mark.parametrize(
@@ -191,8 +192,8 @@ def test_nan_is_lost_for_ever() -> None:
     errors = reach._up_to([1e-9] * 4 + [1e-9, nan, 1e-9, 1e-9] + [1e-9] * 4)
     assert errors[0] == 1e-9
     assert all(error != error for error in errors[1:])
-    row = reach.Reach("a", "1", "f64", (1, 3, 10), errors, errors).row()
-    assert row["errors"] == [1e-9, None, None]
+    row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))
+    assert row.errors == row.floors == (1e-9, None, None)
 
 
 def test_the_precision_of_mpmath_is_left_as_it_was() -> None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, nan
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import given
@@ -16,62 +16,49 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from taylor_verify.cli import main
+from taylor_verify.publish import data
 from taylor_verify.publish import reach as page
 from taylor_verify.publish.cells import NOTHING
 from taylor_verify.publish.pictures import digits_map
 from taylor_verify.publish.pictures.palette import TEXT_CONTRAST, contrast, lightness
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.records.studies.reach import ReachFamily, ReachRow, ReachStudy
 from taylor_verify.trade import reach
 
 # The page
 
 
-def row(value: str, name: str, *errors: float | None, why: str = "") -> dict[str, Any]:
-    """A row as `Reach.row` gives it; the floor is a tenth of the error."""
-    return {
-        "family": "axis",
-        "value": value,
-        "rung": name,
-        "periods": [1, 10, 100],
-        "errors": list(errors),
-        "floors": [None if error is None else error / 10 for error in errors],
-        "steps": 9,
-        "why": why,
-    }
+def row(value: str, name: str, *errors: float | None, why: str = "") -> ReachRow:
+    """A stored row; the floor is a tenth of the error."""
+    floors = tuple(None if error is None else error / 10 for error in errors)
+    return ReachRow("axis", value, name, (1, 10, 100), errors, floors, 9, why)
 
 
 VALUES = ("1e-1", "1e-2", "1e-3")
+AXIS = ReachFamily(
+    "axis", "a body beside something", "d", "something", VALUES, {"f32": 100, "f64": 100}
+)
 
 
-def document() -> dict[str, Any]:
+def study() -> ReachStudy:
     """One family of three values on two rungs, with everything that a table has to tell."""
-    return {
-        "families": [
-            {
-                "name": "axis",
-                "title": "a body beside something",
-                "symbol": "d",
-                "extreme": "something",
-                "values": list(VALUES),
-                "rungs": {"f32": 100, "f64": 100},
-            }
-        ],
-        "rows": [
-            row("1e-1", "f32", 1e-6, 1e-4, 1e-2),
-            row("1e-2", "f32", 1e-3, 0.5, None, why="the run stopped: too many steps"),
-            row("1e-3", "f32", why="rounded to f32, it is another orbit"),
-            row("1e-1", "f64", 1e-14, 1e-13, 1e-12),
-            row("1e-2", "f64", 1e-13, 1e-11, 1e-9),
-            row("1e-3", "f64", 1e-12, 1e-8, 0.0),
-        ],
-        "lost": 1.0,
-        "provenance": {"processor": "some", "versions": {"heyoka": "7"}, "command": "publish"},
-    }
+    rows = (
+        row("1e-1", "f32", 1e-6, 1e-4, 1e-2),
+        row("1e-2", "f32", 1e-3, 0.5, None, why="the run stopped: too many steps"),
+        row("1e-3", "f32", why="rounded to f32, it is another orbit"),
+        row("1e-1", "f64", 1e-14, 1e-13, 1e-12),
+        row("1e-2", "f64", 1e-13, 1e-11, 1e-9),
+        row("1e-3", "f64", 1e-12, 1e-8, 0.0),
+    )
+    return ReachStudy((AXIS,), rows, 1.0, SceneProvenance({"heyoka": "7"}, "some", "publish"))
 
 
-def of_rung(name: str) -> list[dict[str, Any]]:
-    return [one for one in document()["rows"] if one["rung"] == name]
+def of_rung(name: str) -> list[ReachRow]:
+    return [one for one in study().rows if one.rung == name]
 
 
 def test_the_last_value_and_the_most_periods() -> None:
@@ -94,7 +81,7 @@ ERRORS = st.lists(st.floats(0, 10) | st.sampled_from([None, nan, 1e-3, 1e-6, 1e-
 @given(st.lists(ERRORS.map(lambda found: found[:3]), min_size=1, max_size=6), st.integers(1, 15))
 def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int) -> None:
     """Up to the value told every error is small enough, and the next one's is not."""
-    rows = [{**row(str(k), "f64"), "errors": errors} for k, errors in enumerate(table)]
+    rows = [replace(row(str(k), "f64"), errors=tuple(e)) for k, e in enumerate(table)]
     told = page.last_value(rows, 10, digits)
     count = 0 if told is None else int(told) + 1
     good = [errors[1] is not None and errors[1] <= 10.0**-digits for errors in table]
@@ -105,7 +92,7 @@ def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int)
 def test_page_is_made_of_what_was_stored(tmp_path: Path) -> None:
     """Made again it is the same; each answer is in its cell; without a measurement there is none."""
     assert page.pages(tmp_path) == {}
-    paths = page.write(tmp_path, document())
+    paths = page.write(tmp_path, study())
     assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
     assert all(path.exists() for path in paths)
     text = (tmp_path / page.PAGE).read_text(encoding="utf-8")
@@ -124,6 +111,13 @@ def test_stored_data_that_are_none_are_refused(tmp_path: Path) -> None:
     place = tmp_path / page.REACH
     place.parent.mkdir()
     place.write_text('{"families": 3}', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a list, got 3 @ families @ .*reach\.json"):
+        page.pages(tmp_path)
+
+
+def test_families_without_their_rows_are_refused(tmp_path: Path) -> None:
+    """A typed document that lacks what its page needs is a ValueError with the file."""
+    replace_files(tmp_path, {page.REACH: data.laid_out(complete(replace(study(), rows=())))})
     with pytest.raises(ValueError, match=r"expected a measured reach, .* @ .*reach\.json"):
         page.pages(tmp_path)
 
@@ -133,17 +127,16 @@ def test_the_verb_measures_and_writes(
 ) -> None:
     """`publish --reach` stores what was measured, tells each member as it ends, and what it wrote."""
 
-    def made(finished: Any) -> dict[str, Any]:
+    def made(finished: Callable[[str], None]) -> ReachStudy:
         finished("axis d = 1e-1")
-        return document()
+        return study()
 
-    monkeypatch.setattr(reach, "document", made)
+    monkeypatch.setattr(reach, "study", made)
     assert main(["publish", "--reach", "--from", str(tmp_path), "--json"]) == 0
     out, err = capsys.readouterr()
     assert str(tmp_path / page.PAGE) in json.loads(out)["written"]
     assert "axis d = 1e-1" in err
-    stored = json.loads((tmp_path / page.REACH).read_text(encoding="utf-8"))
-    assert stored["rows"] == document()["rows"]
+    assert page.load(tmp_path) == study()
 
 
 # The map
@@ -151,7 +144,7 @@ def test_the_verb_measures_and_writes(
 
 @pytest.fixture
 def figure() -> Iterator[Figure]:
-    (picture,) = page.pictures(document())
+    (picture,) = page.pictures(study())
     with plotting():
         yield picture.figure()
 
@@ -182,11 +175,10 @@ def test_the_map_is_as_wide_as_the_page(figure: Figure) -> None:
 
 def test_no_name_hides_another() -> None:
     """However many values there are, the names below them stand apart."""
-    (one,) = document()["families"]
-    values = [f"1e-{2 * k}" for k in range(1, 21)]
+    values = tuple(f"1e-{2 * k}" for k in range(1, 21))
     rows = [row(value, "f64", 1e-9, 1e-8, 1e-7) for value in values]
     with plotting():
-        drawn = digits_map.picture({**one, "values": values}, rows).figure()
+        drawn = digits_map.picture(replace(AXIS, values=values), rows).figure()
         drawn.canvas.draw()
         axes = next(axes for axes in drawn.axes if axes.get_xticks().size)
         boxes = [label.get_window_extent() for label in axes.get_xticklabels()]
@@ -214,7 +206,7 @@ def test_whole_digits(digits: int) -> None:
 
 def test_alt_text_says_how_far_six_digits_go() -> None:
     """Who cannot see the map is told the values at its two ends."""
-    (picture,) = page.pictures(document())
+    (picture,) = page.pictures(study())
     assert "On f32 six digits are left after 1 period up to 1e-1" in picture.alt
     assert "after 100 periods up to none of these" in picture.alt
     assert "On f64 six digits are left after 1 period up to 1e-3" in picture.alt
@@ -222,6 +214,5 @@ def test_alt_text_says_how_far_six_digits_go() -> None:
 
 def test_a_map_of_nothing_is_refused() -> None:
     """A family without a run has no picture."""
-    (one,) = document()["families"]
     with pytest.raises(ValueError, match="expected runs of the family, got none @ axis"):
-        digits_map.picture(one, [])
+        digits_map.picture(AXIS, [])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import random
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import comb, isclose
 from pathlib import Path
 from statistics import median
@@ -17,13 +17,14 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
 from taylor_verify.publish import report
+from taylor_verify.records.studies.tradeoff import Standing, TradePoint
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.trade import measurement, rounds
-from taylor_verify.trade.measurement import PROCESSES, SCENES, TIMES, published_settings
+from taylor_verify.trade.measurement import PROCESSES, SCENES, published_settings
 from taylor_verify.trade.order_statistics import CONFIDENCE, coverage, estimate, place
 from taylor_verify.trade.rounds import YARDSTICK, clock_resolution, measured
 from taylor_verify.trade.setting import setting as real_setting
@@ -237,15 +238,17 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
     told: list[str] = []
     found = measurement.measurement(["euler/generic"], 2, 1, finished=told.append)
     numbers, times = found.numbers(), found.times()
-    (one,) = numbers["scenes"]
-    assert not {*TIMES} & {key for row in one["points"] for key in row}
-    assert [row["standing"] for row in one["points"]] == ["sound", "sound", "not run"]
-    timed = {(row["solver"], row["rung"]): row for row in times["timings"]}
+    (one,) = numbers.scenes
+    assert {p.scene for p in numbers.points} == {one.scene}
+    assert not {"seconds", "spread", "repeats"} & {f.name for f in fields(TradePoint)}
+    sound, not_run = Standing.SOUND, Standing.NOT_RUN
+    assert [p.standing for p in numbers.points] == [sound, sound, not_run]
+    timed = {(row.solver, row.rung): row for row in times.timings}
     assert set(timed) == {("taylor", "f64"), ("taylor?tol=1e-6", "f64")}
-    assert timed[YARDSTICK]["ratio"] == 1
-    assert timed[YARDSTICK]["processes"] == 2
+    assert timed[YARDSTICK].ratio == 1
+    assert timed[YARDSTICK].processes == 2
     # Two processes are too few for an interval, and none is claimed.
-    assert timed[YARDSTICK]["low"] is None
+    assert timed[YARDSTICK].low is None
     assert len(told) == 4
 
 

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import re
+from dataclasses import replace
 from math import log10
 from pathlib import Path
 from typing import Any
@@ -16,15 +17,27 @@ from taylor_verify.publish.cells import NOTHING
 from taylor_verify.publish.pictures.wording import floors_of
 from taylor_verify.publish.report import publish_tradeoff
 from taylor_verify.publish.tradeoff import front, page
-from taylor_verify.publish.trades import NUMBERS, TIMINGS, load, write
+from taylor_verify.publish.trades import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
+from taylor_verify.records.studies.tradeoff import (
+    PlainDouble,
+    Standing,
+    TimingMachine,
+    TimingMethod,
+    TradeNumbers,
+    TradePoint,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
+)
 
 
-def point(solver: str, error: float | None, **changed: Any) -> dict[str, Any]:
-    """A row as a trade has it, without times."""
+def point(solver: str, error: float | None, **changed: Any) -> TradePoint:
+    """A point as it is stored, without times."""
     family = solver.partition("?")[0].replace(":", " ")
     rung = changed.get("rung", "f64")
     tolerance = re.search(r"tol=([^&]*)", solver)
     row = {
+        "scene": "euler/generic",
         "solver": solver,
         "setting": "",
         "rung": rung,
@@ -34,18 +47,20 @@ def point(solver: str, error: float | None, **changed: Any) -> dict[str, Any]:
         "requested_digits": None,
         "achieved_digits": None if not error else round(-log10(error), 6),
         "error": error,
+        "max": {},
+        "final": {},
         "drift": 1e-15,
         "drifting": "T",
         "steps": 7,
         "evaluations": 70,
         "outcome": "reached the last sample",
-        "standing": "sound",
+        "standing": Standing.SOUND,
         "because": "",
     }
-    return row | changed
+    return TradePoint(**(row | changed))
 
 
-POINTS = [
+POINTS = (
     point("taylor?tol=1e-6", 1e-7),
     point("taylor", 1e-14),
     point("taylor", 1e-32, rung="f128"),
@@ -55,14 +70,14 @@ POINTS = [
     point(
         "scipy:RK45?rtol=1e-3&atol=1e-3",
         1.5,
-        standing="false success",
+        standing=Standing.FALSE,
         because="it claims success with an error of 1.5, the size | of the motion",
     ),
     point("geometric:splitting?step=1/4", 1e-3, asked="step", requested=0.25),
     point("outside:cvode-bdf?rtol=1e-9&atol=1e-9", 1e-10),
     point("closed-form:ellipj", 1e-14),
-    point("mpmath:odefun", None, standing="not run", because="it would take minutes"),
-]
+    point("mpmath:odefun", None, standing=Standing.NOT_RUN, because="it would take minutes"),
+)
 # By solver and rung: ratio to the yardstick.
 RATIOS = {
     ("taylor?tol=1e-6", "f64"): 0.8,
@@ -75,75 +90,53 @@ RATIOS = {
     ("outside:cvode-bdf?rtol=1e-9&atol=1e-9", "f64"): 0.9,
     ("closed-form:ellipj", "f64"): 0.1,
 }
-NUMBERS_MADE = {
-    "versions": {"heyoka": "7.13.0"},
-    "yardstick": "taylor f64",
-    "scenes": [
-        {
-            "scene": "euler/generic",
-            "title": "A body",
-            "track": ["omega"],
-            "sha256": "0",
-            "points": POINTS,
-            "requests": [],
-        }
-    ],
-    "plain_doubles": [
-        {
-            "what": "easy",
-            "scene": "euler/generic",
-            "end": 100.0,
-            "m_prime": 0.5,
-            "error": 1e-14,
-            "outcome": "reached the last sample",
-            "standing": "sound",
-            "because": "",
-            "beside": "taylor",
-            "error_beside": 2e-14,
-        },
-        {
-            "what": "hard",
-            "scene": "euler/generic",
-            "end": 100.0,
-            "m_prime": 2e-12,
-            "error": 4e18,
-            "outcome": "reached the last sample",
-            "standing": "false success",
-            "because": "",
-            "beside": "taylor",
-            "error_beside": None,
-        },
-    ],
-}
-TIMES_MADE = {
-    "machine": {"processor": "A chip", "python": "3.11.7", "command": "taylor-verify publish"},
-    "method": {
-        "processes": 6,
-        "rounds": 3,
-        "seed": 1,
-        "least_seconds": 2e-3,
-        "times_resolution": 100,
-        "clock_resolution": 5e-8,
-        "confidence": 0.95,
-        "coverage": 0.96875,
-        "formula": "1 - 2 sum_{i<k} C(n, i)/2^n",
-        "of": "the propagation",
-    },
-    "timings": [
-        {
-            "scene": "euler/generic",
-            "solver": solver,
-            "rung": rung,
-            "seconds": ratio / 500,
-            "inner_seconds": 0.001 if solver == "taylor" else None,
-            "ratio": ratio,
-            "low": ratio * 0.9,
-            "high": ratio * 1.2,
-            "processes": 6,
-        }
+REACHED = "reached the last sample"
+SCENE = TradeScene("euler/generic", "A body", ("omega",), "0")
+NUMBERS_MADE = TradeNumbers(
+    versions={"heyoka": "7.13.0"},
+    yardstick="taylor f64",
+    scenes=(SCENE,),
+    plain_doubles=(
+        PlainDouble(
+            *("easy", "euler/generic", 100.0, 0.5, 1e-14),
+            *(REACHED, Standing.SOUND, "", "taylor", 2e-14),
+        ),
+        PlainDouble(
+            *("hard", "euler/generic", 100.0, 2e-12, 4e18),
+            *(REACHED, Standing.FALSE, "", "taylor", None),
+        ),
+    ),
+    points=POINTS,
+)
+TIMES_MADE = TradeTimings(
+    machine=TimingMachine("A chip", "3.11.7", "taylor-verify publish"),
+    method=TimingMethod(
+        processes=6,
+        rounds=3,
+        seed=1,
+        least_seconds=2e-3,
+        times_resolution=100,
+        clock_resolution=5e-8,
+        confidence=0.95,
+        coverage=0.96875,
+        formula="1 - 2 sum_{i<k} C(n, i)/2^n",
+        of="the propagation",
+    ),
+    timings=tuple(
+        TradeTiming(
+            scene="euler/generic",
+            solver=solver,
+            rung=rung,
+            seconds=ratio / 500,
+            inner_seconds=0.001 if solver == "taylor" else None,
+            ratio=ratio,
+            low=ratio * 0.9,
+            high=ratio * 1.2,
+            processes=6,
+        )
         for (solver, rung), ratio in RATIOS.items()
-    ],
-}
+    ),
+)
 
 
 @pytest.fixture
@@ -179,7 +172,8 @@ def test_what_was_stored_is_read_again(folder: Path) -> None:
     found = load(folder)
     assert found is not None
     (trade,) = found.trades
-    assert [{key: row[key] for key in POINTS[0]} for row in trade.rows] == POINTS
+    assert found == Trades(NUMBERS_MADE, TIMES_MADE)
+    assert trade.points == POINTS
     assert trade.rows[1]["ratio"] == 1.0
     assert trade.rows[1]["spread"] == pytest.approx(1.2 / 0.9)
     assert trade.rows[-1]["ratio"] is None
@@ -209,22 +203,30 @@ def test_a_wider_number_has_its_price(folder: Path) -> None:
     assert "**40.0** [36.0, 48.0], 32.0 digits" in table
 
 
-@pytest.mark.parametrize("floors", [{"f64": 2e-16, "f128": None}, None])
+@pytest.mark.parametrize("floors", [{"f64": 2e-16, "f128": None}, {}])
 def test_what_rounding_alone_leaves_stands_beside_it(
-    floors: dict[str, float | None] | None, tmp_path: Path
+    floors: dict[str, float | None], tmp_path: Path
 ) -> None:
     """A line of digits on each rung where the measurement has them, none where it does not."""
-    (scene,) = NUMBERS_MADE["scenes"]
-    known = {} if floors is None else {"attainable": floors}
-    write(tmp_path, {**NUMBERS_MADE, "scenes": [{**scene, **known}]}, TIMES_MADE)
+    write(tmp_path, replace(NUMBERS_MADE, scenes=(replace(SCENE, attainable=floors),)), TIMES_MADE)
+    if not floors:
+        without_key(tmp_path / NUMBERS, "attainable")
     found = load(tmp_path)
     assert found is not None
     table = section(page(found, tmp_path), "What a wider number costs")
-    if floors is None:
+    if not floors:
         assert "| *attainable*" not in table
         return
     assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
     assert floors_of(found.trades[0].document()) == {"f64": 2e-16}
+
+
+def without_key(file: Path, key: str) -> None:
+    """As a measurement of earlier versions stored it."""
+    document = json.loads(file.read_text(encoding="utf-8"))
+    for scene in document["scenes"]:
+        del scene[key]
+    file.write_text(json.dumps(document), encoding="utf-8")
 
 
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
@@ -251,11 +253,10 @@ def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> Non
 
 def test_the_front_is_what_nothing_beats() -> None:
     """Of equal times the more accurate stays; of equal errors the faster."""
+    timing = TIMES_MADE.timings[0]
     rows = [
-        {"ratio": 1.0, "error": 1e-3},
-        {"ratio": 1.0, "error": 1e-4},
-        {"ratio": 2.0, "error": 1e-4},
-        {"ratio": 3.0, "error": 1e-5},
+        TimedPoint(point("taylor", error), replace(timing, ratio=ratio))
+        for ratio, error in ((1.0, 1e-3), (1.0, 1e-4), (2.0, 1e-4), (3.0, 1e-5))
     ]
     assert front(rows) == [rows[1], rows[3]]
 
@@ -278,9 +279,9 @@ def test_the_method_is_on_the_page(folder: Path) -> None:
 
 def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
     """The page says so, and shows no brackets."""
-    method = TIMES_MADE["method"] | {"processes": 2, "coverage": 0.5}  # type: ignore[operator]
-    bare = [row | {"low": None, "high": None} for row in TIMES_MADE["timings"]]
-    publish_tradeoff(tmp_path, NUMBERS_MADE, TIMES_MADE | {"method": method, "timings": bare})
+    method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
+    bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
+    publish_tradeoff(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
     text = text_of(tmp_path)
     assert "No interval is given" in text
     assert "**12.0** @ 1e-09" in text
@@ -290,7 +291,7 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
     """With every digit, the failed ones included."""
     text = (folder / "tables" / "tradeoff.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(io.StringIO(text)))
-    assert [row["solver"] for row in rows] == [row["solver"] for row in POINTS]
+    assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
     assert rows[1]["ratio"] == "1.0"
     assert rows[6]["standing"] == "false success"
 
@@ -310,5 +311,5 @@ def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:
 def test_a_file_of_something_else_is_told(folder: Path) -> None:
     """With the file."""
     (folder / NUMBERS).write_text("{}", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected a measurement .*tradeoff\.json"):
+    with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
         load(folder)

@@ -15,6 +15,7 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.tradeoff import Standing
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
@@ -24,7 +25,6 @@ from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify.trade.cold import cold
-from taylor_verify.trade.point import Standing
 from taylor_verify.trade.recommend import recommend
 from taylor_verify.trade.setting import (
     NOTHING,

@@ -21,6 +21,7 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.cli.tradeoff_text import tradeoff_text
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.studies.tradeoff import Standing
 from taylor_verify.scenes.precision import Rung, rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -30,7 +31,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.trade.accuracy import Accuracy, Truth
 from taylor_verify.trade.attainability import least_error
 from taylor_verify.trade.front import dominates, front, front_sentences, request_sentences
-from taylor_verify.trade.point import Point, Standing, point
+from taylor_verify.trade.point import Point, point
 from taylor_verify.trade.recommend import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.trade.setting import Setting, settings
 from taylor_verify.trade.starts import STARTS, nearby

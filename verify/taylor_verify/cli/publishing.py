@@ -141,9 +141,9 @@ def enclosure(folder: Path) -> Answer:
 def prices(folder: Path) -> Answer:
     """What each thing that a scene may ask for costs, measured."""
     from taylor_verify.publish import prices as pages
-    from taylor_verify.trade.prices import RUNGS, document
+    from taylor_verify.trade.prices import RUNGS, study
 
-    return files_written(pages.write(folder, document(counting(len(RUNGS)))))
+    return files_written(pages.write(folder, study(counting(len(RUNGS)))))
 
 
 def tradeoff(folder: Path, outside: bool) -> Answer:
@@ -158,9 +158,9 @@ def tradeoff(folder: Path, outside: bool) -> Answer:
 def reach(folder: Path) -> Answer:
     """How far each precision carries in every family of extremes."""
     from taylor_verify.publish import reach as pages
-    from taylor_verify.trade.reach import document, members
+    from taylor_verify.trade.reach import members, study
 
-    return files_written(pages.write(folder, document(counting(members()))))
+    return files_written(pages.write(folder, study(counting(members()))))
 
 
 def extremes(folder: Path) -> Answer:

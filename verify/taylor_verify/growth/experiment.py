@@ -1,4 +1,4 @@
-"""From a question to how each of its errors grows: the whole chain, and its document."""
+"""The whole chain, from a question to the growth of each of its errors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import numpy as np
 from taylor_verify.growth.course import Course, Finished, course
 from taylor_verify.growth.errors import Floats, Measured, lane_errors
 from taylor_verify.growth.question import Question
-from taylor_verify.judge.growth import Exponent, Gate, Growth, growth
+from taylor_verify.judge.growth import Gate, Growth, growth
+from taylor_verify.records.json_text import finite
+from taylor_verify.records.studies.growth import Ensemble, GrowthGate, GrowthOfQuantity
 
 
 @dataclass(frozen=True)
@@ -38,32 +40,43 @@ class Experiment:
         """How many lanes did not come to the end."""
         return sum(not lane.goes_on for lane in self.course.lanes)
 
-    def document(self) -> dict[str, Any]:
+    def ensemble(self, why: str = "") -> Ensemble:
+        """Return the ensemble as it is stored; ``why`` says what it is measured for."""
         question = self.course.question
-        asked = question.document()
-        del asked["fingerprint"]
-        return {
-            **asked,
-            "period": question.period,
-            "lost": self.lost,
-            "counts": list(question.counts),
-            "steps": list(self.steps),
-            "quantities": [self._row(one) for one in self.found],
-        }
+        return Ensemble(
+            scene=question.scene.name,
+            digest=question.scene.digest,
+            solver=question.solver,
+            rung=question.rung.name,
+            periods=question.counts[-1],
+            lanes=question.lanes,
+            seed=question.seed,
+            period=question.period,
+            lost=self.lost,
+            counts=question.counts,
+            steps=self.steps,
+            quantities=tuple(map(self._quantity, self.found)),
+            why=why,
+        )
 
-    def _row(self, one: Found) -> dict[str, Any]:
+    def _quantity(self, one: Found) -> GrowthOfQuantity:
         u = float(self.course.question.rung.unit_roundoff)
-        grown = one.growth
-        return {
-            "quantity": one.quantity,
-            "rms": list(grown.rms),
+        grown, exponent = one.growth, one.growth.exponent
+        return GrowthOfQuantity(
+            quantity=one.quantity,
+            rms=_finite(*grown.rms),
             # Of a walk whose every step is one roundoff.
-            "in_walks": grown.rms[-1] / (u * sqrt(self.steps[-1])) if self.steps[-1] else None,
-            **_exponent_row(grown.exponent),
-            "late": [grown.late.value, grown.late.low, grown.late.high],
-            "late_word": grown.late.word,
-            "gate": _gate_row(grown.gate) if grown.gate else None,
-        }
+            in_walks=finite(grown.rms[-1] / (u * sqrt(self.steps[-1]))) if self.steps[-1] else None,
+            exponent=finite(exponent.value),
+            low=finite(exponent.low),
+            high=finite(exponent.high),
+            level=exponent.level,
+            lanes=exponent.lanes,
+            word=exponent.word,
+            late=_finite(grown.late.value, grown.late.low, grown.late.high),
+            late_word=grown.late.word,
+            gate=_gate(grown.gate) if grown.gate else None,
+        )
 
 
 def experiment(
@@ -107,22 +120,16 @@ def _mean_steps(followed: Course) -> tuple[float, ...]:
     return tuple(float(np.mean(row)) if row else 0.0 for row in counted)
 
 
-def _exponent_row(found: Exponent) -> dict[str, Any]:
-    return {
-        "exponent": found.value,
-        "low": found.low,
-        "high": found.high,
-        "level": found.level,
-        "lanes": found.lanes,
-        "word": found.word,
-    }
+def _finite(*values: float) -> tuple[Any, ...]:
+    """Return the numbers; None for each that is not finite."""
+    return tuple(map(finite, values))
 
 
-def _gate_row(found: Gate) -> dict[str, Any]:
-    return {
-        "verdict": found.verdict.value,
-        "law": found.law.value,
-        "chance": found.chance,
-        "false_alarm": found.false_alarm,
-        "because": found.because,
-    }
+def _gate(found: Gate) -> GrowthGate:
+    return GrowthGate(
+        verdict=found.verdict,
+        law=found.law.value,
+        chance=finite(found.chance),
+        false_alarm=found.false_alarm,
+        because=found.because,
+    )

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.growth.experiment import experiment
 from taylor_verify.growth.question import LEAST_PERIODS, Question
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.studies.growth import Ensemble, GrowthStudy
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
 from taylor_verify.solvers.taylor.name import TAYLOR
@@ -75,15 +77,15 @@ def followed(
     checkpoints: Path | None,
     finished: Finished,
     most: float | None = None,
-) -> dict[str, Any]:
-    """The document of the entries, in their order; a rung that is not here is left out and named.
+) -> GrowthStudy:
+    """Return the ensembles of the entries, in their order; a rung that is not here is left out and named.
 
     ``checkpoints`` is the folder in which those of ensembles that are under way are kept. Raises
     ValueError for too few periods, and for a checkpoint of something else.
     """
     if most is not None and not most >= LEAST_PERIODS:
         raise ValueError(f"expected at least {LEAST_PERIODS:.0f} periods, got {most:g}")
-    runs: list[dict[str, Any]] = []
+    runs: list[Ensemble] = []
     left_out: list[str] = []
     for entry in entries:
         if missing := unavailable(rung(entry.rung)):
@@ -95,12 +97,11 @@ def followed(
             finished(label, done, of)
 
         found = experiment(entry.question(most), file, told)
-        runs.append({**found.document(), "why": entry.why})
-    given = {"versions": versions(), "processor": processor(), "command": command()}
-    return {"runs": runs, "left_out": left_out, "provenance": given}
+        runs.append(found.ensemble(entry.why))
+    return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))
 
 
 def forget(entries: Sequence[Entry], checkpoints: Path) -> None:
-    """Remove the checkpoints of ensembles whose document has been stored."""
+    """Remove the checkpoints of ensembles that have been stored."""
     for entry in entries:
         (checkpoints / entry.file).unlink(missing_ok=True)

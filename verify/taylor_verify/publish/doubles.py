@@ -7,7 +7,7 @@ from typing import Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.trades import Row
+from taylor_verify.records.studies.tradeoff import PlainDouble, Standing
 
 _WHAT: Final = (
     "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
@@ -34,19 +34,19 @@ _WHY: Final = (
 )
 
 
-def doubles_table(rows: Iterable[Row]) -> str:
-    """A line for each case, and why."""
+def doubles_table(rows: Iterable[PlainDouble]) -> str:
+    """Return a line for each case, and why."""
     columns = [
         *(Column("orbit"), Column("until t", True), Column("1 - m", True), Column("error", True)),
         *(Column("taylor f64", True), Column("what it claims")),
     ]
     lines = [
         [
-            prose(row["what"]),
-            figure(row["end"]),
-            figure(row["m_prime"]),
+            prose(row.what),
+            figure(row.end),
+            figure(row.m_prime),
             _error(row),
-            figure(row["error_beside"]),
+            figure(row.error_beside),
             _claim(row),
         ]
         for row in rows
@@ -54,16 +54,16 @@ def doubles_table(rows: Iterable[Row]) -> str:
     return "\n\n".join([_WHAT, table(columns, lines), bullets(_WHY)])
 
 
-def _error(row: Row) -> str:
-    if row["error"] is None:
+def _error(row: PlainDouble) -> str:
+    if row.error is None:
         return NOTHING
-    return figure(row["error"]) if row["standing"] == "sound" else bold(figure(row["error"]))
+    return figure(row.error) if row.standing is Standing.SOUND else bold(figure(row.error))
 
 
-def _claim(row: Row) -> str:
-    """A false success stands out; an outcome that is honest is said in its own words."""
-    if row["standing"] == "sound":
+def _claim(row: PlainDouble) -> str:
+    """Return what the solver claims. A false success stands out; an honest outcome has its own words."""
+    if row.standing is Standing.SOUND:
         return "success"
-    if row["standing"] == "false success":
+    if row.standing is Standing.FALSE:
         return bold("success, falsely")
-    return prose(row["outcome"]) if row["outcome"] else code(row["standing"])
+    return prose(row.outcome) if row.outcome else code(row.standing.value)

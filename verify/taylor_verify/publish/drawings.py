@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from taylor_verify.publish import data, figures, gallery, growth, prices, reach, trades
+from taylor_verify.publish import figures, gallery, growth, prices, reach, trades
 from taylor_verify.publish.pictures.picture import Picture
 
 
@@ -25,19 +25,18 @@ def _traded(folder: Path) -> list[Picture]:
 
 
 def _priced(folder: Path) -> list[Picture]:
-    file = folder / prices.PRICES
-    return figures.of_prices(data.read_document(file)) if file.exists() else []
+    has_prices = (folder / prices.PRICES).exists()
+    return figures.of_prices(prices.load(folder)) if has_prices else []
 
 
 def _grown(folder: Path) -> list[Picture]:
-    stored = growth.load(folder)
-    picture = growth.picture_of(stored) if stored["runs"] else None
+    runs = growth.load(folder).runs
+    picture = growth.picture_of(runs) if runs else None
     return [picture] if picture else []
 
 
 def _reached(folder: Path) -> list[Picture]:
-    file = folder / reach.REACH
-    return reach.pictures(data.read_document(file)) if file.exists() else []
+    return reach.pictures(reach.load(folder)) if (folder / reach.REACH).exists() else []
 
 
 def _shown(folder: Path) -> list[Picture]:

@@ -6,14 +6,16 @@ pages that are made of stored data are the same but for them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish.markdown import prose
 from taylor_verify.publish.pictures import prices, time_by_rung, trade
 from taylor_verify.publish.pictures.picture import Picture, save
+from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.trades import Trade
+from taylor_verify.records.studies.prices import PricesStudy
 
 FOLDER: Final = "figures"
 
@@ -42,28 +44,23 @@ def of_trade(found: Trade) -> list[Picture]:
 def of_rungs(found: Sequence[Trade]) -> list[Picture]:
     """Taylor's time at each rung's own tolerance, a line for each scene."""
     rows = [
-        {"label": one.scene, **{key: row[key] for key in ("rung", "ratio", "low", "high")}}
+        Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
         for one in found
         for row in one.sound
-        if row["solver"] == "taylor"
+        if row.point.solver == "taylor"
     ]
-    return [time_by_rung.picture({"scene": "published", "rungs": rows})] if rows else []
+    return [time_by_rung.picture("published", rows)] if rows else []
 
 
-def of_prices(stored: Mapping[str, Any]) -> list[Picture]:
-    """What each thing that a scene may ask for costs on f64, a picture for each model."""
+def of_prices(study: PricesStudy) -> list[Picture]:
+    """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
     found = []
     for root, words in _BAREST.items():
         rows = [
-            {"label": row["variant"], "rung": row["rung"], **_interval(row["step_ratio"])}
-            for row in stored["rows"]
-            if row["against"] == root and row["rung"] == "f64" and row["variant"] != root
+            Ratio(row.variant, row.rung, *row.step_ratio)
+            for row in study.rows
+            if row.against == root and row.rung == "f64" and row.variant != root
         ]
         if rows:
-            document = {"scene": words, "yardstick": f"{root} alone", "prices": rows}
-            found.append(prices.picture(document))
+            found.append(prices.picture(words, f"{root} alone", rows))
     return found
-
-
-def _interval(ratio: Sequence[float | None]) -> dict[str, float | None]:
-    return dict(zip(("ratio", "low", "high"), ratio, strict=True))

@@ -6,9 +6,9 @@ growth-long.json   the same of the long run, where somebody has made it
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
@@ -16,7 +16,16 @@ from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, t
 from taylor_verify.publish.pictures import growth as diagram
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
+from taylor_verify.records.studies.growth import (
+    Ensemble,
+    GrowthGate,
+    GrowthOfQuantity,
+    GrowthStudy,
+    Number,
+)
 
 GROWTH: Final = f"{data.FOLDER}/growth.json"
 LONG: Final = f"{data.FOLDER}/growth-long.json"
@@ -61,56 +70,49 @@ _LEANING: Final = (
     "tolerance removes: round numbers make a handy example and a hard one."
 )
 
-Row = Mapping[str, Any]
 
-
-def write(folder: Path | str, document: Row, long: bool = False) -> list[Path]:
+def write(folder: Path | str, study: GrowthStudy, long: bool = False) -> list[Path]:
     """Store the ensembles below ``folder``, draw them where matplotlib is, and make the page.
 
     Raises OSError.
     """
     place = Path(folder)
     name = LONG if long else GROWTH
-    stored = list(replace_files(place, {name: data.laid_out({**_MADE_BY, **document})}))
+    stored = list(replace_files(place, {name: data.laid_out({**_MADE_BY, **complete(study)})}))
     return [*stored, *_drawn(place), *replace_files(place, pages(place))]
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The page of the ensembles stored below ``folder``; nothing where there are none.
+    """Return the page of the ensembles stored below ``folder``; nothing where there are none.
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """
-    found = load(folder)
-    if not found["runs"]:
+    study = load(folder)
+    if not study.runs:
         return {}
     with data.expecting("ensembles", folder / GROWTH):
-        return {PAGE: page(found, _shown(folder, found)), SHEET: measured.growth(found["runs"])}
+        return {PAGE: page(study, _shown(folder, study)), SHEET: measured.growth(study.runs)}
 
 
-def load(folder: Path) -> dict[str, Any]:
-    """Both files as one: the published runs, then the long ones; without files, no runs."""
-    runs: list[Row] = []
-    left_out: list[str] = []
-    provenance: Row = {}
-    for name in (GROWTH, LONG):
-        file = folder / name
-        if file.exists():
-            stored = data.read_document(file)
-            with data.expecting("ensembles", file):
-                runs += stored["runs"]
-                left_out += stored["left_out"]
-                provenance = provenance or stored["provenance"]
-    return {"runs": runs, "left_out": left_out, "provenance": provenance}
+def load(folder: Path) -> GrowthStudy:
+    """Return both files as one study: the published runs, then the long ones; without files, no runs."""
+    files = [folder / name for name in (GROWTH, LONG)]
+    stored = [read(file, GrowthStudy) for file in files if file.exists()]
+    return GrowthStudy(
+        runs=tuple(run for study in stored for run in study.runs),
+        left_out=tuple(one for study in stored for one in study.left_out),
+        provenance=stored[0].provenance if stored else Provenance(),
+    )
 
 
-def page(found: Row, pictures: str = "") -> str:
-    """The whole page."""
-    runs = found["runs"]
+def page(study: GrowthStudy, pictures: str = "") -> str:
+    """Return the whole page."""
+    runs = study.runs
     blocks = [
         f"{_MAKER}\n# How errors grow with time",
         _WHAT,
         _gates(runs),
-        bullets(prose(f"Left out: {one}.") for one in found["left_out"]),
+        bullets(prose(f"Left out: {one}.") for one in study.left_out),
         pictures,
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),
@@ -119,25 +121,21 @@ def page(found: Row, pictures: str = "") -> str:
         _LEANING,
         _NO_CONSERVATION,
         "## To remake this",
-        bullets(_remake(found["provenance"])),
+        bullets(_remake(study.provenance)),
     ]
     return "\n\n".join(block for block in blocks if block) + "\n"
 
 
-def picture_of(found: Row) -> Picture | None:
-    """All ensembles in one picture; None where there is nothing above zero to draw."""
-    runs = [
-        {**run, "label": label}
-        for run, label in zip(found["runs"], diagram.labels_of(found["runs"]), strict=True)
-    ]
+def picture_of(runs: Sequence[Ensemble]) -> Picture | None:
+    """Return all ensembles in one picture; None where there is nothing above zero to draw."""
     try:
-        return diagram.picture({"scene": "ensembles of starts", "runs": runs})
+        return diagram.picture(runs)
     except ValueError:
         return None
 
 
 def _drawn(place: Path) -> list[Path]:
-    picture = picture_of(load(place))
+    picture = picture_of(load(place).runs)
     if picture is None:
         return []
     try:
@@ -147,25 +145,24 @@ def _drawn(place: Path) -> list[Path]:
         return []
 
 
-def _shown(place: Path, found: Row) -> str:
-    picture = picture_of(found)
+def _shown(place: Path, study: GrowthStudy) -> str:
+    picture = picture_of(study.runs)
     return figures.shown(place, [picture]) if picture else ""
 
 
-def _gates(runs: Iterable[Row]) -> str:
-    """How many gates passed, and which did not."""
-    judged = [(run, row) for run in runs for row in run["quantities"] if row["gate"] is not None]
-    failed = [f"{code(row['quantity'])} of {_name(run)}" for run, row in judged if not _passed(row)]
+def _gates(runs: Iterable[Ensemble]) -> str:
+    """Return how many gates passed, and the names of those that did not."""
+    judged = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
+    failed = [f"{code(row.quantity)} of {_name(run)}" for run, row, gate in judged if _fails(gate)]
     told = f"{len(judged) - len(failed)} of {len(judged)} gates passed."
     return f"{told} Worse than a random walk: {'; '.join(failed)}." if failed else told
 
 
-def _section(run: Row) -> list[str]:
-    first, last = run["counts"][0], run["counts"][-1]
-    lost = bold(f" {run['lost']} of them did not reach the end.") if run["lost"] else ""
+def _section(run: Ensemble) -> list[str]:
+    lost = bold(f" {run.lost} of them did not reach the end.") if run.lost else ""
     told = (
-        f"{run['lanes']} starts from {_count(first)} to {_count(last)} periods of {figure(run['period'])} "
-        f"each, {figure(run['steps'][-1])} steps.{lost}"
+        f"{run.lanes} starts from {_count(run.counts[0])} to {_count(run.counts[-1])} periods of "
+        f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}"
     )
     columns = [
         Column("quantity"),
@@ -174,43 +171,43 @@ def _section(run: Row) -> list[str]:
     ]
     return [
         f"## {_name(run)}",
-        f"{prose(run['why'].capitalize())}. {told}",
-        table(columns, [_cells(row) for row in run["quantities"]]),
+        f"{prose(run.why.capitalize())}. {told}",
+        table(columns, [_cells(row) for row in run.quantities]),
     ]
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: GrowthOfQuantity) -> list[str]:
     return [
-        code(row["quantity"]),
-        figure(row["rms"][0]),
-        figure(row["rms"][-1]),
-        figure(row["in_walks"]),
-        _interval(row["exponent"], row["low"], row["high"]) if row["word"] != "exact" else NOTHING,
-        prose(row["word"]),
-        _interval(*row["late"]) if row["late_word"] != "exact" else NOTHING,
-        _verdict(row),
+        code(row.quantity),
+        figure(row.rms[0]),
+        figure(row.rms[-1]),
+        figure(row.in_walks),
+        _interval(row.exponent, row.low, row.high) if row.word != "exact" else NOTHING,
+        prose(row.word),
+        _interval(*row.late) if row.late_word != "exact" else NOTHING,
+        _verdict(row.gate),
     ]
 
 
-def _interval(value: float | None, low: float | None, high: float | None) -> str:
+def _interval(value: Number, low: Number, high: Number) -> str:
     if value is None or low is None or high is None:
         return NOTHING
     return f"{value:.2f} [{low:.2f}, {high:.2f}]"
 
 
-def _verdict(row: Row) -> str:
-    if row["gate"] is None:
+def _verdict(gate: GrowthGate | None) -> str:
+    if gate is None:
         return NOTHING
-    chance = f", chance {figure(row['gate']['chance'])}"
-    return f"pass{chance}" if _passed(row) else f"{bold(row['gate']['verdict'])}{chance}"
+    word = bold(gate.verdict.value) if _fails(gate) else gate.verdict.value
+    return f"{word}, chance {figure(gate.chance)}"
 
 
-def _passed(row: Row) -> bool:
-    return bool(row["gate"]["verdict"] == Status.PASS.value)
+def _fails(gate: GrowthGate) -> bool:
+    return gate.verdict is not Status.PASS
 
 
-def _gate_told(runs: Sequence[Row]) -> str:
-    rates = {row["gate"]["false_alarm"] for run in runs for row in run["quantities"] if row["gate"]}
+def _gate_told(runs: Sequence[Ensemble]) -> str:
+    rates = {row.gate.false_alarm for run in runs for row in run.quantities if row.gate}
     rate = figure(max(rates)) if rates else NOTHING
     return (
         "*no worse than a walk* holds the last decade against those before it. A walk's increments over "
@@ -223,8 +220,8 @@ def _gate_told(runs: Sequence[Row]) -> str:
     )
 
 
-def _remake(provenance: Row) -> list[str]:
-    versions = ", ".join(f"{name} {version}" for name, version in provenance["versions"].items())
+def _remake(provenance: Provenance) -> list[str]:
+    versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
     return [
         f"`taylor-verify publish --growth` follows the ensembles anew, writes [growth.json](../{GROWTH}), "
         "the picture and this page: minutes, all cores. It may be stopped and goes on from where it was.",
@@ -232,12 +229,12 @@ def _remake(provenance: Row) -> list[str]:
         "a thousand pieces of some seconds.",
         "Roundings are other draws on another processor, and so are the last digits here; the exponents "
         "are the same within their intervals.",
-        f"Machine: {prose(provenance['processor'])}; {versions}. Made by {code(provenance['command'])}.",
+        f"Machine: {prose(provenance.processor)}; {versions}. Made by {code(provenance.command)}.",
     ]
 
 
-def _name(run: Row) -> str:
-    return f"{run['scene']} on {run['rung']}, {run['solver']}"
+def _name(run: Ensemble) -> str:
+    return f"{run.scene} on {run.rung}, {run.solver}"
 
 
 def _count(periods: float) -> str:

@@ -13,6 +13,9 @@ from typing import Any, Final
 from taylor_verify.publish.sheets import sheet
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.studies.claims import ClaimRow, ClaimsStudy
+from taylor_verify.records.studies.growth import Ensemble, GrowthOfQuantity
+from taylor_verify.records.studies.prices import PriceRow, PricesStudy
+from taylor_verify.records.studies.reach import ReachRow
 from taylor_verify.records.studies.traps import TrapCase, TrapRow
 from taylor_verify.records.studies.worst import WorstStudy
 
@@ -57,65 +60,64 @@ _CLAIMS: Final = (
 )
 
 
-def growth(runs: Iterable[Row]) -> str:
-    """A row for every quantity of every ensemble: its exponent with the interval, and its gate."""
-    return sheet(_GROWTH, (_grown(run, row) for run in runs for row in run["quantities"]))
+def growth(runs: Iterable[Ensemble]) -> str:
+    """Return a row for every quantity of every ensemble: its exponent with the interval, and its gate."""
+    return sheet(_GROWTH, (_grown(run, row) for run in runs for row in run.quantities))
 
 
-def _grown(run: Row, row: Row) -> dict[str, Any]:
-    gate = row["gate"] or {}
-    late, late_low, late_high = row["late"]
+def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
+    late, late_low, late_high = row.late
+    shared = ("scene", "solver", "rung", "lost", "period")
+    own = ("quantity", "in_walks", "exponent", "low", "high", "word", "late_word", "level")
     return {
-        **{name: run[name] for name in ("scene", "solver", "rung", "lost", "period")},
-        **{name: row[name] for name in ("quantity", "in_walks", "exponent", "low", "high", "word")},
-        "starts": run["lanes"],
-        "periods_first": run["counts"][0],
-        "periods_last": run["counts"][-1],
-        "steps_last": run["steps"][-1],
-        "rms_first": row["rms"][0],
-        "rms_last": row["rms"][-1],
+        **{name: getattr(run, name) for name in shared},
+        **{name: getattr(row, name) for name in own},
+        "starts": run.lanes,
+        "periods_first": run.counts[0],
+        "periods_last": run.counts[-1],
+        "steps_last": run.steps[-1],
+        "rms_first": row.rms[0],
+        "rms_last": row.rms[-1],
         "late": late,
         "late_low": late_low,
         "late_high": late_high,
-        "late_word": row["late_word"],
-        "level": row["level"],
-        "gate": gate.get("verdict"),
-        **{name: gate.get(name) for name in ("law", "chance", "false_alarm")},
-        "scene_sha256": run["digest"],
+        "gate": row.gate.verdict.value if row.gate else None,
+        **{name: getattr(row.gate, name, None) for name in ("law", "chance", "false_alarm")},
+        "scene_sha256": run.digest,
     }
 
 
-def reach(rows: Iterable[Row]) -> str:
-    """A row for every number of periods that was looked at; one, with the reason, where none was."""
+def reach(rows: Iterable[ReachRow]) -> str:
+    """Return a row for every number of periods; one row, with the reason, where nothing was run."""
     return sheet(_REACH, (found for row in rows for found in _reached(row)))
 
 
-def _reached(row: Row) -> Iterator[dict[str, Any]]:
-    """An error that is missing was so large that nobody followed it on: the run is lost."""
-    own = {name: row[name] for name in ("family", "value", "rung", "steps", "why")}
-    if not row["errors"]:
+def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a run. An error that is missing stands for a motion that was lost."""
+    own = {name: getattr(row, name) for name in ("family", "value", "rung", "steps", "why")}
+    if not row.errors:
         yield own
         return
-    for periods, error, floor in zip_longest(row["periods"], row["errors"], row["floors"]):
+    for periods, error, floor in zip_longest(row.periods, row.errors, row.floors):
         lost = "yes" if error is None else "no"
         yield {**own, "periods": periods, "error": error, "attainable": floor, "lost": lost}
 
 
-def prices(rows: Iterable[Row], equal: Iterable[Row]) -> str:
-    """A row for every variant and rung; ``equal`` has the prices at equal error, which are of f64."""
-    at_equal = {row["variant"]: row["ratio"] for row in equal}
-    return sheet(_PRICES, (_priced(row, at_equal) for row in rows))
+def prices(study: PricesStudy) -> str:
+    """Return a row for every variant and rung; the prices at equal error are those of f64."""
+    at_equal = {one.variant: one.ratio for one in study.equal}
+    return sheet(_PRICES, (_priced(row, at_equal) for row in study.rows))
 
 
-def _priced(row: Row, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
-    step, step_low, step_high = row["step_ratio"]
-    time, time_low, time_high = row["time_ratio"]
+def _priced(row: PriceRow, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
+    step, step_low, step_high = row.step_ratio
+    time, time_low, time_high = row.time_ratio
     intervals = {
         **{"step_ratio": step, "step_low": step_low, "step_high": step_high},
         **{"time_ratio": time, "time_low": time_low, "time_high": time_high},
     }
-    equal = at_equal.get(row["variant"]) if row["rung"] == "f64" else None
-    return {**row, **intervals, "ratio_at_equal_error": equal}
+    equal = at_equal.get(row.variant) if row.rung == "f64" else None
+    return {**complete(row), **intervals, "ratio_at_equal_error": equal}
 
 
 def traps(rows: Iterable[TrapRow]) -> str:

@@ -1,16 +1,18 @@
-"""What each thing that a scene may ask for costs: the stored measurement, and the page made of it."""
+"""The price of each thing that a scene may ask for: the stored measurement, and the page made of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish import data, figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.studies.prices import Interval, PriceRow, PricesStudy
 
 PRICES: Final = f"{data.FOLDER}/prices.json"
 PAGE: Final = "tables/prices.md"
@@ -33,50 +35,51 @@ _WHAT: Final = (
     "round on the same machine."
 )
 
-Row = Mapping[str, Any]
 
-
-def write(folder: Path | str, document: Mapping[str, Any]) -> list[Path]:
+def write(folder: Path | str, study: PricesStudy) -> list[Path]:
     """Store a measurement below ``folder``, draw it and make its page.
 
     Raises ImportError without matplotlib, and OSError.
     """
     place = Path(folder)
-    drawn = figures.draw(place, figures.of_prices(document))
-    text = data.laid_out({**_MADE_BY, **document})
+    drawn = figures.draw(place, figures.of_prices(study))
+    text = data.laid_out({**_MADE_BY, **complete(study)})
     stored = replace_files(place, {PRICES: text})
     return [*stored, *drawn, *replace_files(place, pages(place))]
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The page of the measurement stored below ``folder``; nothing where there is none.
+    """Return the page of the measurement stored below ``folder``; nothing where there is none.
 
     Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
     file = folder / PRICES
     if not file.exists():
         return {}
-    stored = data.read_document(file)
+    study = load(folder)
     with data.expecting("measured prices", file):
-        sheet = measured.prices(stored["rows"], stored["equal"])
-        return {PAGE: page(stored, folder), SHEET: sheet}
+        return {PAGE: page(study, folder), SHEET: measured.prices(study)}
 
 
-def page(found: Mapping[str, Any], folder: Path) -> str:
-    """The whole page, with the pictures that are in ``folder``/figures."""
-    rows = found["rows"]
+def load(folder: Path) -> PricesStudy:
+    """Return the measurement that is stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / PRICES, PricesStudy)
+
+
+def page(study: PricesStudy, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
     blocks = [
         f"{MADE_BY}\n# What each thing costs",
         _WHAT,
         "## Three questions",
         "Processor time of one step of the Taylor integrator at the rung's own tolerance, in "
         "microseconds; in brackets, as a multiple of a step of *omega* on the same rung.",
-        _three_questions(rows),
+        _three_questions(study.rows),
         bullets(_legend()),
-        figures.shown(folder, figures.of_prices(found)),
-        *_sections(rows, {row["variant"]: row["ratio"] for row in found["equal"]}),
+        figures.shown(folder, figures.of_prices(study)),
+        *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
         "## How it was measured",
-        bullets(_method(found)),
+        bullets(_method(study)),
         "## To remake this",
         f"`taylor-verify publish --prices` measures anew, writes [prices.json](../{PRICES}) and this "
         "page; nothing is ever compared with these times.",
@@ -84,8 +87,8 @@ def page(found: Mapping[str, Any], folder: Path) -> str:
     return "\n\n".join(block for block in blocks if block) + "\n"
 
 
-def _three_questions(rows: Iterable[Row]) -> str:
-    by_place = {(row["variant"], row["rung"]): row for row in rows}
+def _three_questions(rows: Iterable[PriceRow]) -> str:
+    by_place = {(row.variant, row.rung): row for row in rows}
     rungs = list(dict.fromkeys(rung for _, rung in by_place))
     columns = [Column("what is followed"), *(Column(rung, True) for rung in rungs)]
     lines = []
@@ -98,9 +101,8 @@ def _three_questions(rows: Iterable[Row]) -> str:
     return table(columns, lines)
 
 
-def _microseconds(row: Row, unit: Row) -> str:
-    taken, of_unit = row["microseconds"], unit["microseconds"]
-    return f"{figure(taken)} ({figure(taken / of_unit)})"
+def _microseconds(row: PriceRow, unit: PriceRow) -> str:
+    return f"{figure(row.microseconds)} ({figure(row.microseconds / unit.microseconds)})"
 
 
 def _legend() -> list[str]:
@@ -118,19 +120,19 @@ def _legend() -> list[str]:
     ]
 
 
-def _sections(rows: Sequence[Row], equal: Mapping[str, float | None]) -> list[str]:
+def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> list[str]:
     blocks = []
     for root, heading in _ROOTS.items():
         blocks.append(f"## {heading}")
-        found = [row for row in rows if row["against"] == root]
-        for rung in dict.fromkeys(row["rung"] for row in found):
-            of_rung = [row for row in found if row["rung"] == rung]
-            blocks += [f"On {rung}, order {of_rung[0]['order']}:", _prices(of_rung, equal)]
+        found = [row for row in rows if row.against == root]
+        for rung in dict.fromkeys(row.rung for row in found):
+            of_rung = [row for row in found if row.rung == rung]
+            blocks += [f"On {rung}, order {of_rung[0].order}:", _prices(of_rung, equal)]
     return blocks
 
 
-def _prices(rows: Sequence[Row], equal: Mapping[str, float | None]) -> str:
-    on_f64 = rows[0]["rung"] == "f64"
+def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
+    on_f64 = rows[0].rung == "f64"
     columns = [
         Column("variant"),
         *(Column(heading, True) for heading in ("states", "operations", "a step")),
@@ -141,34 +143,32 @@ def _prices(rows: Sequence[Row], equal: Mapping[str, float | None]) -> str:
     return table(columns, [_cells(row, equal, on_f64) for row in rows])
 
 
-def _cells(row: Row, equal: Mapping[str, float | None], on_f64: bool) -> list[str]:
-    name = row["variant"]
-    operations = row["sums"] + row["products"] + row["quotients"]
+def _cells(row: PriceRow, equal: Mapping[str, float | None], on_f64: bool) -> list[str]:
     return [
-        prose(name),
-        str(row["states"]),
-        str(operations),
-        *(_ratio(row[key]) for key in ("step_ratio", "time_ratio")),
-        figure(row["error"]),
-        *([figure(equal.get(name))] if on_f64 else []),
-        prose(row["what"]),
+        prose(row.variant),
+        str(row.states),
+        str(row.sums + row.products + row.quotients),
+        *(_ratio(interval) for interval in (row.step_ratio, row.time_ratio)),
+        figure(row.error),
+        *([figure(equal.get(row.variant))] if on_f64 else []),
+        prose(row.what),
     ]
 
 
-def _ratio(interval: Sequence[float | None]) -> str:
+def _ratio(interval: Interval) -> str:
     median, low, high = interval
     return f"{figure(median)} [{figure(low)}, {figure(high)}]" if low != high else figure(median)
 
 
-def _method(found: Mapping[str, Any]) -> list[str]:
-    method, given = found["method"], found["provenance"]
-    rounds = ", ".join(f"{rung} {count}" for rung, count in method["rounds"].items())
-    packages = ", ".join(f"{name} {version}" for name, version in given["versions"].items())
+def _method(study: PricesStudy) -> list[str]:
+    method, given = study.method, study.provenance
+    rounds = ", ".join(f"{rung} {count}" for rung, count in method.rounds.items())
+    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
     return [
         f"One process, processor time, rounds in which every variant has its turn in an order drawn "
-        f"anew (seed {method['seed']}): {rounds}. Each turn lasts at least "
-        f"{figure(method['least_seconds'])} s and is as many runs of the same stretch as that takes.",
+        f"anew (seed {method.seed}): {rounds}. Each turn lasts at least "
+        f"{figure(method.least_seconds)} s and is as many runs of the same stretch as that takes.",
         "Compiling, sampling and the exact solution are not in a price. The errors are those of runs "
         "of the suite's own driver, compared with the exact motion.",
-        f"Machine: {prose(given['processor'])}; {packages}. Made by {code(given['command'])}.",
+        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
     ]

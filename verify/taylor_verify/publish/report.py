@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from taylor_verify.publish import (
     attainable,
@@ -30,6 +29,7 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.replacement import first_line, replace_files
 from taylor_verify.records.record import Record
 from taylor_verify.records.studies.controls import ControlsStudy
+from taylor_verify.records.studies.tradeoff import TradeNumbers, TradeTimings
 from taylor_verify.records.verdict import Verdict
 
 TABLES = "tables"
@@ -101,9 +101,7 @@ def publish_controls(folder: Path | str, study: ControlsStudy) -> list[Path]:
     return [stored, *replace_files(place, _controls(place))]
 
 
-def publish_tradeoff(
-    folder: Path | str, numbers: Mapping[str, Any], times: Mapping[str, Any]
-) -> list[Path]:
+def publish_tradeoff(folder: Path | str, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:
     """Store a measurement of speed and accuracy in ``folder``/data, draw it and make its page.
 
     Raises OSError for a folder that cannot be written, ImportError without matplotlib.

@@ -1,4 +1,4 @@
-"""How the published times were taken, in words: what is timed, the method, the machine, the command."""
+"""The way the published times were taken, in words: what is timed, the method, the machine, the command."""
 
 from __future__ import annotations
 
@@ -48,34 +48,33 @@ def what_is_timed(found: Trades) -> str:
 
 
 def how_it_was_timed(found: Trades) -> list[str]:
-    """The method as it was, number by number."""
-    m, machine = found.method, found.machine
-    processes, rounds = m["processes"], m["rounds"]
+    """Return the method as it was, number by number."""
+    m, machine = found.times.method, found.times.machine
     return [
-        f"{processes} fresh processes, one after the other. Hash seeds, places in memory and the "
+        f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "
         "processor's frequency vary between processes, not within one, so the processes are what is "
         "counted, and not the solves.",
-        f"In each {rounds} rounds; in a round every setting once, in an order drawn anew (seed "
-        f"{m['seed']}). One measurement is as many solves as take {figure(m['least_seconds'])} s or "
-        f"{m['times_resolution']} times the clock's resolution ({figure(m['clock_resolution'])} s), "
+        f"In each {m.rounds} rounds; in a round every setting once, in an order drawn anew (seed "
+        f"{m.seed}). One measurement is as many solves as take {figure(m.least_seconds)} s or "
+        f"{m.times_resolution} times the clock's resolution ({figure(m.clock_resolution)} s), "
         "whichever is longer, so that the resolution is below 1 %. Python's collector of garbage is "
         "off. What takes more than a fifth of a second is solved once a process.",
-        f"Each time is divided by that of `{found.yardstick}` in the same round. A process gives the "
-        "median of its rounds; the table shows the median of the processes.",
+        f"Each time is divided by that of `{found.numbers.yardstick}` in the same round. A process "
+        "gives the median of its rounds; the table shows the median of the processes.",
         _brackets(found),
-        f"Machine: {prose(machine['processor'])}, Python {prose(machine['python'])}. Ratios of "
+        f"Machine: {prose(machine.processor)}, Python {prose(machine.python)}. Ratios of "
         "compiled code to Python, above all, are other ones elsewhere.",
     ]
 
 
 def _brackets(found: Trades) -> str:
-    m = found.method
-    n, coverage = m["processes"], f"{m['coverage']:.1%}"
+    m = found.times.method
+    n, coverage = m.processes, f"{m.coverage:.1%}"
     formula = (
-        f"the k-th smallest and the k-th largest of n do so with probability {prose(m['formula'])}, "
-        f"k the largest that leaves {m['confidence']:.0%}; here n = {n}"
+        f"the k-th smallest and the k-th largest of n do so with probability {prose(m.formula)}, "
+        f"k the largest that leaves {m.confidence:.0%}; here n = {n}"
     )
-    if not m["coverage"] >= m["confidence"]:
+    if not m.coverage >= m.confidence:
         return f"No interval is given: {formula}, where the extremes have no more than {coverage}."
     return (
         f"The brackets hold the median of what the processes are drawn from with {coverage}, however "
@@ -84,7 +83,7 @@ def _brackets(found: Trades) -> str:
 
 
 def remake(found: Trades) -> str:
-    packages = ", ".join(f"{name} {version}" for name, version in found.versions.items())
+    packages = ", ".join(f"{name} {version}" for name, version in found.numbers.versions.items())
     return (
         f"`make tradeoff`, which is `taylor-verify publish --tradeoff`, measures anew and writes "
         f"[tradeoff.json](../{NUMBERS}) (errors, the same on any machine but for the rounding) and "
@@ -92,5 +91,5 @@ def remake(found: Trades) -> str:
         "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
         "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
         "integrators of other libraries that are compiled as heyoka is. "
-        f"Made by {code(found.machine['command'])} with {packages or 'unknown versions'}."
+        f"Made by {code(found.times.machine.command)} with {packages or 'unknown versions'}."
     )

@@ -7,14 +7,14 @@ from math import log10
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import figures, sheets
+from taylor_verify.publish import data, figures, sheets
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.doubles import doubles_table
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.pictures.wording import label_of
 from taylor_verify.publish.timing_method import how_it_was_timed, remake, what_is_timed
-from taylor_verify.publish.trades import Row, Trade, Trades, load
+from taylor_verify.publish.trades import NUMBERS, TimedPoint, Trade, Trades, load
+from taylor_verify.records.studies.tradeoff import Standing, TradePoint
 
 DIGITS: Final = (6, 9, 12)
 _NOT_REACHED: Final = "not reached"
@@ -69,7 +69,7 @@ def page(found: Trades, folder: Path) -> str:
         "None of these is on a front, and none has a number above.",
         _failures(found),
         "## The closed form in plain doubles",
-        doubles_table(found.doubles),
+        doubles_table(found.numbers.plain_doubles),
         "## What is timed",
         what_is_timed(found),
         "## How it was timed, and where",
@@ -81,11 +81,18 @@ def page(found: Trades, folder: Path) -> str:
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The page and its sheet by their paths below ``folder``; none where nothing is stored."""
+    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
     found = load(folder)
     if found is None:
         return {}
-    return {"tables/tradeoff.md": page(found, folder), "tables/tradeoff.csv": sheet(found.trades)}
+    with data.expecting("a measurement of speed and accuracy", folder / NUMBERS):
+        return {
+            "tables/tradeoff.md": page(found, folder),
+            "tables/tradeoff.csv": sheet(found.trades),
+        }
 
 
 # What so many digits cost.
@@ -99,10 +106,12 @@ def _by_digits(found: Trades) -> str:
     ]
     rows = []
     for trade in found.trades:
-        rows.append([code(trade.scene), _yardstick(trade, found.yardstick), *[""] * len(DIGITS)])
+        rows.append(
+            [code(trade.scene), _yardstick(trade, found.numbers.yardstick), *[""] * len(DIGITS)]
+        )
         for family in (_TAYLOR, *_RIVALS, _CLOSED_FORM):
-            own = [row for row in trade.sound if row["family"] == family]
-            if any(row["family"] == family and _ran(row) for row in trade.rows):
+            own = [row for row in trade.sound if row.point.family == family]
+            if any(p.family == family and _ran(p) for p in trade.points):
                 cells = [_cheapest(own, digits) for digits in DIGITS]
                 rows.append(["", _family(family), *cells])
         rows.append(["", *_outside(trade)])
@@ -110,43 +119,40 @@ def _by_digits(found: Trades) -> str:
 
 
 def _yardstick(trade: Trade, name: str) -> str:
-    """What the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
+    """Return what the yardstick leaves on this scene, and its own part in heyoka's compiled code."""
     for row in trade.sound:
-        if label_of(row) == name:
-            inner, seconds = row["inner_seconds"], row["seconds"]
+        if row.point.label == name:
+            inner, seconds = row.timing.inner_seconds, row.timing.seconds
             part = f", {inner / seconds:.0%} of its time in heyoka itself" if inner else ""
-            digits = f"{row['achieved_digits']:.1f} digits" if row["achieved_digits"] else "exact"
+            achieved = row.point.achieved_digits
+            digits = f"{achieved:.1f} digits" if achieved else "exact"
             return f"*{prose(name)} = 1*: {digits}{part}"
     return f"*{prose(name)}*: no sound answer"
 
 
-def _cheapest(rows: Iterable[Row], digits: int, named: bool = False) -> str:
-    """Ratio, interval and tolerance of the fastest that leaves so many digits."""
-    reached = [row for row in rows if _leaves(row, digits)]
+def _cheapest(rows: Iterable[TimedPoint], digits: int, named: bool = False) -> str:
+    """Return ratio, interval and tolerance of the fastest that leaves so many digits."""
+    reached = [row for row in rows if row.error <= 10.0**-digits]
     if not reached:
         return _NOT_REACHED
-    best = min(reached, key=lambda row: row["ratio"])
-    who = f"{_family(best['family'])}, " if named else ""
+    best = min(reached, key=lambda row: row.timing.ratio)
+    who = f"{_family(best.point.family)}, " if named else ""
     return f"{who}{_ratio(best)}{_at(best)}"
 
 
-def _leaves(row: Row, digits: int) -> bool:
-    error = row["error"]
-    return error is not None and error <= 10.0**-digits
+def _ratio(row: TimedPoint) -> str:
+    timing = row.timing
+    interval = f" [{figure(timing.low)}, {figure(timing.high)}]" if timing.low is not None else ""
+    return f"{bold(figure(timing.ratio))}{interval}"
 
 
-def _ratio(row: Row) -> str:
-    interval = f" [{figure(row['low'])}, {figure(row['high'])}]" if row["low"] is not None else ""
-    return f"{bold(figure(row['ratio']))}{interval}"
-
-
-def _at(row: Row) -> str:
-    asked = row["requested"]
-    return f" @ {asked:.0e}" if row["asked"] == "tolerance" and asked else ""
+def _at(row: TimedPoint) -> str:
+    asked = row.point.requested
+    return f" @ {asked:.0e}" if row.point.asked == "tolerance" and asked else ""
 
 
 def _outside(trade: Trade) -> list[str]:
-    own = [row for row in trade.sound if str(row["family"]).startswith(_OUTSIDE)]
+    own = [row for row in trade.sound if row.point.family.startswith(_OUTSIDE)]
     if not own:
         return ["fastest compiled other library", *["not measured"] * len(DIGITS)]
     return [
@@ -160,31 +166,31 @@ def _outside(trade: Trade) -> list[str]:
 
 def _by_rung(found: Trades) -> str:
     rungs = dict.fromkeys(
-        row["rung"] for trade in found.trades for row in trade.rows if _is_own_tolerance(row)
+        p.rung for trade in found.trades for p in trade.points if _is_own_tolerance(p)
     )
     ladder = sorted(rungs, key=lambda rung: (rung.startswith("mp"), int(rung.lstrip("fmp"))))
     columns = [Column("scene"), *(Column(rung, True) for rung in ladder)]
     rows = []
     for trade in found.trades:
-        own = {row["rung"]: row for row in trade.sound if _is_own_tolerance(row)}
+        own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
         cells = [_rung_cell(own[rung]) if rung in own else NOTHING for rung in ladder]
         rows.append([code(trade.scene), *cells])
-        if trade.attainable:
-            rows.append(["*attainable*", *(_floor_cell(trade.attainable.get(r)) for r in ladder)])
+        if floors := trade.about.attainable:
+            rows.append(["*attainable*", *(_floor_cell(floors.get(rung)) for rung in ladder)])
     return table(columns, rows)
 
 
 def _floor_cell(least: float | None) -> str:
-    """The digits that one rounding a sample leaves."""
+    """Return the digits that one rounding a sample leaves."""
     return f"{-log10(least):.1f} digits" if least and least < 1 else NOTHING
 
 
-def _is_own_tolerance(row: Row) -> bool:
-    return bool(row["solver"] == "taylor" and not row["setting"])
+def _is_own_tolerance(point: TradePoint) -> bool:
+    return point.solver == "taylor" and not point.setting
 
 
-def _rung_cell(row: Row) -> str:
-    digits = row["achieved_digits"]
+def _rung_cell(row: TimedPoint) -> str:
+    digits = row.point.achieved_digits
     return f"{_ratio(row)}, {'exact' if digits is None else f'{digits:.1f} digits'}"
 
 
@@ -196,40 +202,40 @@ def _by_request(found: Trades) -> str:
     ]
     rows = []
     for trade in found.trades:
-        families = dict.fromkeys(row["family"] for row in trade.rows if row["asked"] == "tolerance")
+        families = dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance")
         for family in families:
-            own = [row for row in trade.rows if row["family"] == family]
+            own = [p for p in trade.points if p.family == family]
             cells = [_achieved(own, asked) for asked in _ASKED]
             if any(cell != NOTHING for cell in cells):
                 rows.append([code(trade.scene), _family(family), *cells])
     return table(columns, rows)
 
 
-def _achieved(rows: Iterable[Row], asked: float) -> str:
-    """The digits that were left; a word where the answer is not sound."""
-    for row in rows:
-        if row["requested"] is not None and abs(row["requested"] / asked - 1) <= 1e-9:
-            if row["standing"] != "sound":
-                return str(row["standing"])
-            return NOTHING if row["achieved_digits"] is None else f"{row['achieved_digits']:.1f}"
+def _achieved(points: Iterable[TradePoint], asked: float) -> str:
+    """Return the digits that were left; a word where the answer is not sound."""
+    for p in points:
+        if p.requested is not None and abs(p.requested / asked - 1) <= 1e-9:
+            if p.standing is not Standing.SOUND:
+                return p.standing.value
+            return NOTHING if p.achieved_digits is None else f"{p.achieved_digits:.1f}"
     return NOTHING
 
 
 # The front, the geometric integrators, the failures.
 
 
-def front(rows: Iterable[Row]) -> list[Row]:
-    """What no other beats in both ratio and error, the fastest first."""
-    found: list[Row] = []
-    for row in sorted(rows, key=lambda row: (row["ratio"], row["error"])):
-        if not found or row["error"] < found[-1]["error"]:
+def front(rows: Iterable[TimedPoint]) -> list[TimedPoint]:
+    """Return what no other beats in both ratio and error, the fastest first."""
+    found: list[TimedPoint] = []
+    for row in sorted(rows, key=lambda row: (row.timing.ratio, row.error)):
+        if not found or row.error < found[-1].error:
             found.append(row)
     return found
 
 
 def _front(trade: Trade) -> str:
-    doubles = [row for row in trade.sound if row["rung"] == "f64"]
-    integrators = [row for row in doubles if row["family"] != _CLOSED_FORM]
+    doubles = [row for row in trade.sound if row.point.rung == "f64"]
+    integrators = [row for row in doubles if row.point.family != _CLOSED_FORM]
     said = [_front_line(row) for row in front(doubles)]
     parts = [f"{code(trade.scene)}:", bullets(said)]
     if len(integrators) != len(doubles):
@@ -237,10 +243,10 @@ def _front(trade: Trade) -> str:
     return "\n\n".join(parts)
 
 
-def _front_line(row: Row) -> str:
-    digits = row["achieved_digits"]
+def _front_line(row: TimedPoint) -> str:
+    digits = row.point.achieved_digits
     left = "every digit" if digits is None else f"{digits:.1f} digits"
-    name = code(label_of(row).removesuffix(f" {row['rung']}"))
+    name = code(row.point.label.removesuffix(f" {row.point.rung}"))
     return f"{left}: {name}, {_ratio(row)} times the yardstick"
 
 
@@ -253,16 +259,16 @@ def _geometric(found: Trades) -> str:
     rows = [
         [
             code(trade.scene),
-            row["family"].removeprefix(_GEOMETRIC),
-            figure(row["requested"]),
+            row.point.family.removeprefix(_GEOMETRIC),
+            figure(row.point.requested),
             _ratio(row),
-            figure(row["error"]),
-            figure(row["drift"]),
-            code(row["drifting"]),
+            figure(row.point.error),
+            figure(row.point.drift),
+            code(row.point.drifting),
         ]
         for trade in found.trades
         for row in trade.sound
-        if row["family"].startswith(_GEOMETRIC)
+        if row.point.family.startswith(_GEOMETRIC)
     ]
     return table(columns, rows)
 
@@ -270,20 +276,20 @@ def _geometric(found: Trades) -> str:
 def _failures(found: Trades) -> str:
     columns = [Column("scene"), Column("setting"), Column("what it is"), Column("because")]
     rows = [
-        [code(trade.scene), code(label_of(row)), prose(_standing(row)), prose(row["because"])]
+        [code(trade.scene), code(p.label), prose(_standing(p)), prose(p.because)]
         for trade in found.trades
-        for row in trade.rows
-        if row["standing"] != "sound" or row["ratio"] is None
+        for p in trade.uncompared
     ]
     return table(columns, rows) if rows else "Nothing."
 
 
-def _standing(row: Row) -> str:
-    return str(row["standing"]) if row["standing"] != "sound" else "sound, and not timed"
+def _standing(point: TradePoint) -> str:
+    is_sound = point.standing is Standing.SOUND
+    return "sound, and not timed" if is_sound else point.standing.value
 
 
-def _ran(row: Row) -> bool:
-    return bool(row["standing"] != "not run")
+def _ran(point: TradePoint) -> bool:
+    return point.standing is not Standing.NOT_RUN
 
 
 def _family(family: str) -> str:

@@ -14,6 +14,13 @@ class Provenance:
     command: str = ""
 
 
+@dataclass(frozen=True)
+class SceneProvenance(Provenance):
+    """The origin of numbers of one scene, whose digest is ``scene``; empty where they are of many."""
+
+    scene: str = ""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Machine:
     """The machine that a measurement was made on; no number but a time depends on it."""

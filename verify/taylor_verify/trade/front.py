@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from taylor_verify.trade.point import Point, Standing, digits
+from taylor_verify.records.studies.tradeoff import Standing
+from taylor_verify.trade.point import Point, digits
 
 
 def front(points: Iterable[Point]) -> list[Point]:

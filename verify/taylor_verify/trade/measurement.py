@@ -16,18 +16,28 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from math import inf
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.studies.tradeoff import (
+    PlainDouble,
+    Standing,
+    TimingMachine,
+    TimingMethod,
+    TradeNumbers,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
+)
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.trade.order_statistics import CONFIDENCE, FORMULA, Estimate, estimate
+from taylor_verify.trade.front import request_sentences
+from taylor_verify.trade.order_statistics import CONFIDENCE, FORMULA, estimate
 from taylor_verify.trade.plain_doubles import plain_doubles
-from taylor_verify.trade.point import Standing
 from taylor_verify.trade.rounds import (
     LEAST_SECONDS,
     ROUNDS,
@@ -64,19 +74,6 @@ _ODEFUN: Final = "mpmath:odefun?tol=1e-6"
 _COMPILED: Final = ("cyrk-dop853", "cyrk-lsoda", "diffrax-dopri8")
 _FOR_THE_COLUMNS: Final = ("1e-8", "1e-11", "1e-13")
 _OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
-# Rows of a point that are times, or made of them.
-TIMES: Final = (
-    *("seconds", "inner_seconds", "spread", "repeats", "first_seconds", "compile_seconds"),
-)
-
-
-@dataclass(frozen=True)
-class Timing:
-    """One setting on one scene: over processes, the median of their medians and its interval."""
-
-    seconds: float
-    ratio: Estimate
-    inner: float | None
 
 
 @dataclass(frozen=True)
@@ -84,48 +81,39 @@ class Measurement:
     """The trades of some scenes, and the timings of every setting that is sound."""
 
     trades: tuple[TradeOff, ...]
-    timings: Mapping[str, Mapping[Name, Timing]]
+    timings: tuple[TradeTiming, ...]
     processes: int
     rounds: int
     seed: int
     resolution: float
-    doubles: tuple[dict[str, Any], ...] = field(default=())
+    doubles: tuple[PlainDouble, ...] = ()
 
-    def numbers(self) -> dict[str, Any]:
-        """What is the same on the next machine, but for the rounding: errors, digits, outcomes."""
-        return {
-            "versions": _versions(),
-            "yardstick": " ".join(YARDSTICK),
-            "scenes": [_numbers(trade) for trade in self.trades],
-            "plain_doubles": list(self.doubles),
-        }
+    def numbers(self) -> TradeNumbers:
+        """Return what is the same on the next machine, but for the rounding: errors, digits, outcomes."""
+        return TradeNumbers(
+            versions=_versions(),
+            yardstick=" ".join(YARDSTICK),
+            scenes=tuple(map(_scene, self.trades)),
+            plain_doubles=self.doubles,
+            points=tuple(p.on(trade.scene.name) for trade in self.trades for p in trade.points),
+        )
 
-    def times(self) -> dict[str, Any]:
-        """What is this machine's: seconds, and ratios to the yardstick with their intervals."""
-        return {
-            "machine": {
-                "processor": processor(),
-                "python": versions()["python"],
-                "command": command(),
-            },
-            "method": {
-                "processes": self.processes,
-                "rounds": self.rounds,
-                "seed": self.seed,
-                "least_seconds": LEAST_SECONDS,
-                "times_resolution": TIMES_RESOLUTION,
-                "clock_resolution": self.resolution,
-                "confidence": CONFIDENCE,
-                "coverage": estimate([1.0] * self.processes).coverage,
-                "formula": FORMULA,
-                "of": WHAT_IS_TIMED,
-            },
-            "timings": [
-                _timing_row(scene, name, timing)
-                for scene, found in self.timings.items()
-                for name, timing in found.items()
-            ],
-        }
+    def times(self) -> TradeTimings:
+        """Return what is this machine's: seconds, and ratios to the yardstick with their intervals."""
+        method = TimingMethod(
+            processes=self.processes,
+            rounds=self.rounds,
+            seed=self.seed,
+            least_seconds=LEAST_SECONDS,
+            times_resolution=TIMES_RESOLUTION,
+            clock_resolution=self.resolution,
+            confidence=CONFIDENCE,
+            coverage=estimate([1.0] * self.processes).coverage,
+            formula=FORMULA,
+            of=WHAT_IS_TIMED,
+        )
+        machine = TimingMachine(processor(), versions()["python"], command())
+        return TradeTimings(machine, method, self.timings)
 
 
 def _versions() -> dict[str, str]:
@@ -161,7 +149,7 @@ def measurement(
         tell(f"times, process {number + 1} of {processes}")
     doubles = tuple(plain_doubles())
     tell("the closed form in doubles")
-    timings = {trade.scene.name: _timings(trade, found) for trade in trades}
+    timings = tuple(one for trade in trades for one in _timings(trade, found))
     resolution = clock_resolution()
     return Measurement(tuple(trades), timings, processes, rounds, seed, resolution, doubles)
 
@@ -217,52 +205,40 @@ def one_process(asked: Asked, seed: int, rounds: int) -> dict[str, dict[Name, Me
 
 def _timings(
     trade: TradeOff, found: Sequence[Mapping[str, Mapping[Name, Measured]]]
-) -> dict[Name, Timing]:
-    """Of every setting that finished in all the processes."""
-    of_scene = [one[trade.scene.name] for one in found]
-    timings = {}
+) -> Iterator[TradeTiming]:
+    """Yield the times of every setting that finished in all the processes."""
+    scene = trade.scene.name
+    of_scene = [one[scene] for one in found]
     for name, _ in _sound(trade):
         its = [one[name] for one in of_scene if name in one]
         if its and len(its) == len(of_scene):
-            timings[name] = _timing(its)
-    return timings
+            yield _timing(scene, name, its)
 
 
-def _timing(its: Sequence[Measured]) -> Timing:
+def _timing(scene: str, name: Name, its: Sequence[Measured]) -> TradeTiming:
+    solver, rung = name
     inner = [one.inner for one in its if one.inner is not None]
-    return Timing(
+    ratio = estimate(one.ratio for one in its)
+    return TradeTiming(
+        scene=scene,
+        solver=solver,
+        rung=rung,
         seconds=estimate(one.seconds for one in its).median,
-        ratio=estimate(one.ratio for one in its),
-        inner=estimate(inner).median if len(inner) == len(its) else None,
+        inner_seconds=estimate(inner).median if len(inner) == len(its) else None,
+        ratio=ratio.median,
+        low=ratio.low,
+        high=ratio.high,
+        processes=ratio.count,
     )
 
 
-def _numbers(trade: TradeOff) -> dict[str, Any]:
-    """A trade's document without its times: the sentences of its front are made when they are told."""
-    found = trade.document()
-    points = [{k: v for k, v in row.items() if k not in TIMES} for row in found["points"]]
-    return {
-        "scene": found["scene"],
-        "title": trade.scene.title,
-        "track": found["track"],
-        "sha256": trade.scene.digest,
-        "attainable": found["attainable"],
-        "points": points,
-        "requests": found["requests"],
-    }
-
-
-def _timing_row(scene: str, name: Name, timing: Timing) -> dict[str, Any]:
-    solver, rung = name
-    ratio = timing.ratio
-    return {
-        "scene": scene,
-        "solver": solver,
-        "rung": rung,
-        "seconds": timing.seconds,
-        "inner_seconds": timing.inner,
-        "ratio": ratio.median,
-        "low": ratio.low,
-        "high": ratio.high,
-        "processes": ratio.count,
-    }
+def _scene(trade: TradeOff) -> TradeScene:
+    """Return the scene of a trade; the sentences of its front are made when they are printed."""
+    return TradeScene(
+        scene=trade.scene.name,
+        title=trade.scene.title,
+        track=tuple(sorted(trade.scene.track)),
+        sha256=trade.scene.digest,
+        attainable=trade.attainable,
+        requests=tuple(request_sentences(trade.points)),
+    )

@@ -1,4 +1,4 @@
-"""Where the closed form in plain doubles fails: the same solver, from an easy orbit to none.
+"""The failures of the closed form in plain doubles: the same solver, from an easy orbit to none.
 
 1 - m of each orbit, on which it hangs, is exact; the error is that of omega, the largest of all samples.
 """
@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.studies.tradeoff import PlainDouble, TradePoint
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reader import load
@@ -60,8 +61,8 @@ def cases() -> Iterator[Case]:
     yield Case(load("euler/steady-middle-axis"), "a steady turn about the middle axis")
 
 
-def plain_doubles() -> Iterator[dict[str, Any]]:
-    """A row for each case: 1 - m, the error or the outcome, and the error of taylor where it is short.
+def plain_doubles() -> Iterator[PlainDouble]:
+    """Yield a row for each case: 1 - m, error and outcome, and the error of taylor where it is short.
 
     ``m_prime`` is None where the orbit has none.
     """
@@ -69,23 +70,27 @@ def plain_doubles() -> Iterator[dict[str, Any]]:
     truths = Truths()
     for case in cases():
         problem = pose(case.scene, f64)
-        row = {
-            "what": case.what,
-            "scene": case.scene.name,
-            "end": float(case.scene.clock.instants[-1]),
-            "m_prime": _m_prime(problem),
-        }
         found = _achieved(NAME, problem, truths)
-        beside = _achieved(_BESIDE, problem, truths) if case.is_short else {"error": None}
-        yield {**row, **found, "beside": _BESIDE, "error_beside": beside["error"]}
+        beside = _achieved(_BESIDE, problem, truths).error if case.is_short else None
+        yield PlainDouble(
+            what=case.what,
+            scene=case.scene.name,
+            end=float(case.scene.clock.instants[-1]),
+            m_prime=_m_prime(problem),
+            error=found.error,
+            outcome=found.outcome,
+            standing=found.standing,
+            because=found.because,
+            beside=_BESIDE,
+            error_beside=beside,
+        )
 
 
-def _achieved(name: str, problem: Problem, truths: Truths) -> dict[str, Any]:
-    """Error, standing and reason of one solve, as of any point of a trade."""
+def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
+    """Return one solve as a point of a trade."""
     trajectory = solver_named(name).solve(problem)
     run = Timed(setting(name, problem.rung), trajectory, 0.0, (trajectory.seconds,))
-    row = point(run, truths.accuracy(problem, trajectory)).row()
-    return {key: row[key] for key in ("error", "outcome", "standing", "because")}
+    return point(run, truths.accuracy(problem, trajectory)).on(problem.scene.name)
 
 
 def _m_prime(problem: Problem) -> float | None:

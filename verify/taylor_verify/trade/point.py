@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from math import isfinite, log10
 from typing import Any
 
+from taylor_verify.records.json_text import complete, finite
+from taylor_verify.records.studies.tradeoff import Standing, TradePoint
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.trade.accuracy import Accuracy
 from taylor_verify.trade.timing import Timed
-
-
-class Standing(StrEnum):
-    """What a point is worth. Only SOUND ones are compared."""
-
-    SOUND = "sound"
-    FALSE = "false success"
-    FAILED = "failed"
-    UNDECIDED = "undecided"
-    NOT_RUN = "not run"
 
 
 @dataclass(frozen=True)
@@ -53,34 +44,43 @@ class Point:
         assert self.timed.best is not None
         return self.timed.best
 
-    def row(self) -> dict[str, Any]:
-        """The point as JSON holds it: what does not exist or is not finite is None."""
+    def on(self, scene: str) -> TradePoint:
+        """Return the point as it is stored, without its times."""
         setting, trajectory = self.timed.setting, self.timed.trajectory
+        return TradePoint(
+            scene=scene,
+            solver=setting.solver.name,
+            setting=setting.solver.setting,
+            rung=setting.rung.name,
+            family=setting.family,
+            asked=setting.asked,
+            requested=setting.requested,
+            requested_digits=self.asked_digits,
+            achieved_digits=digits(self.error),
+            error=finite(self.error),
+            max={name: finite(value) for name, value in self.accuracy.max.items()},
+            final={name: finite(value) for name, value in self.accuracy.final.items()},
+            drift=finite(self.accuracy.drift),
+            drifting=self.accuracy.drifting,
+            steps=trajectory.steps,
+            evaluations=trajectory.evaluations,
+            outcome=trajectory.outcome.value,
+            standing=self.standing,
+            because=self.because,
+        )
+
+    def row(self) -> dict[str, Any]:
+        """Return the point with its times, as JSON has it; None is what does not exist or is not finite."""
+        achieved = complete(self.on(""))
+        del achieved["scene"]
         return {
-            "solver": setting.solver.name,
-            "setting": setting.solver.setting,
-            "rung": setting.rung.name,
-            "family": setting.family,
-            "asked": setting.asked,
-            "requested": setting.requested,
-            "requested_digits": self.asked_digits,
-            "achieved_digits": digits(self.error),
-            "error": _finite(self.error),
-            "max": {name: _finite(value) for name, value in self.accuracy.max.items()},
-            "final": {name: _finite(value) for name, value in self.accuracy.final.items()},
-            "drift": _finite(self.accuracy.drift),
-            "drifting": self.accuracy.drifting,
-            "steps": trajectory.steps,
-            "evaluations": trajectory.evaluations,
+            **achieved,
             "seconds": self.timed.best,
             "inner_seconds": self.timed.inner,
             "spread": self.timed.spread,
             "repeats": len(self.timed.seconds),
             "first_seconds": self.timed.first,
             "compile_seconds": self.timed.compiling,
-            "outcome": trajectory.outcome.value,
-            "standing": self.standing.value,
-            "because": self.because,
         }
 
 
@@ -106,7 +106,3 @@ def point(timed: Timed, accuracy: Accuracy | None) -> Point:
 def digits(error: float) -> float | None:
     """How many decimal digits an error leaves; None of one that is no number or leaves them all."""
     return -log10(error) if error > 0 and isfinite(error) else None
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and isfinite(value) else None

@@ -1,4 +1,4 @@
-"""What each thing that a scene may ask for costs: measured in turns, told as multiples of the barest form.
+"""The price of each thing that a scene may ask for: measured in turns, in multiples of the barest form.
 
 A price is the processor time of a step, and that of a unit of the scene's time, over the same of the
 barest form of the model in the same round: an integrator steps from the start to the end of a stretch,
@@ -16,9 +16,18 @@ from itertools import pairwise
 from math import ceil, exp, log
 from statistics import median
 from time import process_time
-from typing import Any, Final
+from typing import Final
 
-from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.json_text import finite
+from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.records.studies.prices import (
+    Interval,
+    PriceAtEqualError,
+    PriceMethod,
+    PriceRow,
+    PricesStudy,
+)
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.taylor.driver import Taylor
@@ -74,27 +83,22 @@ class _Bench:
         return (process_time() - began) / self.count
 
 
-def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
-    """Every row of the published table; ``finished`` is told each rung as it ends."""
-    rows = []
+def study(finished: Callable[[str], None] | None = None) -> PricesStudy:
+    """Return every row of the published table; ``finished`` is called with each rung as it ends."""
+    rows: list[PriceRow] = []
     for name, rounds in RUNGS.items():
         rows += _rows(rung_named(name), rounds)
         if finished is not None:
             finished(name)
-    return {
-        "rows": rows,
-        "equal": _at_equal_error(rung_named("f64")),
-        "method": {
-            "rounds": RUNGS,
-            "seed": _SEED,
-            "least_seconds": _LEAST_SECONDS,
-            "equal_error": _EQUAL_ERROR,
-        },
-        "provenance": provenance(""),
-    }
+    return PricesStudy(
+        rows=tuple(rows),
+        equal=_at_equal_error(rung_named("f64")),
+        method=PriceMethod(dict(RUNGS), _SEED, _LEAST_SECONDS, _EQUAL_ERROR),
+        provenance=SceneProvenance(versions(), processor(), command()),
+    )
 
 
-def _rows(rung: Rung, rounds: int) -> list[dict[str, Any]]:
+def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
     asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
     if Taylor().unavailable(rung):
         return []
@@ -126,30 +130,30 @@ def _in_rounds(benches: Sequence[_Bench], rounds: int) -> list[list[float]]:
 
 def _row(
     rung: Rung, bench: _Bench, base: _Bench, taken: Iterable[float], unit: Iterable[float]
-) -> dict[str, Any]:
+) -> PriceRow:
     problem = bench.variant.posed(rung)
     rounds = list(zip(taken, unit, strict=True))
     per_step = estimate(a / bench.steps / (b / base.steps) for a, b in rounds)
     per_time = estimate(a / bench.unit / (b / base.unit) for a, b in rounds)
-    return {
-        "rung": rung.name,
-        "variant": bench.variant.name,
-        "against": bench.variant.against,
-        "what": bench.variant.what,
-        "states": len(problem.form.states),
-        "parameters": len(problem.form.parameters),
+    return PriceRow(
+        rung=rung.name,
+        variant=bench.variant.name,
+        against=bench.variant.against,
+        what=bench.variant.what,
+        states=len(problem.form.states),
+        parameters=len(problem.form.parameters),
         **problem.form.operations(),
-        "order": bench.pace.order,
-        "steps_per_time": bench.steps / bench.unit,
-        "step_ratio": _interval(per_step),
-        "time_ratio": _interval(per_time),
-        "microseconds": 1e6 * median(a for a, _ in rounds) / bench.steps,
-        "error": _error(bench.variant, rung, Taylor()),
-    }
+        order=bench.pace.order,
+        steps_per_time=bench.steps / bench.unit,
+        step_ratio=_interval(per_step),
+        time_ratio=_interval(per_time),
+        microseconds=1e6 * median(a for a, _ in rounds) / bench.steps,
+        error=finite(_error(bench.variant, rung, Taylor())),
+    )
 
 
-def _interval(found: Estimate) -> list[float | None]:
-    return [found.median, found.low, found.high]
+def _interval(found: Estimate) -> Interval:
+    return found.median, found.low, found.high
 
 
 def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
@@ -159,8 +163,8 @@ def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
     return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
 
 
-def _at_equal_error(rung: Rung) -> list[dict[str, Any]]:
-    """Time over that of the barest form where both achieve one error, from a row of tolerances."""
+def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
+    """Return the time over that of the barest form at one error, from a row of tolerances."""
     asked = [v for v in variants() if not v.literals]
     solvers = [Taylor(named_at(text), tolerance=Fraction(text)) for text in _TOLERANCES]
     benches = [_Bench.of(v, rung, solver.tolerance) for v in asked for solver in solvers]
@@ -175,8 +179,8 @@ def _at_equal_error(rung: Rung) -> list[dict[str, Any]]:
     for variant in asked:
         own, base = costs[variant.name], costs[variant.against]
         ratio = None if own is None or base is None else own / base
-        rows.append({"variant": variant.name, "against": variant.against, "ratio": ratio})
-    return rows
+        rows.append(PriceAtEqualError(variant.name, variant.against, ratio))
+    return tuple(rows)
 
 
 def _between(errors: Sequence[float], costs: Sequence[float]) -> float | None:

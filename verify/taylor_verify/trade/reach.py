@@ -1,4 +1,4 @@
-"""How far each precision carries: digits left of families of extremes, over their number and periods.
+"""The reach of each precision: digits left of families of extremes, over their number and periods.
 
 Every member of a family is solved once on a rung, at the quarters of its 1st, 3rd, 10th ... period. The
 digits left after N periods are -log10 of the largest error at any instant up to then, against the
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from mpmath import mp
@@ -24,8 +24,10 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import floor
 from taylor_verify.judge.errors import largest, state_errors
-from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.records.studies.reach import ReachFamily, ReachRow, ReachStudy
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
@@ -43,40 +45,8 @@ _LOST: Final = 1.0
 _SAME_PERIOD: Final = Fraction(1, 10)
 
 
-@dataclass(frozen=True)
-class Reach:
-    """One member of a family on one rung, after each number of ``periods``.
-
-    ``errors`` and ``floors`` are the largest up to then; inf, of a run that was lost, from there on.
-    There are no floors for periods that no rung was followed for. Both are empty where nothing was
-    run, and ``why`` says why.
-    """
-
-    family: str
-    value: str
-    rung: str
-    periods: tuple[int, ...]
-    errors: tuple[float, ...] = ()
-    floors: tuple[float, ...] = ()
-    steps: int = 0
-    why: str = ""
-
-    def row(self) -> dict[str, Any]:
-        """As JSON holds it: an error that is not finite is None, and stands for a lost motion."""
-        return {
-            "family": self.family,
-            "value": self.value,
-            "rung": self.rung,
-            "periods": list(self.periods),
-            "errors": [_finite(error) for error in self.errors],
-            "floors": [_finite(error) for error in self.floors],
-            "steps": self.steps,
-            "why": self.why,
-        }
-
-
-def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
-    """Every row of what is published; ``finished`` is told each member of a family as it ends."""
+def study(finished: Callable[[str], None] | None = None) -> ReachStudy:
+    """Return every row of what is published; ``finished`` is called with each member as it ends."""
     found = families()
     asked = [Member(one.name, value) for one in found for value in one.values]
 
@@ -84,13 +54,13 @@ def document(finished: Callable[[str], None] | None = None) -> dict[str, Any]:
         if finished is not None:
             finished(str(member))
 
-    reaches = run_all(_measured, asked, expense=_expense, ended=tell)
-    return {
-        "families": [_described(one) for one in found],
-        "rows": [one.row() for member in reaches for one in member],
-        "lost": _LOST,
-        "provenance": provenance(""),
-    }
+    measured = run_all(_measured, asked, expense=_expense, ended=tell)
+    return ReachStudy(
+        families=tuple(map(_described, found)),
+        rows=tuple(stored(row) for rows in measured for row in rows),
+        lost=_LOST,
+        provenance=SceneProvenance(versions(), processor(), command()),
+    )
 
 
 @dataclass(frozen=True)
@@ -109,33 +79,47 @@ def members() -> int:
     return sum(len(one.values) for one in families())
 
 
-def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[Reach]:
-    """What is left of one member on each of the rungs."""
+def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
+    """Return what is left of one member on each of the rungs, with all digits."""
     scene = one.scene(value)
     found = [
-        _followed(Reach(one.name, value, rung.name, one.periods(rung.name)), scene, rung)
+        _followed(
+            ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, ""), scene, rung
+        )
         for rung in rungs
     ]
     return _with_floors(found, scene)
+
+
+def stored(row: ReachRow) -> ReachRow:
+    """Return the row as it is stored: four digits, and None for an error that is not finite."""
+    errors, floors = (tuple(map(_rounded, each)) for each in (row.errors, row.floors))
+    return replace(row, errors=errors, floors=floors)
 
 
 class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
     """Rounding the data makes another orbit of them; the text says which."""
 
 
-def _followed(nothing: Reach, scene: Scene, rung: Rung) -> Reach:
-    """With the errors of as many periods as were run, or the reason why there are none."""
+def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
+    """Return the row with the errors of as many periods as were run, or the reason why there are none."""
     if reason := Taylor().unavailable(rung):
         return replace(nothing, why=reason)
     try:
         # A member that is lost within its first period is not followed for a thousand.
         first = _solved(nothing, nothing.periods[:1], scene, rung)
-        return _solved(nothing, nothing.periods, scene, rung) if first.errors[-1] < _LOST else first
+        if _is_lost(first.errors[-1]):
+            return first
+        return _solved(nothing, nothing.periods, scene, rung)
     except (NotRepresentable, Unsettled, _Another) as fault:
         return replace(nothing, why=str(fault))
 
 
-def _solved(nothing: Reach, periods: Sequence[int], scene: Scene, rung: Rung) -> Reach:
+def _is_lost(error: float | None) -> bool:
+    return error is None or not error < _LOST
+
+
+def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
     """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
     problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
@@ -171,8 +155,8 @@ def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
         return [float(largest(row)) for row in zip(*bounds, strict=True)]
 
 
-def _with_floors(found: Sequence[Reach], scene: Scene) -> list[Reach]:
-    """The same with their floors, and to the end of their periods.
+def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
+    """Return the rows with their floors, and to the end of their periods.
 
     One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
     Raises Unsettled where its condition cannot be had.
@@ -185,7 +169,7 @@ def _with_floors(found: Sequence[Reach], scene: Scene) -> list[Reach]:
     return [_with_floor(one, asked, truth) if one.errors else one for one in found]
 
 
-def _with_floor(one: Reach, asked: Scene, truth: Motion) -> Reach:
+def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
     elapsed, count = asked.clock.elapsed, len(one.errors)
     # On another rung the orbit may be followed further: this one takes steps in proportion.
     steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
@@ -211,7 +195,7 @@ def _up_to(values: Sequence[float]) -> tuple[float, ...]:
     )
 
 
-def _measured(member: Member) -> list[Reach]:
+def _measured(member: Member) -> list[ReachRow]:
     one = family(member.family)
     return reaches(one, member.value, [rung_named(name) for name in one.far])
 
@@ -222,16 +206,9 @@ def _expense(member: Member) -> float:
     return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
 
 
-def _described(one: Family) -> dict[str, Any]:
-    return {
-        "name": one.name,
-        "title": one.title,
-        "symbol": one.symbol,
-        "extreme": one.extreme,
-        "values": list(one.values),
-        "rungs": dict(one.far),
-    }
+def _described(one: Family) -> ReachFamily:
+    return ReachFamily(one.name, one.title, one.symbol, one.extreme, one.values, dict(one.far))
 
 
-def _finite(value: float) -> float | None:
-    return float(f"{value:.4g}") if isfinite(value) else None
+def _rounded(value: float | None) -> float | None:
+    return float(f"{value:.4g}") if value is not None and isfinite(value) else None

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from time import perf_counter
 from typing import Any
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.records.json_text import finite
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -61,17 +61,13 @@ class TradeOff:
     def attainable(self) -> dict[str, float | None]:
         """By rung, the least that rounding leaves there; None where it is not known or no number."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
-        return {rung.name: _finite(least_error(self.scene, rung)) for rung in rungs}
+        return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
 
     def _front_of_integrators(self) -> list[str]:
         """The front in words without what needs no steps; empty where that is not on the front."""
         if all(p.timed.setting.is_integrator for p in self.front):
             return []
         return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
-
-
-def _finite(error: float | None) -> float | None:
-    return error if error is not None and isfinite(error) else None
 
 
 def trade_off(

@@ -17,8 +17,9 @@ from taylor_verify.publish.pictures.log_axes import number_axes
 from taylor_verify.publish.pictures.named import Named
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
 from taylor_verify.publish.pictures.panels import Frame, Panel, columns, width_of
-from taylor_verify.publish.pictures.series import FALSE, SOUND, Row, Series, amount, front_of
+from taylor_verify.publish.pictures.series import Row, Series, amount, front_of
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, Look
+from taylor_verify.records.studies.tradeoff import Standing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -154,7 +155,7 @@ def _exact_rows(series: Series, diagram: Diagram) -> list[Row]:
     return [
         row
         for row in series.rows
-        if row["standing"] == SOUND and row[diagram.y] == 0 and amount(row, diagram.x)
+        if row["standing"] == Standing.SOUND and row[diagram.y] == 0 and amount(row, diagram.x)
     ]
 
 
@@ -253,7 +254,7 @@ def _draw_strip(
     axes.spines["bottom"].set_visible(False)
     for line, (series, rows) in enumerate(found):
         for row in rows:
-            hollow = row["standing"] == FALSE
+            hollow = row["standing"] == Standing.FALSE
             axes.plot(
                 [amount(row, x) or 1.0],
                 [line],
@@ -312,9 +313,9 @@ def legend_of(
         dotted = {"color": INK, "linewidth": 0.6, "linestyle": (0, (1, 2))}
         found.append((dotted, "attainable"))
     mark = {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
-    if FALSE in standings:
+    if Standing.FALSE in standings:
         found.append(({**mark, "marker": "o", "markerfacecolor": PAPER}, "false success"))
-    if standings - {FALSE}:
+    if standings - {Standing.FALSE}:
         found.append(({**mark, "marker": "x"}, "failed"))
     if exact:
         found.append(({**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"))

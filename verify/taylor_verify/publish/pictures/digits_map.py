@@ -18,12 +18,11 @@ from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
 from taylor_verify.publish.pictures.wording import power_of_ten
+from taylor_verify.records.studies.reach import ReachFamily, ReachRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-Row = Mapping[str, Any]
 
 # From so many digits on, and the colour: one hue, darker by equal steps.
 CLASSES: Final = (
@@ -57,23 +56,28 @@ _HATCHED: Final[Mapping[str, Any]] = {
 }
 
 
-def stem_of(family: Row) -> str:
-    """The file's name without its ending."""
-    return f"reach-{family['name']}"
+def stem_of(family: ReachFamily) -> str:
+    """Return the file's name without its ending."""
+    return f"reach-{family.name}"
 
 
-def picture(family: Row, rows: Sequence[Row]) -> Picture:
-    """``family`` as `trade.reach.document` describes it, ``rows`` its own. Raises ValueError for none."""
-    maps = [_Map.of(family, rung, rows) for rung in family["rungs"]]
+def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
+    """Return the errors that were achieved, or those that were attainable."""
+    return row.errors if key == ACHIEVED else row.floors
+
+
+def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
+    """Return the map of a family from its own rows. Raises ValueError for none."""
+    maps = [_Map.of(family, rung, rows) for rung in family.rungs]
     maps = [one for one in maps if one.periods]
     if not maps:
-        raise ValueError(f"expected runs of the family, got none @ {family['name']}")
+        raise ValueError(f"expected runs of the family, got none @ {family.name}")
     alt = (
-        f"Decimal digits left of {family['title']}, over {family['symbol']} from "
-        f"{family['values'][0]} to {family['values'][-1]} and the periods, for each rung: achieved "
+        f"Decimal digits left of {family.title}, over {family.symbol} from "
+        f"{family.values[0]} to {family.values[-1]} and the periods, for each rung: achieved "
         f"by taylor, and attainable beside it. {' '.join(one.sentence for one in maps)}"
     )
-    title = f"Digits left: {family['name']}"
+    title = f"Digits left: {family.name}"
     return Picture(stem_of(family), title, alt, partial(_figure, family, maps))
 
 
@@ -90,16 +94,16 @@ class _Map:
     cells: Mapping[tuple[str, int, str], int]
 
     @classmethod
-    def of(cls, family: Row, rung: str, rows: Sequence[Row]) -> _Map:
-        own = [row for row in rows if row["rung"] == rung and row[ACHIEVED]]
+    def of(cls, family: ReachFamily, rung: str, rows: Sequence[ReachRow]) -> _Map:
+        own = [row for row in rows if row.rung == rung and row.errors]
         cells = {
-            (row["value"], count, key): digits_of(error)
+            (row.value, count, key): digits_of(error)
             for row in own
             for key in (ACHIEVED, ATTAINABLE)
-            for count, error in zip(row["periods"], row[key], strict=False)
+            for count, error in zip(row.periods, numbers_of(row, key), strict=False)
         }
-        periods = tuple(sorted({count for row in own for count in row["periods"]}))
-        return cls(rung, tuple(family["values"]), periods, cells)
+        periods = tuple(sorted({count for row in own for count in row.periods}))
+        return cls(rung, family.values, periods, cells)
 
     @property
     def sentence(self) -> str:
@@ -135,7 +139,7 @@ def _periods(count: int) -> str:
     return "1 period" if count == 1 else f"{count} periods"
 
 
-def _figure(family: Row, maps: Sequence[_Map]) -> Figure:
+def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
     from matplotlib.figure import Figure
 
     heights = [_CELL * len(one.periods) for one in maps]
@@ -203,12 +207,12 @@ def _count(periods: int) -> str:
     return str(periods) if periods < 1000 else power_of_ten(periods)
 
 
-def _name_values(axes: Axes, family: Row) -> None:
-    """Some of the values where they are many."""
-    values = family["values"]
+def _name_values(axes: Axes, family: ReachFamily) -> None:
+    """Name some of the values where they are many."""
+    values = family.values
     shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
     axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
-    axes.set_xlabel(f"{family['symbol']}: towards {family['extreme']}", size=SMALL)
+    axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
 
 
 def _draw_legend(figure: Figure) -> None:

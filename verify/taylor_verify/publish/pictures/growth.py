@@ -1,16 +1,15 @@
-"""How errors grow over decades of time: a line for each ensemble, beside the powers of Brouwer's law.
+"""The growth of errors over decades of time: a line for each ensemble, beside Brouwer's powers.
 
-The document: {"scene" (or what the lines have in common), "runs": [{"label", "counts", "quantities":
-[{"quantity", "rms"}, ...]}, ...]}, counts being periods. Left the drift of a conserved quantity, right
-the phase; the thin lines rise as the powers of time that they are named for.
+Left the drift of a conserved quantity, right the phase, over periods. The thin lines rise as the powers
+of time that they are named for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from math import isfinite, log10
-from typing import TYPE_CHECKING, Any, Final
+from math import log10
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures import panels as at
 from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
@@ -21,12 +20,12 @@ from taylor_verify.publish.pictures.panels import Frame, width_of
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_line
 from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.records.studies.growth import Ensemble
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Row = Mapping[str, Any]
 Points = list[tuple[float, float]]
 
 # Of each panel: its quantity, its heading, and the powers drawn in it with their names.
@@ -34,6 +33,8 @@ PANELS: Final = (
     ("T", "energy, relative", ((0.5, "1/2"), (1.0, "1"))),
     ("phase", "phase (rad)", ((1.5, "3/2"), (2.0, "2"))),
 )
+# The lines have no scene in common.
+_TITLE: Final = "ensembles of starts"
 # In decades, between two beginnings that each have their powers drawn.
 _APART: Final = 1.0
 _NOTE: Final = (
@@ -41,40 +42,40 @@ _NOTE: Final = (
 )
 
 
-def picture(document: Row) -> Picture:
-    """Raises ValueError for a document without a run that has points to draw."""
+def picture(runs: Sequence[Ensemble]) -> Picture:
+    """Return the picture of all runs. Raises ValueError where none has points to draw."""
+    by_label = dict(zip(labels_of(runs), runs, strict=True))
     lines = {
-        quantity: {run["label"]: points_of(run, quantity) for run in document["runs"]}
+        quantity: {label: points_of(run, quantity) for label, run in by_label.items()}
         for quantity, _, _ in PANELS
     }
     if not any(points for by_run in lines.values() for points in by_run.values()):
         raise ValueError("expected a run with errors above zero, got none @ runs")
-    said = "; ".join(_said(run) for run in document["runs"])
+    said = "; ".join(_said(label, run) for label, run in by_label.items())
     alt = (
-        f"Errors against periods on {document['scene']}, both logarithmic, energy on the left and "
+        f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
         f"phase on the right. {said}."
     )
-    title = f"Growth of errors: {document['scene']}"
-    return Picture(stem_of(document, "growth"), title, alt, partial(_figure, lines))
+    title = f"Growth of errors: {_TITLE}"
+    return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
 
 
-def points_of(run: Row, quantity: str) -> Points:
-    """The root mean squares that a logarithmic axis can show."""
-    row = next((one for one in run["quantities"] if one["quantity"] == quantity), None)
+def points_of(run: Ensemble, quantity: str) -> Points:
+    """Return the root mean squares that a logarithmic axis can show."""
+    row = next((one for one in run.quantities if one.quantity == quantity), None)
     if row is None:
         return []
-    pairs = zip(run["counts"], row["rms"], strict=True)
-    return [(n, e) for n, e in pairs if e is not None and isfinite(e) and e > 0]
+    return [(n, e) for n, e in zip(run.counts, row.rms, strict=True) if e is not None and e > 0]
 
 
-def _said(run: Row) -> str:
+def _said(label: str, run: Ensemble) -> str:
     ends = []
     for quantity, _, _ in PANELS:
         points = points_of(run, quantity)
         if points:
             (n0, e0), (n1, e1) = points[0], points[-1]
             ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
-    return f"{run['label']}: {', '.join(ends) or 'nothing above zero'}"
+    return f"{label}: {', '.join(ends) or 'nothing above zero'}"
 
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
@@ -147,18 +148,18 @@ def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
     )
 
 
-def labels_of(runs: Sequence[Row]) -> list[str]:
-    """What the lines are called: scene, rung, and the setting of the solver where it has one.
+def labels_of(runs: Sequence[Ensemble]) -> list[str]:
+    """Return the names of the lines: scene, rung, and the setting of the solver where it has one.
 
     A scene goes by the last part of its name where no other has the same; of two ensembles with one name
     the longer one says how far it goes.
     """
-    tails = {run["scene"]: run["scene"].rpartition("/")[2] for run in runs}
-    found = []
+    tails = {run.scene: run.scene.rpartition("/")[2] for run in runs}
+    found: list[str] = []
     for run in runs:
-        is_alone = list(tails.values()).count(tails[run["scene"]]) == 1
-        scene = tails[run["scene"]] if is_alone else run["scene"]
-        setting = run["solver"].removeprefix("taylor").lstrip("?")
-        label = " ".join([scene, run["rung"], setting]).strip()
-        found.append(f"{label}, to {run['periods']:.0e}" if label in found else label)
+        is_alone = list(tails.values()).count(tails[run.scene]) == 1
+        scene = tails[run.scene] if is_alone else run.scene
+        setting = run.solver.removeprefix("taylor").lstrip("?")
+        label = " ".join([scene, run.rung, setting]).strip()
+        found.append(f"{label}, to {run.periods:.0e}" if label in found else label)
     return found

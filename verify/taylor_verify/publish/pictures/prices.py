@@ -1,22 +1,17 @@
-"""What a scene's requirements cost: a bar for each, as a multiple of the one at the foot.
-
-The document: {"scene", "yardstick" (what a ratio of 1 is), "prices": [{"label", "rung", "ratio",
-"low", "high"}, ...]}, where low and high are the range that was seen and may be missing.
-"""
+"""The cost of what a scene requires: a bar for each thing, as a multiple of the one at the foot."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.publish.pictures.diagram import add_axes
 from taylor_verify.publish.pictures.legend import draw_legend
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
 from taylor_verify.publish.pictures.panels import Frame
-from taylor_verify.publish.pictures.picture import Picture, save
-from taylor_verify.publish.pictures.rows import Ratio, ratios
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.ratio import Ratio, check
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_rung
 from taylor_verify.publish.pictures.wording import stem_of, times
 
@@ -36,23 +31,19 @@ _WIDEST: Final = 3.0
 _RANGE: Final[Mapping[str, Any]] = {"color": INK, "linewidth": 0.8, "marker": "|"}
 
 
-def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
-    """Write the picture to a folder; the errors are those of `picture` and of `save`."""
-    return save([picture(document)], folder)
-
-
-def picture(document: Mapping[str, Any]) -> Picture:
-    """Raises ValueError for a document that is none."""
-    found = ratios(document, "prices")
-    yardstick = str(document.get("yardstick") or found[0].label)
+def picture(scene: str, yardstick: str, found: Sequence[Ratio]) -> Picture:
+    """Return the picture of ratios to the yardstick. Raises ValueError for ratios that are none."""
+    check(found)
     dearest = max(found, key=lambda one: one.ratio)
     said = "; ".join(f"{one.label} on {one.rung} {times(one.ratio)}" for one in found)
     alt = (
-        f"Cost of what {document['scene']} requires, as a multiple of the time of {yardstick}: "
+        f"Cost of what {scene} requires, as a multiple of the time of {yardstick}: "
         f"{said}. The dearest is {dearest.label} on {dearest.rung}."
     )
-    title = f"Cost of what is required: {document['scene']}"
-    return Picture(stem_of(document, "prices"), title, alt, partial(_figure, found, yardstick))
+    title = f"Cost of what is required: {scene}"
+    return Picture(
+        stem_of({"scene": scene}, "prices"), title, alt, partial(_figure, found, yardstick)
+    )
 
 
 def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
@@ -66,7 +57,7 @@ def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
     )
     _draw_bars(axes, found)
     axes.set(xlabel=f"time, as a multiple of that of {yardstick}")
-    if any(one.low < one.high for one in found):
+    if any(one.least < one.greatest for one in found):
         draw_legend(figure, [(dict(_RANGE), "least to greatest seen")], "", None)
     return figure
 
@@ -78,14 +69,14 @@ def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
         colour = look_of_rung(one.rung).colour
         axes.barh(i, one.ratio - 1, left=1, height=0.62, color=colour, gid=one.label, zorder=2)
         axes.plot([one.ratio], [i], marker="|", color=colour, markersize=9, zorder=2)
-        if one.low < one.high:
+        if one.least < one.greatest:
             # White beneath, to be seen on a dark bar.
             below = {"color": PAPER, "linewidth": 2.0, "marker": "|", "markeredgewidth": 2.4}
             for look in (below, _RANGE):
-                axes.plot([one.low, one.high], [i, i], zorder=3, **look)
+                axes.plot([one.least, one.greatest], [i, i], zorder=3, **look)
         axes.annotate(
             times(one.ratio),
-            (max(one.high, 1.0), i),
+            (max(one.greatest, 1.0), i),
             (6, 0),
             textcoords="offset points",
             va="center",
@@ -93,7 +84,10 @@ def _draw_bars(axes: Axes, found: Sequence[Ratio]) -> None:
             gid="number",
         )
     axes.axvline(1, color=QUIET, linewidth=0.8, zorder=4)
-    least, most = min(min(one.low for one in found), 1.0), max(max(one.high for one in found), 1.0)
+    least, most = (
+        min(min(one.least for one in found), 1.0),
+        max(max(one.greatest for one in found), 1.0),
+    )
     # The last number needs room: an inch of four or five.
     axes.set_xlim(least / 1.15, most * max((most / least) ** 0.22, 1.3))
     axes.set_yticks(range(len(found)), [_name(one) for one in found])

@@ -9,14 +9,12 @@ from math import isfinite
 from typing import Any, Final
 
 from taylor_verify.publish.pictures.style import Look, kind_of, look_of, place
+from taylor_verify.records.studies.tradeoff import Standing
 
 Row = Mapping[str, Any]
 
-SOUND: Final = "sound"
-FALSE: Final = "false success"
-FAILED: Final = "failed"
 # What is marked at the border, and how it is read.
-AT_THE_BORDER: Final = (FALSE, FAILED)
+AT_THE_BORDER: Final = (Standing.FALSE, Standing.FAILED)
 
 
 @dataclass(frozen=True)
@@ -67,19 +65,19 @@ def series_of(document: Mapping[str, Any]) -> list[Series]:
     for row in document["points"]:
         rows.setdefault((row["family"], row["rung"]), []).append(row)
     found = [Series(family, rung, tuple(its)) for (family, rung), its in rows.items()]
-    ran = [one for one in found if any(row["standing"] != "not run" for row in one.rows)]
+    ran = [one for one in found if any(row["standing"] != Standing.NOT_RUN for row in one.rows)]
     return sorted(ran, key=lambda one: (place(one.family, one.rung), one.rung))
 
 
 def is_sound(row: Row, x: str, y: str) -> bool:
     """Whether a row is worth a point: sound, and with numbers that a logarithmic axis can show."""
-    return row["standing"] == SOUND and bool(amount(row, x)) and bool(amount(row, y))
+    return row["standing"] == Standing.SOUND and bool(amount(row, x)) and bool(amount(row, y))
 
 
 def amount(row: Row, key: str) -> float | None:
     """A positive finite number of the row, or None; a failed run's time is that of its only solve."""
     value = row.get(key)
-    if value is None and key == "seconds" and row["standing"] != SOUND:
+    if value is None and key == "seconds" and row["standing"] != Standing.SOUND:
         value = row.get("first_seconds")
     return value if value is not None and isfinite(value) and value > 0 else None
 

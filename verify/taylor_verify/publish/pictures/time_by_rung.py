@@ -1,8 +1,6 @@
-"""What a wider number costs in time: a line for each scene or solver, f64 being 1.
+"""The time that a wider number takes: a line for each scene or solver, f64 being 1.
 
-The document: {"scene" (or what the lines have in common), "rungs": [{"label", "rung", "ratio",
-"low", "high"}, ...]}, where rows of one label are one line, and low and high, the range that was
-seen, may be missing.
+Ratios of one label are one line.
 """
 
 from __future__ import annotations
@@ -10,16 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
 from taylor_verify.publish.pictures.legend import draw_legend
 from taylor_verify.publish.pictures.named import Named
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.panels import Frame
-from taylor_verify.publish.pictures.picture import Picture, save
-from taylor_verify.publish.pictures.rows import Ratio, ratios
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.ratio import Ratio, check
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
 from taylor_verify.publish.pictures.wording import stem_of, times
 from taylor_verify.records.quantities import bits_of, place_of_rung
@@ -35,29 +32,28 @@ _HEIGHT: Final = 3.5
 _NEAR: Final = 0.045
 
 
-def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
-    """Write the picture to a folder; the errors are those of `picture` and of `save`."""
-    return save([picture(document)], folder)
+def picture(scene: str, found: Sequence[Ratio]) -> Picture:
+    """Return the picture of ratios to the time on f64; ``scene`` is what all of them have in common.
 
-
-def picture(document: Mapping[str, Any]) -> Picture:
-    """Raises ValueError for a document that is none, or has a rung without a number of bits."""
-    lines = _lines(ratios(document, "rungs"))
-    for i, one in enumerate(one for line in lines.values() for one in line):
+    Raises ValueError for ratios that are none, and for a rung without a number of bits.
+    """
+    check(found)
+    for i, one in enumerate(found):
         if not bits_of(one.rung) > 0:
             raise ValueError(
-                f"expected a rung, such as f64 or mp237, got {one.rung!r} @ rungs[{i}]"
+                f"expected a rung, such as f64 or mp237, got {one.rung!r} @ ratios[{i}]"
             )
+    lines = _lines(found)
     said = "; ".join(
         f"{label}: {', '.join(f'{one.rung} {times(one.ratio)}' for one in line)}"
         for label, line in lines.items()
     )
     alt = (
-        f"Time of a solve against the bits of the rung on {document['scene']}, both logarithmic, as "
+        f"Time of a solve against the bits of the rung on {scene}, both logarithmic, as "
         f"a multiple of the time on f64. {said}."
     )
-    title = f"Time by rung: {document['scene']}"
-    return Picture(stem_of(document, "rungs"), title, alt, partial(_figure, lines))
+    title = f"Time by rung: {scene}"
+    return Picture(stem_of({"scene": scene}, "rungs"), title, alt, partial(_figure, lines))
 
 
 def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
@@ -77,7 +73,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     axes = add_axes(figure, _FRAME)
     looks = {label: look_of_line(i) for i, label in enumerate(lines)}
     found = [one for line in lines.values() for one in line]
-    ends = [end for one in found for end in (one.low, one.high)]
+    ends = [end for one in found for end in (one.least, one.greatest)]
     axes.set(xscale="log", yscale="log", ylim=widened([*ends, 1.0], 0.08, 0.12))
     axes.set(xlim=widened([float(bits_of(one.rung)) for one in found], 0.05, 0.2))
     axes.set(xlabel="rung, by the bits of its significand", ylabel="time over that on f64")
@@ -88,7 +84,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     for label, line in lines.items():
         look = looks[label]
         for one in line:
-            spread = [[one.ratio - one.low], [one.high - one.ratio]]
+            spread = [[one.ratio - one.least], [one.greatest - one.ratio]]
             bits = bits_of(one.rung)
             axes.errorbar(
                 [bits],
@@ -111,7 +107,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
         for label, line in lines.items()
     ]
     write_names(axes, named)
-    if any(one.low < one.high for one in found):
+    if any(one.least < one.greatest for one in found):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
         draw_legend(figure, [(bar, "least to greatest seen")], "", None)
     return figure

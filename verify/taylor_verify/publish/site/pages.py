@@ -145,14 +145,14 @@ class _Pages:
         page = "extremes.html"
         pictures: list[Figure] = []
         reach, growth = self.report.reach, self.report.growth
-        for one in reach["families"] if reach else ():
-            rows = [row for row in reach["rows"] if row["family"] == one["name"]] if reach else []
+        for one in reach.families if reach else ():
+            rows = [row for row in reach.rows if row.family == one.name] if reach else []
             drawn = self.links.drawing(digits_map.stem_of(one))
-            found = work.digits_map(one, rows, drawn) if len(one["values"]) > 1 else None
+            found = work.digits_map(one, rows, drawn) if len(one.values) > 1 else None
             pictures += [found] if found else []
         if growth:
             drawn = self.links.drawing("ensembles-of-starts-growth")
-            found = work.growth(growth, self.palette, drawn)
+            found = work.growth(growth.runs, self.palette, drawn)
             pictures += [found] if found else []
         body = self._html(self._template("extremes.md"), "extremes.md", page)
         worst = self._read("tables/worst.md")

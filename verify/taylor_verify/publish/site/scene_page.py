@@ -28,7 +28,7 @@ from taylor_verify.publish.site.looks import Palette
 from taylor_verify.publish.site.mathml import mathml
 from taylor_verify.publish.site.prose import Prose
 from taylor_verify.publish.site.source import Document, Report
-from taylor_verify.publish.trades import Trade
+from taylor_verify.publish.trades import TimedPoint, Trade
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.verdict import Verdict
 
@@ -195,24 +195,24 @@ def _accuracy_row(run: Run, verdict: Verdict) -> list[str]:
 
 
 def _solvers(trade: Trade) -> str:
-    """The most accurate sound setting of each family, with its time over that of the yardstick."""
-    best: dict[tuple[str, str], Document] = {}
+    """Return the most accurate sound setting of each family, with its time over that of the yardstick."""
+    best: dict[tuple[str, str], TimedPoint] = {}
     for row in trade.sound:
-        key = (row["family"], row["rung"])
-        if key not in best or row["error"] < best[key]["error"]:
+        key = (row.point.family, row.point.rung)
+        if key not in best or row.error < best[key].error:
             best[key] = row
     columns = [
         *(Column("solver"), Column("rung")),
         *(Column(name, to_right=True) for name in ("error", "digits", "steps", "time")),
     ]
-    rows = sorted(best.values(), key=lambda row: row["error"])
+    rows = sorted(best.values(), key=lambda row: row.error)
     lines = [
         [
-            *(code(row["solver"]), row["rung"], figure(row["error"])),
-            *(f"{row['achieved_digits']:.1f}", str(row["steps"]), figure(row["ratio"])),
+            *(code(row.point.solver), row.point.rung, figure(row.error), f"{digits:.1f}"),
+            *(str(row.point.steps), figure(row.timing.ratio)),
         ]
         for row in rows
-        if row["achieved_digits"] is not None
+        if (digits := row.point.achieved_digits) is not None
     ]
     what = (
         "The most accurate setting of every family of solvers that was sound on this scene; *time* is "

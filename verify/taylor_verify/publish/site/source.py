@@ -11,19 +11,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
-from taylor_verify.publish import data, portraits, sights, trades
+from taylor_verify.publish import data, growth, portraits, reach, sights, trades
 from taylor_verify.publish.file_names import of_scene, of_solver
 from taylor_verify.publish.runs import Run, runs
 from taylor_verify.publish.trades import Trade, Trades
+from taylor_verify.records import json_text
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.studies.controls import Sight
-
-GROWTH: Final = "growth.json"
-REACH: Final = "reach.json"
+from taylor_verify.records.studies.growth import GrowthStudy
+from taylor_verify.records.studies.reach import ReachStudy
 
 Document = Mapping[str, Any]
+Study = TypeVar("Study")
 
 _SOLVER: Final = "taylor"
 
@@ -89,16 +90,20 @@ class Report:
         return next((trade for trade in found if trade.scene == scene), None)
 
     @cached_property
-    def growth(self) -> Document | None:
-        return self._stored(GROWTH)
+    def growth(self) -> GrowthStudy | None:
+        return self._study(growth.GROWTH, GrowthStudy)
 
     @cached_property
-    def reach(self) -> Document | None:
-        return self._stored(REACH)
+    def reach(self) -> ReachStudy | None:
+        return self._study(reach.REACH, ReachStudy)
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
         return self._stored(f"{data.RECORDS}/{name}")
+
+    def _study(self, name: str, kind: type[Study]) -> Study | None:
+        file = self.folder / name
+        return json_text.read(file, kind) if file.exists() else None
 
     def _stored(self, name: str) -> Document | None:
         file = self.folder / data.FOLDER / name

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from math import floor, log10
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.publish.cells import figure
+from taylor_verify.publish.pictures.digits_map import ACHIEVED, ATTAINABLE, numbers_of
 from taylor_verify.publish.pictures.style import place
 from taylor_verify.publish.site.figure import (
     WIDE,
@@ -19,9 +20,10 @@ from taylor_verify.publish.site.figure import (
     on_log,
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of
-from taylor_verify.publish.trades import Trade
-
-Row = Mapping[str, Any]
+from taylor_verify.publish.trades import TimedPoint, Trade
+from taylor_verify.records.studies.growth import Ensemble
+from taylor_verify.records.studies.reach import ReachFamily, ReachRow
+from taylor_verify.records.studies.tradeoff import TradePoint
 
 _WORK: Final = {
     "seconds": "time of a solve (s)",
@@ -43,15 +45,15 @@ def precision(trade: Trade, palette: Palette, fallback: str | None = None) -> Fi
         )
         for key, title in _WORK.items()
     ]
-    best = min(trade.sound, key=lambda row: row["error"], default=None)
-    told = f" The least error is {figure(best['error'])}, of {best['solver']}." if best else ""
+    best = min(trade.sound, key=lambda row: row.error, default=None)
+    told = f" The least error is {figure(best.error)}, of {best.point.solver}." if best else ""
     return Figure(
         name=f"work-{trade.scene.replace('/', '-')}",
         title=f"Work and precision: {trade.scene}",
-        caption=f"{trade.title}: every setting that gave a sound answer, a line for each family of "
+        caption=f"{trade.about.title}: every setting that gave a sound answer, a line for each family of "
         "solvers. Further left is faster, further down more accurate.",
         alt=f"Largest error against work on {trade.scene}, both logarithmic, for "
-        f"{len({row['family'] for row in trade.sound})} families of solvers.{told}",
+        f"{len({row.point.family for row in trade.sound})} families of solvers.{told}",
         drawings=[one for one in drawings if one.traces],
         shape=WIDE,
         asks="work as",
@@ -60,20 +62,31 @@ def precision(trade: Trade, palette: Palette, fallback: str | None = None) -> Fi
 
 
 def _families(trade: Trade, key: str, palette: Palette) -> list[Trace]:
-    rows = [row for row in trade.sound if row.get(key) and row["error"]]
-    rows.sort(key=lambda row: (*place(row["family"], row["rung"]), row["rung"], row[key]))
+    rows = [row for row in trade.sound if _work(row, key) and row.error]
+    rows.sort(key=lambda row: (*place(*_family(row.point)), row.point.rung, _work(row, key)))
     return [
         _series(family, rung, list(found), key, palette)
-        for (family, rung), found in groupby(rows, key=lambda row: (row["family"], row["rung"]))
+        for (family, rung), found in groupby(rows, key=lambda row: _family(row.point))
     ]
 
 
-def _series(family: str, rung: str, rows: Sequence[Row], key: str, palette: Palette) -> Trace:
+def _work(row: TimedPoint, key: str) -> float:
+    counted = {"evaluations": row.point.evaluations, "steps": row.point.steps}
+    return row.timing.seconds if key == "seconds" else counted[key]
+
+
+def _family(point: TradePoint) -> tuple[str, str]:
+    return point.family, point.rung
+
+
+def _series(
+    family: str, rung: str, rows: Sequence[TimedPoint], key: str, palette: Palette
+) -> Trace:
     colour = palette.family(family, rung)
     return {
         **{"type": "scatter", "mode": "lines+markers", "name": family},
-        **{"x": on_log(row[key] for row in rows), "y": on_log(row["error"] for row in rows)},
-        "text": [f"{row['solver']} {rung}" for row in rows],
+        **{"x": on_log(_work(row, key) for row in rows), "y": on_log(row.error for row in rows)},
+        "text": [f"{row.point.solver} {rung}" for row in rows],
         "marker": {**marker_of(family, rung), "color": colour},
         "line": {**line_of(family, rung), "color": colour},
         "hovertemplate": "%{text}<br>%{x:.3g}<br>error %{y:.3g}<extra></extra>",
@@ -83,22 +96,22 @@ def _series(family: str, rung: str, rows: Sequence[Row], key: str, palette: Pale
 # The extremes.
 
 
-def digits_map(family: Row, rows: Sequence[Row], fallback: str | None = None) -> Figure | None:
-    """Digits left over the family's number and the periods, achieved and attainable, by rung."""
-    drawings = [
-        _maps(family, [row for row in rows if row["rung"] == r], r) for r in family["rungs"]
-    ]
+def digits_map(
+    family: ReachFamily, rows: Sequence[ReachRow], fallback: str | None = None
+) -> Figure | None:
+    """Return digits left over the family's number and the periods, achieved and attainable, by rung."""
+    drawings = [_maps(family, [row for row in rows if row.rung == r], r) for r in family.rungs]
     drawings = [one for one in drawings if one.traces]
     if not drawings:
         return None
-    towards = f"; {family['symbol']} leads to {family['extreme']}" if family["symbol"] else ""
+    towards = f"; {family.symbol} leads to {family.extreme}" if family.symbol else ""
     return Figure(
-        name=f"reach-{family['name']}",
-        title=f"Digits left: {family['name']}",
-        caption=f"{family['title'][0].upper()}{family['title'][1:]}{towards}. The number in a cell is "
+        name=f"reach-{family.name}",
+        title=f"Digits left: {family.name}",
+        caption=f"{family.title[0].upper()}{family.title[1:]}{towards}. The number in a cell is "
         "the whole decimal digits that are left after so many periods; an empty cell was not run, or "
         "the rung cannot hold the scene.",
-        alt=f"Decimal digits left of {family['title']}, over {family['symbol'] or 'its number'} and "
+        alt=f"Decimal digits left of {family.title}, over {family.symbol or 'its number'} and "
         "the periods, for each rung; the table of the same family has the numbers.",
         drawings=drawings,
         layout={_MAP: _colours()},
@@ -109,14 +122,14 @@ def digits_map(family: Row, rows: Sequence[Row], fallback: str | None = None) ->
     )
 
 
-def _maps(family: Row, rows: Sequence[Row], rung: str) -> Drawing:
-    run = [row for row in rows if row["errors"]]
+def _maps(family: ReachFamily, rows: Sequence[ReachRow], rung: str) -> Drawing:
+    run = [row for row in rows if row.errors]
     if not run:
         return Drawing(rung, [])
-    periods = max((row["periods"] for row in run), key=len)
-    values = family["values"]
+    periods = max((row.periods for row in run), key=len)
     traces = [
-        _map(values, periods, run, key, n) for n, key in enumerate(("errors", "floors"), start=1)
+        _map(family.values, periods, run, key, n)
+        for n, key in enumerate((ACHIEVED, ATTAINABLE), start=1)
     ]
     heading = {"showarrow": False, "yref": "paper", "y": 1.02, "yanchor": "bottom"}
     layout: Layout = {
@@ -125,7 +138,7 @@ def _maps(family: Row, rows: Sequence[Row], rung: str) -> Drawing:
             {**heading, "text": text, "xref": f"x{n} domain", "x": 0.5}
             for n, text in ((1, "achieved"), (2, "attainable"))
         ],
-        "yaxis": _categories(family["symbol"] or "value"),
+        "yaxis": _categories(family.symbol or "value"),
         "yaxis2": {**_categories(""), "showticklabels": False},
         "xaxis": _categories("periods"),
         "xaxis2": _categories("periods"),
@@ -139,12 +152,12 @@ def _categories(title: str) -> Layout:
 
 
 def _map(
-    values: Sequence[str], periods: Sequence[int], rows: Sequence[Row], key: str, number: int
+    values: Sequence[str], periods: Sequence[int], rows: Sequence[ReachRow], key: str, number: int
 ) -> Trace:
     found = {
-        (row["value"], count): digits_left(error)
+        (row.value, count): digits_left(error)
         for row in rows
-        for count, error in zip(row["periods"], row[key], strict=False)
+        for count, error in zip(row.periods, numbers_of(row, key), strict=False)
     }
     cells = [[found.get((value, count)) for count in periods] for value in values]
     suffix = "" if number == 1 else str(number)
@@ -187,9 +200,11 @@ def _colours() -> Layout:
 # Growth.
 
 
-def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figure | None:
-    """The root mean square of each quantity over an ensemble, against the periods."""
-    drawings = [_growing(run, palette) for run in document["runs"]]
+def growth(
+    runs: Sequence[Ensemble], palette: Palette, fallback: str | None = None
+) -> Figure | None:
+    """Return the root mean square of each quantity over an ensemble, against the periods."""
+    drawings = [_growing(run, palette) for run in runs]
     drawings = [one for one in drawings if one.traces]
     if not drawings:
         return None
@@ -200,9 +215,9 @@ def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figu
         "roundings grows with the square root of time, a phase with its power 3/2; a bias would show "
         "as the powers 1 and 2.",
         alt="; ".join(
-            f"{run['scene']} on {run['rung']}: "
-            + ", ".join(f"{q['quantity']} {figure(q['exponent'])}" for q in run["quantities"])
-            for run in document["runs"]
+            f"{run.scene} on {run.rung}: "
+            + ", ".join(f"{q.quantity} {figure(q.exponent)}" for q in run.quantities)
+            for run in runs
         ),
         drawings=drawings,
         shape=WIDE,
@@ -211,19 +226,19 @@ def growth(document: Row, palette: Palette, fallback: str | None = None) -> Figu
     )
 
 
-def _growing(run: Row, palette: Palette) -> Drawing:
+def _growing(run: Ensemble, palette: Palette) -> Drawing:
     traces = [
         {
-            **{"type": "scatter", "mode": "lines+markers", "x": on_log(run["counts"])},
-            **{"y": on_log(one["rms"]), "name": f"{one['quantity']}: {figure(one['exponent'])}"},
+            **{"type": "scatter", "mode": "lines+markers", "x": on_log(run.counts)},
+            **{"y": on_log(one.rms), "name": f"{one.quantity}: {figure(one.exponent)}"},
             **{"line": {"color": palette.line(n), "width": 1.4}, "marker": {"size": 6}},
             "hovertemplate": "%{x:.3g} periods<br>rms %{y:.3g}<extra></extra>",
         }
-        for n, one in enumerate(run["quantities"])
+        for n, one in enumerate(run.quantities)
     ]
     axes = {
         "xaxis": log_axis("periods"),
         "yaxis": log_axis("root mean square"),
         "legend": {"title": {"text": "exponent of growth"}},
     }
-    return Drawing(f"{run['scene']}, {run['rung']}, {run['solver']}", traces, axes)
+    return Drawing(f"{run.scene}, {run.rung}, {run.solver}", traces, axes)

@@ -5,15 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.status import Status
+
+# None stands for a number that is not finite.
+Number = float | None
 
 
 @dataclass(frozen=True)
 class GrowthGate:
     """The gate on the growth of a conserved quantity, or of the phase."""
 
-    verdict: str
+    verdict: Status
     law: str
-    chance: float
+    chance: Number
     false_alarm: float
     because: str
 
@@ -28,15 +32,15 @@ class GrowthOfQuantity:
     """
 
     quantity: str
-    rms: tuple[float, ...]
-    in_walks: float | None
-    exponent: float
-    low: float
-    high: float
+    rms: tuple[Number, ...]
+    in_walks: Number
+    exponent: Number
+    low: Number
+    high: Number
     level: float
     lanes: int
     word: str
-    late: tuple[float, float, float]
+    late: tuple[Number, Number, Number]
     late_word: str
     gate: GrowthGate | None = None
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.provenance import SceneProvenance
 
-# A median, and the ends of its interval; None where there were too few rounds for an interval.
+# A median, and the ends of its interval. The ends are None where there were too few rounds for one.
 Interval = tuple[float, float | None, float | None]
 
 
@@ -28,7 +28,7 @@ class PriceRow:
     step_ratio: Interval
     time_ratio: Interval
     microseconds: float
-    error: float
+    error: float | None
 
 
 @dataclass(frozen=True)
@@ -57,4 +57,4 @@ class PricesStudy:
     rows: tuple[PriceRow, ...]
     equal: tuple[PriceAtEqualError, ...]
     method: PriceMethod
-    provenance: Provenance
+    provenance: SceneProvenance

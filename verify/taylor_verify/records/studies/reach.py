@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.provenance import SceneProvenance
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,11 @@ class ReachFamily:
 
 @dataclass(frozen=True)
 class ReachRow:
-    """One member on one rung, after each number of periods.
+    """One member of a family on one rung, after each number of periods.
 
-    ``errors`` and ``floors`` are the largest up to then; None, of a motion that was lost. Both are empty
-    where nothing was run, and ``why`` says why.
+    ``errors`` and ``floors`` are the largest up to then; of a motion that was lost they are None, and
+    infinite while it is measured. There are no floors for periods that no rung was followed for. Both
+    are empty where nothing was run, and ``why`` says why.
     """
 
     family: str
@@ -44,4 +45,4 @@ class ReachStudy:
     families: tuple[ReachFamily, ...]
     rows: tuple[ReachRow, ...]
     lost: float
-    provenance: Provenance
+    provenance: SceneProvenance
