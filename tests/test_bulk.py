@@ -14,7 +14,8 @@ import pytest
 
 from taylor_verify.cli import main
 from taylor_verify.cli import missing as command
-from taylor_verify.publish import archive, bulk, data, drawings
+from taylor_verify.publish import archive, bulk, drawings
+from taylor_verify.records import store
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reader import load
 
@@ -64,21 +65,21 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
 def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     """A record belongs to the verdicts beside it: where these were changed, all are missing. Records of
     an earlier version, which do not say whose they are, are taken for those of the verdicts."""
-    stamp = report / "data" / data.STAMP
+    stamp = report / "data" / store.STAMP
     line = stamp.read_bytes()
     assert missing(report).runs == ()
     stamp.unlink()
     assert missing(report).runs == ()
     stamp.write_bytes(line)
-    file = report / "data" / data.VERDICTS
+    file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["verdicts"][0]["max"] = 0.5
-    file.write_text(data.laid_out(stored), encoding="utf-8")
+    file.write_text(store.laid_out(stored), encoding="utf-8")
     assert len(missing(report).runs) == 4
-    mine, gone = (report / "data" / data.RECORDS / f"{n}.json" for n in ("mine", "gone"))
+    mine, gone = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
     mine.write_text("{}\n", encoding="utf-8")
     shutil.copy(next(file.parent.glob("records/euler-rest*")), gone)
-    data.add_records(report, [])
+    store.add_records(report, [])
     assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
     assert len(missing(report).runs) == 4
 
@@ -92,11 +93,11 @@ def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> No
 
 def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
     """What the rung cannot hold, or the machine does not have, is not made for ever."""
-    file = report / "data" / data.VERDICTS
+    file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     for row in stored["verdicts"]:
         row["verdict"] = "refused" if row["rung"] == "f32" else row["verdict"]
-    file.write_text(data.laid_out(stored), encoding="utf-8")
+    file.write_text(store.laid_out(stored), encoding="utf-8")
     assert {run.rung for run in missing(report).runs} == {"f64"}
 
 
@@ -144,7 +145,7 @@ def test_a_report_that_lacks_something_is_not_packed(
     assert "publish --paper" in capsys.readouterr().err
     assert main(["publish", "--paper", "--from", str(report)]) == 0
     assert main(call) == 0
-    shutil.rmtree(report / "data" / data.RECORDS)
+    shutil.rmtree(report / "data" / store.RECORDS)
     assert main(call) == 2
     assert "without 4 records of runs @ --archive" in capsys.readouterr().err
 

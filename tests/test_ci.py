@@ -24,12 +24,11 @@ from jsonschema import Draft202012Validator
 from samples import LISTED_INSTANTS
 
 from taylor_verify.cli import main
-from taylor_verify.publish import data
 from taylor_verify.publish.ci import annotations, junit
 from taylor_verify.publish.ci.annotations import annotation_lines
 from taylor_verify.publish.ci.case import Remark, cases, sentence
 from taylor_verify.publish.ci.step_summary import step_summary
-from taylor_verify.records import schema
+from taylor_verify.records import schema, store
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -498,7 +497,7 @@ def test_the_schema_describes_every_field_of_a_verdict() -> None:
     described = SCHEMA["$defs"]["Verdict"]["properties"]
     assert {field.name for field in fields(Verdict)} | {"because"} == set(described)
     assert set(schema.REQUIRED) <= set(row().row())
-    rows = [data.row(verdict) for verdict in (row(), row(Status.FAIL, time_shift=0.1))]
+    rows = [store.row(verdict) for verdict in (row(), row(Status.FAIL, time_shift=0.1))]
     counts = {status.value: 0 for status in Status}
     assert violations({"verdicts": rows, "summary": counts}) == []
 

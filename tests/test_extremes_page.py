@@ -13,9 +13,10 @@ import pytest
 from test_publish import NAN, VERSIONS, passed
 
 from taylor_verify.cli import main
-from taylor_verify.publish import data, extremes
+from taylor_verify.publish import extremes
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.report import publish, write
+from taylor_verify.records import store
 from taylor_verify.records.answers import LeftOut
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
@@ -92,7 +93,7 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
     """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
     absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
     extremes.write(tmp_path, study((absent,), ()))
-    (row,) = data.read_document(tmp_path / extremes.EXTREMES)["verdicts"]
+    (row,) = store.read_document(tmp_path / extremes.EXTREMES)["verdicts"]
     assert row["expected"] is None
     found = extremes.load(tmp_path)
     assert found.expected(absent) is None
@@ -104,14 +105,14 @@ def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
     odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
     extremes.write(tmp_path, study((odd,), ()))
     file = tmp_path / extremes.EXTREMES
-    document = data.read_document(file)
+    document = store.read_document(file)
     (row,) = document["verdicts"]
     row["because"] = "the truth is wider than the bound"
     del row["reason"]
     file.write_text(json.dumps(document), encoding="utf-8")
     assert "the truth is wider than the bound" in extremes.pages(tmp_path)[extremes.PAGE]
     extremes.write(tmp_path, extremes.load(tmp_path))
-    (again,) = data.read_document(file)["verdicts"]
+    (again,) = store.read_document(file)["verdicts"]
     assert again["reason"]["remarks"][0]["text"] == row["because"] == again["because"]
 
 
@@ -224,6 +225,6 @@ def test_the_command_fails_at_a_mismatch(
     captured = capsys.readouterr()
     assert len(json.loads(captured.out)["written"]) == 3
     assert {scene, "extremes/worst/euler-gaps"} < set(asked)
-    stored = data.read_document(tmp_path / extremes.EXTREMES)
+    stored = store.read_document(tmp_path / extremes.EXTREMES)
     assert len(stored["mismatches"]) == status
     assert (f"got {verdict.value} @ {scene} f64 omega" in captured.err) == bool(status)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.publish.file_names import of_scene, of_solver
+from taylor_verify.records.file_names import of_scene, of_solver
 from taylor_verify.scenes import library
 
 NEAR = ("a/b", "a-b", "a/b/c", "a-b/c", "a/b-c", "a/worst/b", "a/worst-b", "a-worst-b", "a/worst")

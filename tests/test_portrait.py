@@ -31,7 +31,7 @@ from taylor_verify.portrait import (
     roots,
 )
 from taylor_verify.publish import portraits
-from taylor_verify.publish.file_names import of_scene
+from taylor_verify.records.file_names import of_scene
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse

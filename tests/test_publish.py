@@ -18,11 +18,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from taylor_verify.publish import data, tables
+from taylor_verify.publish import tables
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.report import load, publish, write
+from taylor_verify.records import store
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.record import GateRecord, Record
@@ -238,11 +239,11 @@ def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
 # Files.
 
 
-@pytest.mark.parametrize("broken", ["taylor_verify.publish.data._json", "pathlib.Path.write_text"])
+@pytest.mark.parametrize("broken", ["taylor_verify.records.store._json", "pathlib.Path.write_text"])
 def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
     """A disk that is full in the middle of writing leaves every old byte and nothing new."""
     before = contents(report)
-    whole = data._json if broken.endswith("_json") else Path.write_text
+    whole = store._json if broken.endswith("_json") else Path.write_text
     calls = 0
 
     def full(*arguments: Any, **named: Any) -> Any:

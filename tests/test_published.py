@@ -35,7 +35,6 @@ from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish import claims as claims_page
 from taylor_verify.publish import (
     controls,
-    data,
     drawings,
     extremes,
     gallery,
@@ -56,17 +55,17 @@ from taylor_verify.publish.bulk import FILES
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.paper import files as paper
 from taylor_verify.publish.pictures.picture import save
-from taylor_verify.publish.replacement import first_line
 from taylor_verify.publish.site.builder import build
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.replacement import first_line
 from taylor_verify.records.status import Status
 from taylor_verify.records.studies.enclosure import EnclosureStudy
 from taylor_verify.records.studies.growth import GrowthStudy
 from taylor_verify.records.studies.prices import PricesStudy
 from taylor_verify.records.studies.reach import ReachStudy
 from taylor_verify.records.studies.tradeoff import TradeNumbers, TradeTimings
-from taylor_verify.records.studies.traps import TrapsStudy
 from taylor_verify.records.studies.worst import WorstStudy
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
@@ -158,7 +157,7 @@ def test_no_other_test_reads_what_is_published() -> None:
         for file in Path(__file__).parent.glob("*.py")
         if re.search(r"""(?<!tmp_path )/ "reports["/]""", file.read_text(encoding="utf-8"))
     }
-    assert reading == {"test_published.py", "test_upstream.py", "test_quoted.py"}
+    assert reading == {"test_published.py", "test_upstream.py"}
 
 
 # Current: what is published is what the code makes of the published data.
@@ -197,7 +196,7 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
     """Every document of data is byte for byte what would be written of its contents."""
     documents = [path for path in committed() if path.startswith("data/")]
     assert len(documents) > 10
-    unlike = [p for p in documents if data.laid_out(json.loads(text_of(p))) != text_of(p)]
+    unlike = [p for p in documents if store.laid_out(json.loads(text_of(p))) != text_of(p)]
     assert unlike == []
 
 
@@ -210,7 +209,6 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
         (prices.PRICES, "prices", PricesStudy),
         (trades.NUMBERS, "tradeoff", TradeNumbers),
         (trades.TIMINGS, "tradeoff", TradeTimings),
-        (traps.TRAPS, "controls", TrapsStudy),
         (worst.WORST, "worst", WorstStudy),
         (widths_page.STORED, "enclosure", EnclosureStudy),
     ],
@@ -218,7 +216,7 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
 def test_a_published_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:
     """Keys, their order, lines and every digit are those of the committed file."""
     made_by = {"made_by": f"taylor-verify publish --{option}; do not edit"}
-    text = data.laid_out({**made_by, **complete(read(REPORTS / name, kind))})
+    text = store.laid_out({**made_by, **complete(read(REPORTS / name, kind))})
     assert text == text_of(name)
 
 

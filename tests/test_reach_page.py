@@ -16,16 +16,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from taylor_verify.cli import main
-from taylor_verify.publish import data
 from taylor_verify.publish import reach as page
 from taylor_verify.publish.cells import NOTHING
 from taylor_verify.publish.pictures import digits_map
 from taylor_verify.publish.pictures.palette import TEXT_CONTRAST, contrast, lightness
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.reach import ReachFamily, ReachRow, ReachStudy
 from taylor_verify.trade import reach
 
@@ -117,7 +117,7 @@ def test_stored_data_that_are_none_are_refused(tmp_path: Path) -> None:
 
 def test_families_without_their_rows_are_refused(tmp_path: Path) -> None:
     """A typed document that lacks what its page needs is a ValueError with the file."""
-    replace_files(tmp_path, {page.REACH: data.laid_out(complete(replace(study(), rows=())))})
+    replace_files(tmp_path, {page.REACH: store.laid_out(complete(replace(study(), rows=())))})
     with pytest.raises(ValueError, match=r"expected a measured reach, .* @ .*reach\.json"):
         page.pages(tmp_path)
 

@@ -76,7 +76,7 @@ def write_junit(
     its row. The file is green only where the exit statuses are 0. Raises OSError.
     """
     from taylor_verify.publish.ci.junit import junit
-    from taylor_verify.publish.replacement import replace_files
+    from taylor_verify.records.replacement import replace_files
 
     place = Path(file)
     text = junit(shown_verdicts(results), remarks(results, comparison))
@@ -88,13 +88,13 @@ def extremes_study(results: Judgements) -> ExtremesStudy:
 
     Raises ValueError for verdicts of unlike versions.
     """
-    from taylor_verify.publish import data
+    from taylor_verify.records import store
 
     agreement, verdicts = results.agreement, results.verdicts
     expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}
     return ExtremesStudy(
-        versions=data.versions(verdicts),
-        machine=Machine(**data.machine(verdicts[0])) if verdicts else Machine(),
+        versions=store.versions(verdicts),
+        machine=Machine(**store.machine(verdicts[0])) if verdicts else Machine(),
         scenes=tuple(Titled(scene.name, scene.title) for scene in results.selection.scenes_run),
         left_out=results.left_out,
         mismatches=tuple(str(mismatch) for mismatch in agreement.mismatches),

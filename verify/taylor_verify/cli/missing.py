@@ -12,8 +12,8 @@ from taylor_verify.cli.streams import say
 
 if TYPE_CHECKING:
     from taylor_verify.publish.bulk import Missing
-    from taylor_verify.publish.runs import Run
     from taylor_verify.records.record import Record
+    from taylor_verify.records.runs import Run
 
 _TIME: Final = "one to three minutes for all of them on two cores"
 _NAME: Final = "taylor-verify-data"
@@ -21,14 +21,15 @@ _NAME: Final = "taylor-verify-data"
 
 def make_missing(folder: Path) -> Answer:
     """Make the records, portraits, exact trajectories and tables of gates that ``folder`` lacks."""
-    from taylor_verify.publish import data, portraits, reference_files, report
+    from taylor_verify.publish import portraits, reference_files, report
+    from taylor_verify.records import store
 
     lacking = _missing(folder)
     if lacking.data:
         say(f"making what is not in {folder}: {lacking.data} ({_TIME})")
     written = list(report.publish_gates(folder))
     if lacking.runs:
-        written += data.add_records(folder, _records(lacking.runs))
+        written += store.add_records(folder, _records(lacking.runs))
     if lacking.portraits:
         from taylor_verify.portrait import portraits as made
 

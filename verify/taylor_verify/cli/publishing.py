@@ -210,7 +210,7 @@ def worst(folder: Path, seconds: float, seed: int) -> Answer:
 
 def site(folder: str, target: str) -> Answer:
     """The pages that a browser shows, from what the folder holds already."""
-    from taylor_verify.publish import data
+    from taylor_verify.records import store
 
     try:
         from taylor_verify.publish.site.builder import build
@@ -223,7 +223,7 @@ def site(folder: str, target: str) -> Answer:
         ) from error
     except FileNotFoundError as error:
         raise WrongCall(
-            f"expected what `run --out {folder}` writes ({data.FOLDER}/{data.VERDICTS} first of all), "
+            f"expected what `run --out {folder}` writes ({store.FOLDER}/{store.VERDICTS} first of all), "
             f"got no such file @ {error.filename}"
         ) from error
     except ValueError as error:

@@ -62,7 +62,7 @@ def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     import json
 
     from taylor_verify.publish.pictures import trade
-    from taylor_verify.publish.replacement import replace_files
+    from taylor_verify.records.replacement import replace_files
 
     sound = [one for one in found if any(row["standing"] == "sound" for row in one["points"])]
     drawn = [path for one in sound for path in trade.draw(one, place)]

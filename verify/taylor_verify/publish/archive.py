@@ -9,7 +9,7 @@ import tarfile
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.replacement import replace_files
 
 SUMS: Final = "SHA256SUMS"
 # What a user's own runs and the site write below the folder.

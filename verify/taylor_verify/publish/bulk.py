@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data, figures, portraits, reference_files
-from taylor_verify.publish.file_names import of_scene
+from taylor_verify.publish import figures, portraits, reference_files
 from taylor_verify.publish.paper.files import PAGES
-from taylor_verify.publish.runs import Run, runs
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.status import Status
 
 # As .gitignore has them, below the folder.
@@ -61,9 +62,9 @@ def missing(folder: Path, digests: Mapping[str, str]) -> Missing:
     ``digests`` has the SHA-256 of every scene that can be run. Raises OSError for a folder without
     verdicts, and ValueError for files that hold something else.
     """
-    published = [run for run in runs(data.load(folder)) if run.scene in digests]
+    published = [run for run in runs(store.load(folder)) if run.scene in digests]
     scenes = dict.fromkeys(run.scene for run in published)
-    has_records = data.has_own_records(folder)
+    has_records = store.has_own_records(folder)
     return Missing(
         runs=tuple(
             run
@@ -89,13 +90,13 @@ def _has_a_record(run: Run) -> bool:
 
 
 def _record(folder: Path, run: Run) -> Path:
-    return folder / data.FOLDER / data.record_name(run.scene, run.solver, run.rung)
+    return folder / store.FOLDER / store.record_name(run.scene, run.solver, run.rung)
 
 
 def _digest(place: Path, scene: str) -> Any:
     """The SHA-256 of the scene that a document was made of; None without a document."""
     file = place / f"{of_scene(scene)}.json"
-    return data.read_document(file).get("sha256") if file.exists() else None
+    return store.read_document(file).get("sha256") if file.exists() else None
 
 
 def _renderings(folder: Path) -> list[str]:

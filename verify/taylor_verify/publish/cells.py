@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from taylor_verify.publish.markdown import bold
-from taylor_verify.publish.runs import is_scored
+from taylor_verify.records.runs import is_scored
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 

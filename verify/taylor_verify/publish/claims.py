@@ -11,16 +11,17 @@ from math import isfinite
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, measured
+from taylor_verify.publish import measured
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.claims import ClaimRow, ClaimsStudy, Verdict
 
 PAGE: Final = "claims.md"
 SHEET: Final = "tables/claims.csv"
-CLAIMS: Final = f"{data.FOLDER}/claims.json"
+CLAIMS: Final = f"{store.FOLDER}/claims.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --claims; do not edit"}
 
@@ -73,7 +74,7 @@ def page(study: ClaimsStudy) -> str:
 
 def write(folder: Path, study: ClaimsStudy) -> list[Path]:
     """Store the ledger below ``folder``, with its page and sheet. Raises OSError."""
-    stored = data.laid_out({**_MADE_BY, **study.document()})
+    stored = store.laid_out({**_MADE_BY, **study.document()})
     return list(replace_files(folder, {CLAIMS: stored, **_pages(study)}))
 
 

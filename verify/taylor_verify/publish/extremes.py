@@ -13,18 +13,19 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data, sheets
+from taylor_verify.publish import sheets
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
-from taylor_verify.publish.replacement import replace_files
-from taylor_verify.publish.runs import Run, gravest, is_scored, runs
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.runs import Run, gravest, is_scored, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.studies.extremes import ExtremesStudy
 from taylor_verify.records.verdict import Verdict, read_study
 
-EXTREMES: Final = f"{data.FOLDER}/extremes.json"
+EXTREMES: Final = f"{store.FOLDER}/extremes.json"
 PAGE: Final = "tables/extremes.md"
 SHEET: Final = "tables/extremes.csv"
 
@@ -56,9 +57,9 @@ def write(folder: Path | str, study: ExtremesStudy) -> list[Path]:
     place = Path(folder)
     rows = {
         "machine": plain(study.machine),
-        "verdicts": [data.row(verdict) for verdict in study.verdicts],
+        "verdicts": [store.row(verdict) for verdict in study.verdicts],
     }
-    text = data.laid_out({**_MADE_BY, **complete(study), **rows})
+    text = store.laid_out({**_MADE_BY, **complete(study), **rows})
     stored = replace_files(place, {EXTREMES: text})
     return [*stored, *replace_files(place, pages(place))]
 

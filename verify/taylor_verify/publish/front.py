@@ -7,11 +7,11 @@ from statistics import median
 
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
 from taylor_verify.publish.contents import Page
-from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts
-from taylor_verify.publish.runs import Run, gravest, is_scored, runs
 from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
+from taylor_verify.records.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
 
 _WHAT = (

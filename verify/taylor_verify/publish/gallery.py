@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data, figures, portraits, reference_files, sights
-from taylor_verify.publish.file_names import of_scene
+from taylor_verify.publish import figures, portraits, reference_files, sights
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.pictures import (
     axis_path,
@@ -24,8 +23,10 @@ from taylor_verify.publish.pictures import (
     shifts,
 )
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS, place_of_rung
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.verdict import Verdict
 
 PAGE: Final = f"{figures.FOLDER}/README.md"
@@ -69,7 +70,7 @@ class Shown:
 
 def _named(source: str) -> str:
     """A link to a file of data, or its name where the repository does not hold it."""
-    is_made = source.startswith((portraits.FOLDER, f"{data.FOLDER}/{data.RECORDS}"))
+    is_made = source.startswith((portraits.FOLDER, f"{store.FOLDER}/{store.RECORDS}"))
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
@@ -83,15 +84,15 @@ class Stored:
     folder: Path
 
     def portrait(self, scene: str) -> Document:
-        return data.read_document(self.folder / self.portrait_name(scene))
+        return store.read_document(self.folder / self.portrait_name(scene))
 
     def record(self, scene: str, rung: str) -> Document:
-        return data.read_document(self.folder / self.record_name(scene, rung))
+        return store.read_document(self.folder / self.record_name(scene, rung))
 
     def rungs(self, scene: str) -> list[str]:
         """Those on which the scene was run, in the order of the ladder."""
         stem = f"{of_scene(scene)}.{_SOLVER}"
-        files = (self.folder / data.FOLDER / data.RECORDS).glob(f"{stem}.*.json")
+        files = (self.folder / store.FOLDER / store.RECORDS).glob(f"{stem}.*.json")
         names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
         return sorted(names, key=place_of_rung)
 
@@ -111,7 +112,7 @@ class Stored:
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:
-        return f"{data.FOLDER}/{data.record_name(scene, _SOLVER, rung)}"
+        return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
 
     @staticmethod
     def reference_name(scene: str) -> str:
@@ -124,7 +125,7 @@ def write(folder: Path | str) -> list[Path]:
     Raises ImportError without matplotlib, FileNotFoundError and ValueError as `Stored` does, and OSError.
     """
     place = Path(folder)
-    with data.expecting("data of the gallery", place / data.FOLDER):
+    with store.expecting("data of the gallery", place / store.FOLDER):
         found = list(shown(Stored(place)))
     drawn = figures.draw(place, [one.picture for one in found])
     return [*drawn, *replace_files(place, {PAGE: page(found)})]

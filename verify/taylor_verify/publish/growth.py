@@ -10,14 +10,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, figures, measured
+from taylor_verify.publish import figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.pictures import growth as diagram
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.studies.growth import (
     Ensemble,
@@ -27,8 +28,8 @@ from taylor_verify.records.studies.growth import (
     Number,
 )
 
-GROWTH: Final = f"{data.FOLDER}/growth.json"
-LONG: Final = f"{data.FOLDER}/growth-long.json"
+GROWTH: Final = f"{store.FOLDER}/growth.json"
+LONG: Final = f"{store.FOLDER}/growth-long.json"
 PAGE: Final = "tables/growth.md"
 SHEET: Final = "tables/growth.csv"
 
@@ -78,7 +79,7 @@ def write(folder: Path | str, study: GrowthStudy, long: bool = False) -> list[Pa
     """
     place = Path(folder)
     name = LONG if long else GROWTH
-    stored = list(replace_files(place, {name: data.laid_out({**_MADE_BY, **complete(study)})}))
+    stored = list(replace_files(place, {name: store.laid_out({**_MADE_BY, **complete(study)})}))
     return [*stored, *_drawn(place), *replace_files(place, pages(place))]
 
 
@@ -90,7 +91,7 @@ def pages(folder: Path) -> dict[str, str]:
     study = load(folder)
     if not study.runs:
         return {}
-    with data.expecting("ensembles", folder / GROWTH):
+    with store.expecting("ensembles", folder / GROWTH):
         return {PAGE: page(study, _shown(folder, study)), SHEET: measured.growth(study.runs)}
 
 

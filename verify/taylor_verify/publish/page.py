@@ -7,11 +7,11 @@ from itertools import groupby
 from typing import Any, Final
 
 from taylor_verify.publish.cells import figure, instant, judged, reason
-from taylor_verify.publish.data import versions
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.runs import Run, is_scored
 from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.runs import Run, is_scored
 from taylor_verify.records.status import Status
+from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict, summary
 
 MADE_BY: Final = "<!-- made by taylor-verify publish; do not edit -->"

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data
-from taylor_verify.publish.file_names import of_scene
-from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.replacement import first_line, replace_files
 
-FOLDER: Final = f"{data.FOLDER}/portraits"
+FOLDER: Final = f"{store.FOLDER}/portraits"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish; do not edit"}
 
@@ -46,7 +46,7 @@ def load(folder: Path | str, scene: str) -> dict[str, Any] | None:
     Raises OSError for a file that cannot be read and ValueError for one that holds something else.
     """
     file = Path(folder) / FOLDER / f"{of_scene(scene)}.json"
-    return data.read_document(file) if file.exists() else None
+    return store.read_document(file) if file.exists() else None
 
 
 def _laid_out(document: Portrait) -> str:

@@ -6,15 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, figures, measured
+from taylor_verify.publish import figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.prices import Interval, PriceRow, PricesStudy
 
-PRICES: Final = f"{data.FOLDER}/prices.json"
+PRICES: Final = f"{store.FOLDER}/prices.json"
 PAGE: Final = "tables/prices.md"
 SHEET: Final = "tables/prices.csv"
 
@@ -43,7 +44,7 @@ def write(folder: Path | str, study: PricesStudy) -> list[Path]:
     """
     place = Path(folder)
     drawn = figures.draw(place, figures.of_prices(study))
-    text = data.laid_out({**_MADE_BY, **complete(study)})
+    text = store.laid_out({**_MADE_BY, **complete(study)})
     stored = replace_files(place, {PRICES: text})
     return [*stored, *drawn, *replace_files(place, pages(place))]
 
@@ -57,7 +58,7 @@ def pages(folder: Path) -> dict[str, str]:
     if not file.exists():
         return {}
     study = load(folder)
-    with data.expecting("measured prices", file):
+    with store.expecting("measured prices", file):
         return {PAGE: page(study, folder), SHEET: measured.prices(study)}
 
 

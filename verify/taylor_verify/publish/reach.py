@@ -7,18 +7,19 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, figures, measured
+from taylor_verify.publish import figures, measured
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures import digits_map
 from taylor_verify.publish.pictures.digits_map import ACHIEVED, ATTAINABLE, numbers_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.reach import ReachFamily, ReachRow, ReachStudy
 
-REACH: Final = f"{data.FOLDER}/reach.json"
+REACH: Final = f"{store.FOLDER}/reach.json"
 PAGE: Final = "tables/reach.md"
 SHEET: Final = "tables/reach.csv"
 DIGITS: Final = (3, 6, 12)
@@ -57,7 +58,7 @@ def write(folder: Path | str, study: ReachStudy) -> list[Path]:
     """
     place = Path(folder)
     drawn = figures.draw(place, pictures(study))
-    text = data.laid_out({**_MADE_BY, **complete(study)})
+    text = store.laid_out({**_MADE_BY, **complete(study)})
     stored = replace_files(place, {REACH: text})
     return [*stored, *drawn, *replace_files(place, pages(place))]
 
@@ -71,7 +72,7 @@ def pages(folder: Path) -> dict[str, str]:
     if not file.exists():
         return {}
     study = load(folder)
-    with data.expecting("a measured reach", file):
+    with store.expecting("a measured reach", file):
         return {PAGE: page(study, folder), SHEET: measured.reach(study.rows)}
 
 

@@ -16,10 +16,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import file_names
 from taylor_verify.publish.markdown import Column, code, table
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.records import file_names
+from taylor_verify.records.replacement import first_line, replace_files
 
 FOLDER: Final = "reference"
 

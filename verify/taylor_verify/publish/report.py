@@ -8,7 +8,6 @@ from pathlib import Path
 from taylor_verify.publish import (
     attainable,
     controls,
-    data,
     extremes,
     figures,
     growth,
@@ -26,8 +25,9 @@ from taylor_verify.publish import (
 from taylor_verify.publish.contents import others
 from taylor_verify.publish.front import front
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.records import store
 from taylor_verify.records.record import Record
+from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.studies.controls import ControlsStudy
 from taylor_verify.records.studies.tradeoff import TradeNumbers, TradeTimings
 from taylor_verify.records.verdict import Verdict
@@ -41,12 +41,12 @@ def write(folder: Path | str, verdicts: Iterable[Verdict], records: Iterable[Rec
 
     Raises OSError for a folder that cannot be written; what it held then stays as it was.
     """
-    return list(data.write(Path(folder), verdicts, records))
+    return list(store.write(Path(folder), verdicts, records))
 
 
 def load(folder: Path | str) -> tuple[Verdict, ...]:
     """The verdicts of ``folder``/data, in reading order."""
-    return data.load(Path(folder))
+    return store.load(Path(folder))
 
 
 def publish(folder: Path | str) -> list[Path]:

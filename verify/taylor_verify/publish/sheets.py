@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from taylor_verify.publish.cells import in_roundoffs, word
-from taylor_verify.publish.runs import (
+from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
     gravest,

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.studies.controls import ControlsStudy
 from taylor_verify.records.verdict import Verdict, read_study
 
-CONTROLS: Final = f"{data.FOLDER}/controls.json"
+CONTROLS: Final = f"{store.FOLDER}/controls.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
 _APART: Final = ("seconds", "provenance")
@@ -22,7 +22,7 @@ _SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 def write(folder: Path, study: ControlsStudy) -> Path:
     """Store a controls run below ``folder``. Raises OSError."""
     rows = {"machine": plain(study.machine), "verdicts": [_row(each) for each in study.verdicts]}
-    text = data.laid_out({**_MADE_BY, **complete(study), **rows})
+    text = store.laid_out({**_MADE_BY, **complete(study), **rows})
     (file,) = replace_files(folder, {CONTROLS: text})
     return file
 

@@ -19,7 +19,7 @@ from taylor_verify.publish.cells import (
 from taylor_verify.publish.contents import Page
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
-from taylor_verify.publish.runs import (
+from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
     gravest,

@@ -7,13 +7,14 @@ from math import log10
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, figures, sheets
+from taylor_verify.publish import figures, sheets
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.doubles import doubles_table
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.timing_method import how_it_was_timed, remake, what_is_timed
 from taylor_verify.publish.trades import NUMBERS, TimedPoint, Trade, Trades, load
+from taylor_verify.records import store
 from taylor_verify.records.studies.tradeoff import Standing, TradePoint
 
 DIGITS: Final = (6, 9, 12)
@@ -88,7 +89,7 @@ def pages(folder: Path) -> dict[str, str]:
     found = load(folder)
     if found is None:
         return {}
-    with data.expecting("a measurement of speed and accuracy", folder / NUMBERS):
+    with store.expecting("a measurement of speed and accuracy", folder / NUMBERS):
         return {
             "tables/tradeoff.md": page(found, folder),
             "tables/tradeoff.csv": sheet(found.trades),

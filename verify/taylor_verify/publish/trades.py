@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import data
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.tradeoff import (
     Standing,
     TradeNumbers,
@@ -24,8 +24,8 @@ from taylor_verify.records.studies.tradeoff import (
     TradeTimings,
 )
 
-NUMBERS: Final = f"{data.FOLDER}/tradeoff.json"
-TIMINGS: Final = f"{data.FOLDER}/tradeoff-timings.json"
+NUMBERS: Final = f"{store.FOLDER}/tradeoff.json"
+TIMINGS: Final = f"{store.FOLDER}/tradeoff-timings.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --tradeoff; do not edit"}
 # What both files have of a setting.
@@ -119,7 +119,7 @@ def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> tuple[Pat
     """Store a measurement below ``folder``, both files or none. Raises OSError."""
     documents = {NUMBERS: numbers, TIMINGS: times}
     texts = {
-        name: data.laid_out({**_MADE_BY, **complete(document)})
+        name: store.laid_out({**_MADE_BY, **complete(document)})
         for name, document in documents.items()
     }
     return replace_files(folder, texts)

@@ -10,15 +10,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, measured
+from taylor_verify.publish import measured
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, prose, table
 from taylor_verify.publish.page import traced
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.traps import TrapCase, TrapRow, TrapsStudy
 
-TRAPS: Final = f"{data.FOLDER}/traps.json"
+TRAPS: Final = f"{store.FOLDER}/traps.json"
 PAGE: Final = "tables/traps.md"
 SHEET: Final = "tables/traps.csv"
 SCRIPTS: Final = "upstream"
@@ -59,7 +60,7 @@ def publish(folder: Path, study: TrapsStudy) -> list[Path]:
 
     Raises OSError for a folder that cannot be written.
     """
-    text = data.laid_out({**_MADE_BY, **complete(study), "machine": plain(study.machine)})
+    text = store.laid_out({**_MADE_BY, **complete(study), "machine": plain(study.machine)})
     stored = replace_files(folder, {TRAPS: text})
     return [*stored, *replace_files(folder, pages(folder))]
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, figures
+from taylor_verify.publish import figures
 from taylor_verify.publish.pictures import widths
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.enclosure import EnclosureStudy
 
-STORED: Final = f"{data.FOLDER}/enclosure.json"
+STORED: Final = f"{store.FOLDER}/enclosure.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --enclosure; do not edit"}
 
@@ -22,7 +23,7 @@ def write(folder: Path, study: EnclosureStudy) -> list[Path]:
     Raises ImportError without matplotlib, and OSError.
     """
     drawn = figures.draw(folder, [widths.picture(study)])
-    text = data.laid_out({**_MADE_BY, **complete(study)})
+    text = store.laid_out({**_MADE_BY, **complete(study)})
     return [*replace_files(folder, {STORED: text}), *drawn]
 
 

@@ -6,15 +6,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish import data, measured
+from taylor_verify.publish import measured
 from taylor_verify.publish.cells import figure
 from taylor_verify.publish.markdown import Column, code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.studies.worst import WorstOfFamily, WorstStudy
 
-WORST: Final = f"{data.FOLDER}/worst.json"
+WORST: Final = f"{store.FOLDER}/worst.json"
 PAGE: Final = "tables/worst.md"
 SHEET: Final = "tables/worst.csv"
 
@@ -36,7 +37,7 @@ _KEPT: Final = (
 def write(folder: Path | str, study: WorstStudy) -> list[Path]:
     """Store a search below ``folder``, and make its page. Raises OSError."""
     place = Path(folder)
-    stored = replace_files(place, {WORST: data.laid_out({**_MADE_BY, **complete(study)})})
+    stored = replace_files(place, {WORST: store.laid_out({**_MADE_BY, **complete(study)})})
     return [*stored, *replace_files(place, pages(place))]
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from taylor_verify.publish.cells import figure, instant, ratio, reason
-from taylor_verify.publish.runs import is_scored
+from taylor_verify.records.runs import is_scored
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict
 

@@ -13,7 +13,7 @@ from taylor_verify.publish import drawings, figures
 from taylor_verify.publish.paper import html, latex
 from taylor_verify.publish.paper.parsed import FOLDER, Page
 from taylor_verify.publish.pictures.picture import save
-from taylor_verify.publish.replacement import first_line, replace_files
+from taylor_verify.records.replacement import first_line, replace_files
 
 PAPER: Final = f"paper{latex.SUFFIX}"
 _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's equations"

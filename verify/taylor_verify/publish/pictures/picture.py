@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.compact_svg import compact
 from taylor_verify.publish.pictures.style import settings
-from taylor_verify.publish.replacement import replace_files
+from taylor_verify.records.replacement import replace_files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,14 +13,14 @@ from typing import Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from taylor_verify.publish.file_names import of_scene
-from taylor_verify.publish.replacement import first_line, replace_files
 from taylor_verify.publish.site.drawing import smaller
 from taylor_verify.publish.site.links import PACKED, Links
 from taylor_verify.publish.site.looks import Palette
 from taylor_verify.publish.site.pages import NAVIGATION, Page, pages
 from taylor_verify.publish.site.prose import Prose
 from taylor_verify.publish.site.source import Report
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.replacement import first_line, replace_files
 
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"

@@ -7,7 +7,6 @@ from math import log10
 from typing import Any, Final
 
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.runs import Run, is_scored
 from taylor_verify.publish.site.figure import (
     WIDE,
     Drawing,
@@ -21,6 +20,7 @@ from taylor_verify.publish.site.figure import (
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of, rungs_upwards
 from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.runs import Run, is_scored
 from taylor_verify.records.studies.controls import Sight
 from taylor_verify.records.verdict import Verdict
 

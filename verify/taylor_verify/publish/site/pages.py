@@ -10,10 +10,8 @@ from typing import Any, Final
 from markupsafe import Markup
 
 from taylor_verify.publish.cells import NOTHING, error, figure, instant, judged, ratio, word
-from taylor_verify.publish.file_names import of_scene
 from taylor_verify.publish.markdown import Column, code, prose, table
 from taylor_verify.publish.pictures import digits_map
-from taylor_verify.publish.runs import Run, gravest, is_scored
 from taylor_verify.publish.site import errors, work
 from taylor_verify.publish.site.figure import Figure
 from taylor_verify.publish.site.links import Links, title_of
@@ -21,7 +19,9 @@ from taylor_verify.publish.site.looks import Palette
 from taylor_verify.publish.site.prose import Prose, sections, without_title
 from taylor_verify.publish.site.scene_page import ScenePage
 from taylor_verify.publish.site.source import Report
+from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import STATES
+from taylor_verify.records.runs import Run, gravest, is_scored
 from taylor_verify.records.verdict import summary
 
 NAVIGATION: Final = (

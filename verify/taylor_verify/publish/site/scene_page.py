@@ -18,9 +18,7 @@ from taylor_verify.publish.cells import (
     ratio,
     word,
 )
-from taylor_verify.publish.file_names import of_scene
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
-from taylor_verify.publish.runs import Run, gravest
 from taylor_verify.publish.site import errors, motion
 from taylor_verify.publish.site.figure import Figure
 from taylor_verify.publish.site.links import Links
@@ -29,7 +27,9 @@ from taylor_verify.publish.site.mathml import mathml
 from taylor_verify.publish.site.prose import Prose
 from taylor_verify.publish.site.source import Document, Report
 from taylor_verify.publish.trades import TimedPoint, Trade
+from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import Verdict
 
 # The rung whose errors colour the curves in space.

@@ -13,12 +13,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from taylor_verify.publish import data, growth, portraits, reach, sights, trades
-from taylor_verify.publish.file_names import of_scene, of_solver
-from taylor_verify.publish.runs import Run, runs
+from taylor_verify.publish import growth, portraits, reach, sights, trades
 from taylor_verify.publish.trades import Trade, Trades
-from taylor_verify.records import json_text
+from taylor_verify.records import json_text, store
+from taylor_verify.records.file_names import of_scene, of_solver
 from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.studies.controls import Sight
 from taylor_verify.records.studies.growth import GrowthStudy
 from taylor_verify.records.studies.reach import ReachStudy
@@ -41,16 +41,16 @@ class Report:
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
-        return runs(data.load(self.folder))
+        return runs(store.load(self.folder))
 
     @cached_property
     def versions(self) -> dict[str, str]:
-        return data.versions(verdict for run in self.runs for verdict in run.verdicts)
+        return store.versions(verdict for run in self.runs for verdict in run.verdicts)
 
     @cached_property
     def machines(self) -> list[Document]:
         """Processor, Python and command of the runs, each machine once."""
-        stored = self._stored(data.TIMINGS)
+        stored = self._stored(store.TIMINGS)
         return list(stored["machines"]) if stored else []
 
     @cached_property
@@ -99,12 +99,12 @@ class Report:
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
-        return self._stored(f"{data.RECORDS}/{name}")
+        return self._stored(f"{store.RECORDS}/{name}")
 
     def _study(self, name: str, kind: type[Study]) -> Study | None:
         file = self.folder / name
         return json_text.read(file, kind) if file.exists() else None
 
     def _stored(self, name: str) -> Document | None:
-        file = self.folder / data.FOLDER / name
-        return data.read_document(file) if file.exists() else None
+        file = self.folder / store.FOLDER / name
+        return store.read_document(file) if file.exists() else None

@@ -19,10 +19,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish import file_names
-from taylor_verify.publish.replacement import first_line, replace_files
-from taylor_verify.publish.runs import Run, runs
+from taylor_verify.records import file_names
 from taylor_verify.records.record import Record
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_row
 
