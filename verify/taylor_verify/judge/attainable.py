@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from math import log2
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from taylor_verify.exact.looks import chosen, evenly
 from taylor_verify.exact.tangent import Flow
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.magnitude import roundings
-from taylor_verify.records.reason import Carried, RoundoffFloor
+from taylor_verify.records.reason import Carried, RoundoffFloor, shown
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -93,7 +94,8 @@ class Floor:
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         floor_there = float(attainable[sample])
         growth = floor_there / (self.unit_roundoff * steps**0.5)
-        return RoundoffFloor(carried, floor_there, self.unit_roundoff, float(steps), growth)
+        bits = round(-log2(self.unit_roundoff))
+        return RoundoffFloor(carried, shown(floor_there), bits, steps, shown(growth))
 
     def worst(self) -> float:
         """The largest attainable error of a momentum, relative to its own size."""

@@ -17,7 +17,7 @@ from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.regraded import Graded
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
-from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
+from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
 from taylor_verify.records.verdict import Verdict
 
 
@@ -88,5 +88,5 @@ def _finding(gate: Graded, k: int, carried: Carried) -> Finding:
     error = np.array([mpf(float(gate.errors[k]))], dtype=object)
     width = np.array([mp.inf if gate.is_doubtful else mp.zero], dtype=object)
     row = Errors(gate.verdict.quantity, gate.verdict.unit, error, width, {}, is_state=True)
-    floor = RoundoffFloor(carried, float(gate.attainable[k]))
+    floor = RoundoffFloor(carried, shown(float(gate.attainable[k])))
     return judge(row, gate.attainable[k : k + 1], Reason(floor=floor))

@@ -11,6 +11,7 @@ fails. A quaternion that is a unit one to roundoff needs no row to say so.
 
 from __future__ import annotations
 
+from math import log2
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +21,7 @@ from taylor_verify.judge.attainable import Floats, Floor
 from taylor_verify.judge.errors import Errors, norms
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.records.quantities import UNIT_QUATERNION
-from taylor_verify.records.reason import Carried, Reason, RoundoffFloor
+from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.records.status import Status
 
 # A length is written out where six digits show that it is not 1.
@@ -47,9 +48,9 @@ def unit_quaternion(
     extent = dict.fromkeys(_length(excess, attainable[worst]) for excess in (lowest, highest))
     terms = RoundoffFloor(
         Carried.LENGTH,
-        float(attainable[worst]),
-        base.unit_roundoff,
-        float(steps[worst]),
+        shown(float(attainable[worst])),
+        round(-log2(base.unit_roundoff)),
+        round(steps[worst]),
         lengths=" to ".join(extent),
     )
     finding = judge(errors, attainable, Reason(floor=terms))

@@ -67,15 +67,15 @@ class Remark:
 class RoundoffFloor:
     """The error ``value`` that perfect rounding would leave; None stands for no finite number.
 
-    It is ``roundoff`` x ``steps``^1/2 x ``growth`` where an orbit or a gradient carries the roundings, and
-    ``roundoff`` x ``steps`` for the length of a quaternion, of which ``lengths`` says what was met. With
+    It is u x ``steps``^1/2 x ``growth`` where an orbit or a gradient carries the roundings, and u x
+    ``steps`` for the length of a quaternion, of which ``lengths`` says what was met; u = 2^-``bits``. With
     ``clock_work`` the roundings of the clock of a manufactured load are in it too.
     """
 
     carried: Carried
     value: float | None = None
-    roundoff: float | None = None
-    steps: float | None = None
+    bits: int = 0
+    steps: int = 0
     growth: float | None = None
     clock_work: bool = False
     lengths: str = ""
@@ -87,7 +87,7 @@ class RoundoffFloor:
 
     def parts(self) -> tuple[str, str]:
         """Return the arithmetic, empty where there is none, and its meaning."""
-        value, u = _figure(self.value), _figure(self.roundoff)
+        value, u = _figure(self.value), _figure(2.0**-self.bits)
         if self.carried is Carried.START:
             return "", "one rounding of each component of the start on the rung"
         if self.carried is Carried.ROW:
@@ -98,14 +98,14 @@ class RoundoffFloor:
                 "and one rounding of Omega itself"
             )
         if self.carried is Carried.LENGTH:
-            return f"attainable = u N = {u} x {_figure(self.steps, 4)} = {value}", (
+            return f"attainable = u N = {u} x {self.steps:.4g} = {value}", (
                 "in each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
                 f"{self.lengths}"
             )
         is_orbit = self.carried is Carried.ORBIT
         matrix = "the orbit's transition matrix" if is_orbit else "the gradient"
         return (
-            f"attainable = u sqrt(N) x growth = {u} x sqrt({_count(self.steps)}) x "
+            f"attainable = u sqrt(N) x growth = {u} x sqrt({self.steps}) x "
             f"{_figure(self.growth, 3)} = {value}"
         ), (
             "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
@@ -261,6 +261,11 @@ class Reason:
 NO_REASON: Final = Reason()
 
 
+def shown(number: float) -> float:
+    """Return a term of a reason in four digits: more than any sentence shows, and fewer than a double."""
+    return float(f"{number:.4g}")
+
+
 def stated(cause: Cause, text: str) -> Reason:
     """Return the reason that is one remark: why nothing was compared."""
     return Reason((Remark(cause, text),))
@@ -272,7 +277,3 @@ def _late(shift: float) -> str:
 
 def _figure(value: float | None, digits: int = 2) -> str:
     return "not finite" if value is None else f"{value:.{digits}g}"
-
-
-def _count(steps: float | None) -> str:
-    return "not finite" if steps is None else str(round(steps))
