@@ -5,6 +5,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -107,6 +109,31 @@ def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
 def test_a_worker_is_deaf_to_interrupts(pool: LocalPool) -> None:
     """Ctrl-C goes to every process of a terminal, and is their parent's affair."""
     assert pool.submit(ignores_interrupts).result()
+
+
+# A process of its own: in this one multiprocessing may have started its helper long ago.
+_MASKS = """
+import signal
+from taylor_verify.batch.pool import LocalPool
+
+
+def blocks_interrupts():
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+if __name__ == "__main__":
+    with LocalPool(2) as pool:
+        print(*(pool.submit(blocks_interrupts).result() for _ in range(2)), blocks_interrupts())
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs masks of signals")
+def test_a_worker_is_deaf_from_its_start(tmp_path: Path) -> None:
+    """Workers inherit a mask of interrupts, which their parent has no more when they are started."""
+    script = tmp_path / "masks.py"
+    script.write_text(_MASKS)
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["True", "True", "False"], done.stderr
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's list of threads")

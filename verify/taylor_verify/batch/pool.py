@@ -1,8 +1,9 @@
 """An executor of worker processes on this machine that can be ended at once, at any moment.
 
 A thread waits for each process, on a pipe of their own. A process that is lost, or ended in the middle of
-a result, is the end of its pipe and blocks nobody. `concurrent.futures.ProcessPoolExecutor` has one pipe
-for all, and waits for ever for the rest of a result whose process was ended.
+a result, is the end of its pipe and blocks nobody, and its work alone is lost. The executors of
+`concurrent.futures` and loky have one pipe for all. They wait for ever for the rest of a result whose
+process was ended, and fail all work for a lost process without a word on which was its own.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext
 from queue import SimpleQueue
@@ -202,6 +204,8 @@ def _interrupts_blocked() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    # The first worker would start it, and that lifts the mask in Python 3.13.0 and before.
+    resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
