@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_reach_page import document
+from test_reach_page import study
 
 from taylor_verify.publish.pictures import digits_map
 from taylor_verify.publish.pictures.compact_svg import compact
@@ -27,7 +27,7 @@ def drawn() -> str:
     """A map of digits as matplotlib writes it: cells, hatching, marks, words."""
     with plotting():
         file = StringIO()
-        figure = digits_map.picture(document()["families"][0], document()["rows"]).figure()
+        figure = digits_map.picture(study().families[0], study().rows).figure()
         figure.savefig(file, format="svg", metadata={"Title": "A map", "Date": None})
     return file.getvalue()
 
