@@ -21,18 +21,37 @@ def check(
     accept_conventions: bool = False,
     partial: bool = False,
 ) -> Judgement:
-    """Judge ``solve(problem) -> states`` or a trajectory file on a scene.
+    """Judge a solver of one's own, or a trajectory file, on a scene.
 
-    A callable returns states of shape (samples, n). Row k is the state at problem.times[k]: omega,
-    q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own units;
-    ``problem.given`` holds the exact body, start and instants.
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    solve_or_file
+        A callable ``solve(problem) -> states``, or the path of a trajectory file. States have the shape
+        (samples, n): row k is the state at ``problem.times[k]``. Its columns are omega, q0..q3 or x, y,
+        q0..q3, centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact
+        body, start and instants. A file is CSV, NPZ, Parquet or JSON (solvers.file).
+    rung
+        The precision of the arithmetic that made the answer.
+    accept_conventions
+        Correct what was found out about the conventions of a file before it is judged.
+    partial
+        Accept a file that lacks tracked columns or covers a part of the span: its row `complete` is vacuous
+        and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.
 
-    A file (CSV, NPZ, Parquet, JSON; see solvers.file) was made in the arithmetic of ``rung``. Its
-    judgement is a judge.answer.FileJudgement, which says what was found out about its conventions;
-    they are corrected with ``accept_conventions`` only. A file that lacks tracked columns, or covers a
-    part of the span, has a row `complete` that is undecided; with ``partial`` it is vacuous and counts
-    for nothing. An answer of a callable is always whole. Raises scenes.faults.Refused for a file that
-    cannot be judged, with every fault of it, and ValueError for what is neither a callable nor a file.
+    Returns
+    -------
+    judge.judgement.Judgement
+        The verdicts and their record. That of a file is a judge.answer.FileJudgement, which has the
+        conventions of the file that are not the scene's.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read or a file that cannot be judged, with every fault of it.
+    ValueError
+        For what is neither a callable nor a file, and for a name that is no rung.
     """
     if callable(solve_or_file):
         from taylor_verify.run import run

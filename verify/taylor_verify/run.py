@@ -21,13 +21,27 @@ def run(
 ) -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
-    The scene is a Scene, a path or the name of a shipped scene; the solver a Solver or a name such as
-    ``taylor?tol=1e-9`` or ``process:./mine``; the rung a Rung or ``f32 f64 f80 f128 mpN``. The Judgement
-    has a Verdict on the start and for each tracked and each conserved quantity. That a solver fails, or
-    that this machine lacks a rung, is a verdict.
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    solver
+        A Solver, or a name such as ``taylor?tol=1e-9`` or ``process:./mine``.
+    rung
+        A Rung or ``f32 f64 f80 f128 mpN``.
 
-    Raises scenes.faults.Refused for a scene that cannot be read, and ValueError for a name that is
-    no solver or no rung. What the rung cannot hold is a verdict, not an error.
+    Returns
+    -------
+    judge.judgement.Judgement
+        A Verdict on the start and for each tracked and each conserved quantity, and their record. That a
+        solver fails, that this machine lacks a rung, and that a rung cannot hold the scene, are verdicts.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For a name that is no solver or no rung.
     """
     from dataclasses import replace
 
@@ -63,9 +77,23 @@ def solve(
 ) -> Trajectory:
     """Solve one scene on one rung and return the trajectory, which nothing has judged.
 
-    The arguments, and what is raised for them, are those of `run`. The Trajectory has the states at the
-    scene's times, and an ``outcome``. A run that fails or cannot begin has no states, and says why in
-    ``outcome`` and ``detail``.
+    Parameters
+    ----------
+    scene, solver, rung
+        As those of `run`.
+
+    Returns
+    -------
+    solvers.trajectory.Trajectory
+        The states at the scene's times, in the scene's units and body axes, and an ``outcome``. A run that
+        fails or cannot begin has no states, and says why in ``outcome`` and ``detail``.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For a name that is no solver or no rung.
     """
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reader import as_scene

@@ -22,11 +22,29 @@ def tradeoff(
 ) -> TradeOff:
     """Measure the time and the error of every setting on a scene, and find the front.
 
-    ``asked`` are the settings to measure (trade.setting.chosen makes them of names), all that there are
-    unless given. The time is the best of ``repeats`` solves, by default those of ``taylor-verify
-    tradeoff``; ``seed`` is that of the order of timing. It takes from seconds to minutes. A setting that
-    cannot run is a point that says why. Raises scenes.faults.Refused for a scene that cannot be read, and
-    ValueError for fewer than one of ``repeats``.
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    asked
+        The settings to measure (trade.setting.chosen makes them of names); all that there are unless given.
+    repeats
+        The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
+    seed
+        The seed of the order of timing.
+
+    Returns
+    -------
+    trade.trade_off.TradeOff
+        A point for each setting: errors in the judge's units, processor seconds, and the front. A setting
+        that cannot run is a point that says why. It takes from seconds to minutes.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For fewer than one of ``repeats``.
     """
     from taylor_verify.scenes.reader import as_scene
     from taylor_verify.trade.timing import REPEATS, SEED, cold_caches
@@ -46,15 +64,34 @@ def recommend(
     asked: Sequence[Setting] | None = None,
     seed: int | None = None,
 ) -> Recommendation:
-    """Measure the settings and return the fastest whose error stays below ``error``, here and nearby.
+    """Measure the settings and return the fastest whose error stays below a limit, here and nearby.
 
-    The error is the largest of all tracked quantities, in the judge's units (relative to the largest
-    omega or impulse, radians, arc length). ``asked`` are the settings to choose from, all that there are
-    unless given; ``seed`` is that of the starts nearby and of the order of timing. It takes from seconds
-    to minutes, because it measures. Rungs on which rounding alone leaves far more are not measured.
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    error
+        The largest error of all tracked quantities that is allowed, in the judge's units: relative to the
+        largest omega or impulse, radians, arc length.
+    asked
+        The settings to choose from; all that there are unless given.
+    seed
+        The seed of the starts nearby and of the order of timing.
 
-    Raises trade.recommend.OutOfReach where no setting reaches the error, ValueError for an error that is
-    no positive number, and scenes.faults.Refused for a scene that cannot be read.
+    Returns
+    -------
+    trade.recommend.Recommendation
+        The setting with its time and its errors. Rungs on which rounding alone leaves far more are not
+        measured. It takes from seconds to minutes.
+
+    Raises
+    ------
+    trade.recommend.OutOfReach
+        Where no setting reaches the error.
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For an error that is no positive number.
     """
     from taylor_verify.trade import recommend as of
     from taylor_verify.trade.timing import SEED

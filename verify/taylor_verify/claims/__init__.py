@@ -16,9 +16,22 @@ if TYPE_CHECKING:
 def claims(*ids: str) -> list[Finding]:
     """Examine the claims of these ids, or all of them, and return the findings.
 
-    A part that begins or ends an id stands for all that it fits: ``"hydromechanics 49"``, ``"(2.2.70)"``.
-    A Finding has the claim, the verdict that its check gives now, and the residuals that this rests on.
-    All of them take about half a minute. Raises ValueError for ids that no claim has.
+    Parameters
+    ----------
+    ids
+        Ids of claims. A part that begins or ends an id stands for all that it fits:
+        ``"hydromechanics 49"``, ``"(2.2.70)"``.
+
+    Returns
+    -------
+    list of claims.claim.Finding
+        The claim, the verdict that its check gives now, and the residuals that this rests on. All of them
+        take about half a minute.
+
+    Raises
+    ------
+    ValueError
+        For ids that no claim has.
     """
     from taylor_verify.claims.ledger import examined, find
 

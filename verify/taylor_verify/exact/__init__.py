@@ -22,20 +22,45 @@ def exact(
     digits: int = 30,
     route: str | None = None,
 ) -> Motion:
-    """Return the exact motion at absolute times, to ``digits`` significant digits of every vector.
+    """Return the exact motion of a scene at given times.
 
-    Times are numbers in the scene's unit: Fractions, integers, decimal text, or binary numbers, NumPy's
-    among them, which are taken exactly. The initial state is at the scene's start.
-    The Motion has a row for each time, in body axes but for ``centre``, and a ``radius``: proven, or for
-    ``mpmath`` that to which two precisions agree. ``route`` is ``arb`` (closed form in balls), ``mpmath``
-    (closed form by other formulas) or ``taylor`` (Taylor series in balls); by default ``arb`` where there
-    is a closed form, else ``taylor``. The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica,
-    hydromechanics 48 (3), (4); the formulas of a closed form are named in exact.euler and exact.kirchhoff.
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    times
+        Absolute times in the scene's unit: Fractions, integers, decimal text, or binary numbers, NumPy's
+        among them, which are taken exactly. The initial state is at the scene's start.
+    digits
+        The number of significant digits of every vector.
+    route
+        ``arb`` (closed form in balls), ``mpmath`` (closed form by other formulas) or ``taylor`` (Taylor
+        series in balls); ``arb`` where there is a closed form and else ``taylor``, unless given.
 
-    Raises scenes.faults.Refused for a scene that cannot be read, exact.solution.NoClosedForm where the
-    route asks for a closed form that is missing, exact.solution.Unsettled where the digits cannot be
-    had at every time (its ``motion`` has the other rows, and row k is that of ``times[places[k]]``), and
-    ValueError for what is no finite time, no number of digits up to ten thousand, no route.
+    Returns
+    -------
+    scenes.motion.Motion
+        A row for each time, in body axes but for ``centre``: omega (n, 3), or linear_impulse and
+        angular_impulse (n, 3), and, where tracked, attitude (n, 3, 3) from body to space and centre (n, 3).
+        ``radius`` (n,) bounds the relative error of each vector: proven, or for ``mpmath`` as far as two
+        precisions agree.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    exact.solution.NoClosedForm
+        Where the route asks for a closed form that is missing.
+    exact.solution.Unsettled
+        Where the digits cannot be had at every time. Its ``motion`` has the other rows, and row k is that of
+        ``times[places[k]]``.
+    ValueError
+        For what is no finite time, no number of digits up to ten thousand, no route.
+
+    Notes
+    -----
+    The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics 48 (3), (4). The
+    formulas of a closed form are named in exact.euler and exact.kirchhoff.
     """
     from taylor_verify.exact.ellipsoid import formed_to
     from taylor_verify.exact.request import check_digits, exact_times

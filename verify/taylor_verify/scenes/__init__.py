@@ -11,10 +11,22 @@ if TYPE_CHECKING:
 
 
 def load(scene: str | os.PathLike[str]) -> Scene:
-    """Read the scene at a path, or the shipped scene of that name (``euler/generic``).
+    """Read a scene file, or a shipped scene.
 
-    Every number becomes the rational that its text writes. Raises scenes.faults.Refused with every fault
-    of the file at once, each as ``expected ..., got ... @ body.inertia[1]``.
+    Parameters
+    ----------
+    scene
+        The path of a scene file, or the name of a shipped scene (``euler/generic``).
+
+    Returns
+    -------
+    scenes.scene.Scene
+        The scene. Every number is the rational that its text writes.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        With every fault of the file at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
     from taylor_verify.scenes import reader
 
