@@ -52,8 +52,8 @@ def exact(
     exact.solution.NoClosedForm
         Where the route asks for a closed form that is missing.
     exact.solution.Unsettled
-        Where the digits cannot be had at every time. Its ``motion`` has the other rows, and row k is that of
-        ``times[places[k]]``.
+        Where the digits cannot be had at every time. Its ``motion`` has the other rows; row k is that
+        of ``times[places[k]]``.
     ValueError
         For what is no finite time, no number of digits up to ten thousand, no route.
 
