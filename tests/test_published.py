@@ -262,6 +262,14 @@ def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -
         assert file.read_bytes() == (REPORTS / "figures" / file.name).read_bytes(), file.name
 
 
+def test_every_published_picture_can_be_drawn_again() -> None:
+    """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
+    folder = made.for_gallery()
+    gallery_stems = {one.picture.stem for one in gallery.shown(gallery.Stored(folder))}
+    drawn = gallery_stems | {picture.stem for picture in drawings.pictures(REPORTS)}
+    assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
+
+
 def test_the_gallery_shows_every_picture() -> None:
     """The page has the pictures of the gallery, in their order, and names its maker."""
     page = REPORTS / gallery.PAGE

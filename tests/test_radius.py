@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -96,7 +97,7 @@ def test_both_routes_in_balls_measure_alike() -> None:
     # Of a vector from which zero is not excluded no digit is known; far below its own size it is told.
     small = [arb(0, 1e-90), arb(0)]
     assert balls.width(small) == mp.inf
-    assert taylor._radius(small, 0.0, 60) == (balls.spread(small), int(mp.mag(1e-90)) + 260)
+    assert taylor._radius(small, 0.0, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
     assert taylor._radius([arb(0, 1e-30)], 0.0, 60)[1] > 0
 
 
@@ -108,3 +109,36 @@ def test_the_rounding_of_the_digits_is_in_the_printed_radius(radius: Fraction) -
     midpoint = 1 + radius
     printed_number = midpoint * (1 + Fraction(1, 2 * 10 ** (digits - 1)))
     assert printed_number - 1 <= Fraction(_printed_radius(radius, digits))
+
+
+CANCELLING = """
+title = "An impulse that a force takes away"
+model = "kirchhoff"
+[body]
+force = ["1/3", "2/3", 0]
+[body.energy]
+linear = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+coupling = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]
+angular = [[1, 0, 0], [0, 2, 0], [0, 0, 3]]
+[initial]
+linear_impulse = ["-1/7", "-2/7", 0]
+angular_impulse = [0, 0, 0]
+[time]
+end = 1
+samples = 2
+"""
+
+
+@pytest.mark.parametrize("left", [Fraction(1, 10**100), Fraction(0)])
+def test_what_is_left_of_a_vector_that_cancels_is_right(tmp_path: Path, left: Fraction) -> None:
+    """x is linear in time. Of 1e-100 of it every digit is right; of nothing, zero is printed and said."""
+    file = tmp_path / "cancelling.toml"
+    file.write_text(CANCELLING, encoding="utf-8")
+    scene = load(str(file))
+    printed = document(scene, solution(scene, "taylor"), [("t", Fraction(3, 7) + 3 * left)], 30)
+    (row,) = printed["rows"]
+    truth = [left, 2 * left, Fraction(0)]
+    errors = [Fraction(p) - t for p, t in zip(row["linear_impulse"], truth, strict=True)]
+    assert Fraction(row["radius"]) < Fraction(1, 10**29)
+    assert sum(e * e for e in errors) <= Fraction(row["radius"]) ** 2 * sum(t * t for t in truth)
+    assert ("absolute" in row) is (left == 0)

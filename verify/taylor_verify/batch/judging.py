@@ -28,8 +28,11 @@ class Interrupted(KeyboardInterrupt):
     """An interrupt of a run of which ``finished`` of ``jobs`` jobs are stored, to go on from there."""
 
     def __init__(self, finished: int, jobs: int) -> None:
-        super().__init__()
+        super().__init__(finished, jobs)
         self.finished, self.jobs = finished, jobs
+
+    def __str__(self) -> str:
+        return f"interrupted: {self.finished} of {self.jobs} scenes are stored, to go on from there"
 
 
 def judge_all(

@@ -279,8 +279,10 @@ def exact_text(found: Mapping[str, Any]) -> str:
     for row in found["rows"]:
         print_line(console, f"\nt = {row['t']}   (relative radius {row['radius']})")
         for name, value in row.items():
-            if name not in ("t", "radius"):
+            if name not in ("t", "radius", "absolute"):
                 _print_quantity(console, name, value)
+        for name, size in row.get("absolute", {}).items():
+            print_line(console, f"  {name} cannot be told from zero: its size is at most {size}")
     return text_of(console)
 
 

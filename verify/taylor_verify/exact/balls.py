@@ -124,19 +124,20 @@ def width(balls: Sequence[arb]) -> mpf:
     where the vector may be zero and is not known exactly: not one digit of it is proven.
     """
     with ctx.workprec(WIDTH_BITS):
-        size = _square(balls)
-        if not size.is_finite():
+        square = _square(balls)
+        if not square.is_finite():
             return mp.inf
         error = _square([b.rad() for b in balls])
         if error.is_zero():
             return mpf(0)
-        return upper((error / size).sqrt()) if size > 0 else mp.inf
+        return upper((error / square).sqrt()) if square > 0 else mp.inf
 
 
-def spread(balls: Sequence[arb]) -> mpf:
-    """A bound of the norm of the error of the midpoints, in the unit of the vector or matrix."""
+def size(balls: Sequence[arb]) -> mpf:
+    """Return a bound of the norm, wherever in the balls the vector is."""
     with ctx.workprec(WIDTH_BITS):
-        return upper(_square([b.rad() for b in balls]).sqrt())
+        # The lower end of the ball of a square may be below zero, where there is no root.
+        return upper(_square(balls).upper().sqrt())
 
 
 def _square(vector: Sequence[arb]) -> arb:

@@ -30,9 +30,10 @@ def document(
 ) -> dict[str, Any]:
     """Return what `exact --json` prints: a row for each time, given as its text and its exact value.
 
-    ``radius`` means what it does in Motion, with the rounding of the printed digits. The row at the start
-    is the initial state itself. Where some times are not reached, ``because`` says why, and ``rows`` has
-    the other ones.
+    ``radius`` is that of Motion with the rounding of the printed digits. A vector that cannot be told from
+    zero is printed as zero, and ``absolute`` bounds its size; it has no part in ``radius``. The row at
+    the start is the initial state itself. Where some times are not reached, ``because`` says why, and
+    ``rows`` has the other ones.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None
@@ -50,10 +51,12 @@ def document(
             name: values[k] if elapsed[place] else start[name]
             for name, values in motion.quantities.items()
         }
+        relative, absolute = _radii(motion, k) if elapsed[place] else (Fraction(0), {})
         rows.append(
             {"t": times[place][0]}
             | {name: _text(value, digits) for name, value in values.items()}
-            | {"radius": _printed_radius(exact_value(motion.radius[k]), digits)}
+            | {"radius": _printed_radius(relative, digits)}
+            | ({"absolute": absolute} if absolute else {})
         )
     return {
         "scene": scene.name,
@@ -63,6 +66,19 @@ def document(
         "regime": _regime(scene, found),
         "rows": rows,
     } | ({} if because is None else {"because": because})
+
+
+def _radii(motion: Motion, k: int) -> tuple[Fraction, dict[str, str]]:
+    """Return the relative radius of row k, and bounds of the size of vectors that are answered as zero."""
+    absolute = {
+        name: decimal_text(exact_value(radius[k]), 2, ROUND_CEILING)
+        for name, radius in motion.radii.items()
+        if radius[k] and not motion[name][k].any()
+    }
+    relative = [radius[k] for name, radius in motion.radii.items() if name not in absolute]
+    if not absolute:
+        return exact_value(motion.radius[k]), {}
+    return exact_value(max(relative, default=mp.zero)), absolute
 
 
 def _printed_radius(radius: Fraction, digits: int) -> str:

@@ -18,7 +18,7 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import clocks
-from taylor_verify.exact.balls import balls, midpoint, spread, width
+from taylor_verify.exact.balls import balls, midpoint, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.system import System, moving, posed
@@ -36,7 +36,7 @@ _MOST_BITS: Final = 10_000
 _MOST_BITS_BESIDE: Final = 500
 # A vector that may be zero has no relative digits. If it is smaller than this, in bits beyond the digits
 # asked for, beside its own largest size, its error is told absolutely.
-_NEGLIGIBLE_BITS: Final = 200
+_NEGLIGIBLE_BITS: Final = 1000
 # The sizes of vectors that are zero throughout.
 _LEAST_SIZE: Final = -1e9
 
@@ -150,7 +150,9 @@ class _Enclosing(Solution):
         for name, (vector, largest) in self._vectors(row).items():
             balls = np.array(vector, dtype=object)
             radii[name], missing = _radius(list(balls.flat), largest, target)
-            values[name] = np.frompyfunc(midpoint, 1, 1)(balls)
+            # Not one digit is known of a vector that may be zero: it is answered as zero.
+            answer = midpoint if mp.isfinite(width(list(balls.flat))) else _zero
+            values[name] = np.frompyfunc(answer, 1, 1)(balls)
             lacking = max(lacking, missing)
         return _Proven(values, radii, lacking)
 
@@ -273,15 +275,21 @@ def _place(scene: Scene, initial: State) -> Place | None:
     return Place.of(rotation_matrix(initial.attitude), centre)
 
 
+def _zero(ball: arb) -> mpf:
+    del ball
+    return mpf(0)
+
+
 def _radius(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:
     """The width of a vector or matrix, and how many bits it lacks.
 
-    Its spread, which is absolute, where it may be zero and is negligible beside its own ``largest`` size.
+    A bound of its size, which is absolute, where it may be zero and is negligible beside its own
+    ``largest`` size.
     """
     relative = width(vector)
     if mp.isfinite(relative):
         return relative, int(mp.mag(relative)) + target if relative else 0
-    absolute = spread(vector)
+    absolute = size(vector)
     if not mp.isfinite(absolute):
         return mp.inf, target
     return absolute, int(mp.mag(absolute)) + target + _NEGLIGIBLE_BITS - int(

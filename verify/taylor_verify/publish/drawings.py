@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from taylor_verify.publish import figures, gallery, growth, prices, reach, trades
+from taylor_verify.publish import figures, gallery, growth, prices, reach, trades, widths
+from taylor_verify.publish.pictures import widths as pictured
 from taylor_verify.publish.pictures.picture import Picture
 
 
@@ -13,7 +14,10 @@ def pictures(folder: Path) -> list[Picture]:
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """
-    return [*_traded(folder), *_priced(folder), *_grown(folder), *_reached(folder), *_shown(folder)]
+    return [
+        *(*_traded(folder), *_priced(folder), *_grown(folder)),
+        *(*_reached(folder), *_enclosed(folder), *_shown(folder)),
+    ]
 
 
 def _traded(folder: Path) -> list[Picture]:
@@ -37,6 +41,12 @@ def _grown(folder: Path) -> list[Picture]:
 
 def _reached(folder: Path) -> list[Picture]:
     return reach.pictures(reach.load(folder)) if (folder / reach.REACH).exists() else []
+
+
+def _enclosed(folder: Path) -> list[Picture]:
+    if not (folder / widths.STORED).exists():
+        return []
+    return [pictured.picture(widths.load(folder))]
 
 
 def _shown(folder: Path) -> list[Picture]:

@@ -69,10 +69,10 @@ class Motion:
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
     ``attitude`` (n, 3, 3; v_space = R v_body) and ``centre`` (n, 3; space axes), as far as tracked.
     ``radius`` (n,) means one thing on every route: it bounds the error of every vector and matrix of the
-    row in the Frobenius norm, relative to the norm of the true one. It is absolute where a vector is zero
-    or cannot be told from zero, though known to far more digits than were asked for. It is zero where the
-    numbers are held exactly. ``radii`` bounds the error of single quantities likewise, as far as it is
-    known apart.
+    row in the Frobenius norm, relative to the norm of the true one. A vector that cannot be told from
+    zero, though a thousand bits more than asked for were tried, is answered as zero, and its bound is
+    absolute. The radius is zero where the numbers are held exactly. ``radii`` bounds the error of single
+    quantities likewise, as far as it is known apart.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
