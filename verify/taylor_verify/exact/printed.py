@@ -51,7 +51,7 @@ def document(
             name: values[k] if elapsed[place] else start[name]
             for name, values in motion.quantities.items()
         }
-        relative, absolute = _radii(motion, k) if elapsed[place] else (Fraction(0), {})
+        relative, absolute = _radii(motion, k)
         rows.append(
             {"t": times[place][0]}
             | {name: _text(value, digits) for name, value in values.items()}
