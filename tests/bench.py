@@ -177,7 +177,7 @@ def enclosures(name: str) -> None:
 
 
 def without_closed_form(names_of: Sequence[str]) -> list[str]:
-    """Those of the scenes whose truth is an enclosure."""
+    """Return the scenes whose truth is an enclosure."""
     return [name for name in names_of if solution(load(name)).regime == NO_CLOSED_FORM]
 
 

@@ -1,4 +1,4 @@
-"""What a clone lacks is named, made again as it was, and packed the same every time."""
+"""Files that a clone lacks are named, made again as they were, and packed the same every time."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> No
 
 
 def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
-    """What the rung cannot hold, or the machine does not have, is not made for ever."""
+    """A scene that the rung cannot hold, or a rung that the machine lacks, is not tried again for ever."""
     file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     for row in stored["verdicts"]:

@@ -38,7 +38,7 @@ def results() -> Judgements:
 
 
 def changed(results: Judgements, scene: str, quantity: str, **fields: Any) -> Judgements:
-    """The same result with other fields in one verdict."""
+    """Return the result with other fields in one verdict."""
     judgements = []
     for judgement in results:
         verdicts = tuple(
@@ -91,7 +91,7 @@ def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judg
 
 
 def test_a_judgement_of_one_run_is_compared_alone(baseline: Path, results: Judgements) -> None:
-    """Of the baseline, the rows of this run count."""
+    """The rows of the baseline that belong to this run count, and no others."""
     found = compare_with_baseline(results[1], baseline)
     assert found.passed
     assert found.compared == len(results[1].verdicts)

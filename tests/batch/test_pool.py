@@ -63,7 +63,7 @@ def long_result(size: int) -> bytes:
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[LocalPool]:
-    """One pool for the tests that leave it whole."""
+    """A pool for the tests that leave it whole."""
     with LocalPool(2) as pool:
         yield pool
 

@@ -52,7 +52,7 @@ def alone() -> list[Judgement]:
 
 @pytest.fixture(scope="module")
 def results(alone: list[Judgement]) -> Judgements:
-    """The same as one result."""
+    """Return the judgements as one result."""
     return Judgements(tuple(alone), select(SCENES, RUNGS), "taylor")
 
 
@@ -112,7 +112,7 @@ def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
 def test_a_run_with_an_executor_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alone: list[Judgement]
 ) -> None:
-    """What had ended before an interrupt is stored by the caller, and not run again."""
+    """The caller stores each run that ended before an interrupt, and does not run it again."""
     monkeypatch.setattr("taylor_verify.batch.store.user_cache_path", lambda name: tmp_path / name)
 
     def interrupt(finished: int, total: int, job: Job | None) -> None:
@@ -202,7 +202,7 @@ def test_it_behaves_as_a_list(results: Judgements, alone: list[Judgement]) -> No
 
 
 def marred(results: Judgements, status: Status) -> Judgements:
-    """The same result with one verdict changed."""
+    """Return the result with one verdict changed."""
     first, *others = results.judgements
     start, *rest = first.verdicts
     changed = replace(first, verdicts=(replace(start, verdict=status), *rest))
@@ -223,7 +223,7 @@ def marred(results: Judgements, status: Status) -> Judgements:
 def test_its_truth_value_is_whether_it_passed(
     results: Judgements, status: Status, exit_status: int
 ) -> None:
-    """One verdict among passes decides, as in the command; a failure is raised with its row."""
+    """A single verdict among passes decides, as in the command; a failure is raised with its row."""
     found = marred(results, status)
     assert found.exit_status == exit_status
     assert found.passed is bool(found) is (exit_status == 0)
@@ -282,7 +282,7 @@ def test_the_command_prints_its_document(
 
 
 def test_its_repr_is_short_and_its_table_is_escaped(results: Judgements) -> None:
-    """One line with the counts; in a notebook a row for each run, and no more than forty."""
+    """The repr is one line with the counts; a notebook shows a row for each run, and no more than forty."""
     assert repr(results) == (
         f"<Judgements of 6 runs by taylor: passed; {results.summary['pass']} pass>"
     )
@@ -317,7 +317,7 @@ def test_a_data_frame_has_a_row_for_each_verdict(
 
 
 def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
-    """The same files; no lock is left."""
+    """A call from Python and the command write the same files, and no lock is left."""
     found = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
     assert main(["run", "euler/rest", "--out", str(tmp_path / "its")]) == 0
     mine, its = (

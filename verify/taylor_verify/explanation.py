@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, isfinite, log10
+from math import isfinite
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from taylor_verify.exact.kirchhoff.general import screws_beside
 from taylor_verify.exact.kirchhoff.screws import Screw
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.carrying import Carrying, carrying
 from taylor_verify.judge.initial import with_initial
 from taylor_verify.judge.partial import partial_judgement
@@ -101,7 +102,7 @@ def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
     """Return the judgement of the exact motion rounded once to the rung; None where there is none."""
     try:
         problem = pose(scene, rung)
-        digits = ceil(rung.bits * log10(2)) + _SPARE_DIGITS
+        digits = truth_digits(rung.bits, _SPARE_DIGITS)
         exact = solution(problem.given).motion(problem.given.clock.elapsed, digits)
         with mp.workprec(rung.bits):
             rounded = {name: +values for name, values in exact.quantities.items()}

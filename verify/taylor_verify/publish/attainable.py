@@ -10,7 +10,7 @@ from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, rati
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
-from taylor_verify.records.runs import Run, is_scored, runs
+from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -60,7 +60,7 @@ def _by_rung(shown: Sequence[Verdict]) -> str:
 
 
 def _rung_row(rung: str, verdicts: Sequence[Verdict]) -> list[str]:
-    scored = [verdict for verdict in verdicts if is_scored(verdict)]
+    scored = [verdict for verdict in verdicts if verdict.is_compared]
     if not scored:
         return [rung, *[NOTHING] * 6]
     ratios = [_or_infinite(verdict) for verdict in scored]

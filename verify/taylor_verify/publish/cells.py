@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from taylor_verify.publish.markdown import bold
-from taylor_verify.records.runs import is_scored
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -36,7 +35,7 @@ def in_roundoffs(verdict: Verdict, value: float | None) -> float | None:
 
 def word(verdict: Verdict) -> str:
     """In place of an error that is no number: the verdict, or how a failed run ended."""
-    unfinished = verdict.verdict is Status.FAIL and not is_scored(verdict)
+    unfinished = verdict.verdict is Status.FAIL and not verdict.is_compared
     return verdict.outcome if unfinished else verdict.verdict.value
 
 
@@ -46,7 +45,7 @@ def error(verdict: Verdict) -> str:
 
 def ratio(verdict: Verdict) -> str:
     """Error over attainable: infinite where there is an error and nothing is attainable."""
-    if verdict.ratio is None and is_scored(verdict):
+    if verdict.ratio is None and verdict.is_compared:
         return word(verdict) if verdict.max is None else INFINITE
     return figure(verdict.ratio)
 
@@ -77,5 +76,5 @@ def conclusion(verdict: Verdict) -> str:
 
 
 def _not_finite(verdict: Verdict) -> str:
-    is_number = verdict.max is not None or not is_scored(verdict)
+    is_number = verdict.max is not None or not verdict.is_compared
     return "" if is_number else "the error is not a finite number"

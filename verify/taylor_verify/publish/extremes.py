@@ -20,7 +20,7 @@ from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.records.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.studies.extremes import ExtremesStudy
 from taylor_verify.records.verdict import Verdict, read_study
@@ -156,7 +156,7 @@ def _state(verdict: Verdict) -> str:
 
 def _worst(run: Run) -> str:
     """The largest among the quantities that a gate asked; none at all stands above every number."""
-    asked = [v for v in run.verdicts if is_scored(v) and v.verdict in (Status.PASS, Status.FAIL)]
+    asked = [v for v in run.verdicts if v.is_compared and v.verdict in (Status.PASS, Status.FAIL)]
     if not asked:
         return NOTHING
     worst = max(asked, key=lambda v: float("inf") if v.ratio is None else v.ratio)

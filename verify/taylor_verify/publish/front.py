@@ -10,7 +10,7 @@ from taylor_verify.publish.contents import Page
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts
 from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
-from taylor_verify.records.runs import Run, gravest, is_scored, runs
+from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
 
@@ -74,7 +74,7 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
 
 def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
     scenes = {run.scene for run in found}
-    scored = [verdict for verdict in verdicts if is_scored(verdict)]
+    scored = [verdict for verdict in verdicts if verdict.is_compared]
     kept = sum(verdict.max == 0 for run in found for verdict in run.conserved.values())
     text = (
         f"{bold(str(len(scenes)))} scenes, {bold(str(len(found)))} runs, "
@@ -98,7 +98,7 @@ def _by_rung(found: Sequence[Run]) -> str:
 
 
 def _rung_row(of_rung: Sequence[Run]) -> list[str]:
-    states = [verdict for run in of_rung for verdict in run.state if is_scored(verdict)]
+    states = [verdict for run in of_rung for verdict in run.state if verdict.is_compared]
     sizes = [in_roundoffs(verdict, verdict.max) for verdict in states]
     finite = [size for size in sizes if size is not None]
     worst = max(states, key=_ratio, default=None)

@@ -9,7 +9,7 @@ from typing import Any, Final
 from taylor_verify.publish.cells import figure, instant, judged, reason
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.records.quantities import place_of_rung
-from taylor_verify.records.runs import Run, is_scored
+from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict, summary
@@ -37,7 +37,7 @@ def _standing_out(status: Status, count: int) -> str:
 
 
 def _worst(verdicts: Sequence[Verdict]) -> str:
-    lost = sum(is_scored(verdict) and verdict.ratio is None for verdict in verdicts)
+    lost = sum(verdict.is_compared and verdict.ratio is None for verdict in verdicts)
     parts = (
         [bold(f"{lost} of {len(verdicts)} without a finite error over attainable.")] if lost else []
     )

@@ -13,7 +13,6 @@ from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
     gravest,
-    is_scored,
     quantities_of_scene,
     runs,
 )
@@ -89,7 +88,7 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
     }
     if verdict.max is None:
         return row | {"max": word(verdict), "max_u": word(verdict)}
-    ratio = math.inf if verdict.ratio is None and is_scored(verdict) else verdict.ratio
+    ratio = math.inf if verdict.ratio is None and verdict.is_compared else verdict.ratio
     return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
 
 

@@ -23,7 +23,6 @@ from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
     gravest,
-    is_scored,
     quantities_of_scene,
     runs,
 )
@@ -168,7 +167,7 @@ def _drift(run: Run, quantity: str, of_scene: bool) -> str:
 
 def _worst_ratio(verdicts: Sequence[Verdict]) -> str:
     """The largest with its quantity; none at all stands above every number."""
-    scored = [verdict for verdict in verdicts if is_scored(verdict)]
+    scored = [verdict for verdict in verdicts if verdict.is_compared]
     if not scored:
         return NOTHING
     worst = max(scored, key=lambda v: math.inf if v.ratio is None else v.ratio)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import Field, fields, is_dataclass
 from enum import Enum
 from math import isfinite
 from pathlib import Path
@@ -36,26 +36,22 @@ _STEP: Final = re.compile(r"\[(\d+)\]|(\.\.\.|[^.\[\]]+)")
 
 def plain(document: Any) -> Any:
     """Return a typed document as dicts, lists and values, without fields that are at their default."""
-    if is_dataclass(document) and not isinstance(document, type):
-        members = ((field, getattr(document, field.name)) for field in fields(document))
-        return {f.name: plain(value) for f, value in members if value != f.default}
-    if isinstance(document, (tuple, list)):
-        return [plain(item) for item in document]
-    if isinstance(document, Mapping):
-        return {key: plain(value) for key, value in document.items()}
-    if isinstance(document, Enum):
-        return document.value
-    return finite(document)
+    return _builtins(document, lambda field, value: value != field.default)
 
 
 def complete(document: Any) -> Any:
     """Return a typed document as dicts, lists and values, with all of its fields."""
+    return _builtins(document, lambda field, value: True)
+
+
+def _builtins(document: Any, is_told: Callable[[Field[Any], Any], bool]) -> Any:
     if is_dataclass(document) and not isinstance(document, type):
-        return {f.name: complete(getattr(document, f.name)) for f in fields(document)}
+        members = ((field, getattr(document, field.name)) for field in fields(document))
+        return {f.name: _builtins(value, is_told) for f, value in members if is_told(f, value)}
     if isinstance(document, (tuple, list)):
-        return [complete(item) for item in document]
+        return [_builtins(item, is_told) for item in document]
     if isinstance(document, Mapping):
-        return {key: complete(value) for key, value in document.items()}
+        return {key: _builtins(value, is_told) for key, value in document.items()}
     return document.value if isinstance(document, Enum) else finite(document)
 
 

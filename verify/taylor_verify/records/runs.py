@@ -46,7 +46,7 @@ class Run:
 
     @property
     def is_scored(self) -> bool:
-        return any(is_scored(verdict) for verdict in self.verdicts)
+        return any(verdict.is_compared for verdict in self.verdicts)
 
 
 def conserved_quantities(runs: Iterable[Run]) -> tuple[str, ...]:
@@ -65,11 +65,6 @@ def quantities_of_scene(run: Run, among: Sequence[Run]) -> tuple[str, ...]:
 def gravest(verdicts: Iterable[Verdict]) -> Status:
     """Return the status of several verdicts taken together."""
     return status.gravest(verdict.verdict for verdict in verdicts)
-
-
-def is_scored(verdict: Verdict) -> bool:
-    """Whether a comparison was made: a run that never came to one has no time of an error."""
-    return verdict.at is not None
 
 
 def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.runs import Run, runs
@@ -194,16 +194,7 @@ def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> str:
     try:
         return encoder.encode(value)
     except ValueError:
-        return encoder.encode(_finite(value))
-
-
-def _finite(value: Any) -> Any:
-    """The same with None for every float that JSON has no word for."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+        return encoder.encode(complete(value))
 
 
 # Reading.

@@ -175,7 +175,7 @@ def exit_status(verdicts: Iterable[Verdict]) -> int:
     """Return 0 if nothing failed, 1 if a gate failed, 3 if something is undecided and nothing failed.
 
     A scene that the arithmetic had to refuse, or whose gate is vacuous, is no pass either: here both
-    count as undecided. Where such verdicts are expected, `taylor_verify.expected` knows of it. A part that
+    count as undecided. Where such verdicts are expected, `batch.expectations` knows of it. A part that
     the caller has waived counts for nothing.
     """
     found = {verdict.verdict for verdict in verdicts if not verdict.is_waived}

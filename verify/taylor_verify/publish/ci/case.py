@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from taylor_verify.publish.cells import figure, instant, ratio, reason
-from taylor_verify.records.runs import is_scored
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict
 
@@ -91,7 +90,7 @@ def _sentences(verdict: Verdict | None, remarks: list[Remark]) -> Iterator[str]:
 
 def sentence(verdict: Verdict) -> str:
     """What a person can act on: which quantity, by how much, when, against what, and why that."""
-    if not is_scored(verdict):
+    if not verdict.is_compared:
         return f"{verdict.quantity}: {verdict.verdict}; because {verdict.because}"
     size = "is not finite" if verdict.max is None else f"reaches {figure(verdict.max)}"
     unit = f" ({verdict.unit})" if verdict.unit else ""

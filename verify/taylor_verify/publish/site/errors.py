@@ -20,7 +20,7 @@ from taylor_verify.publish.site.figure import (
 )
 from taylor_verify.publish.site.looks import Palette, line_of, marker_of, rungs_upwards
 from taylor_verify.records.quantities import GATE_FACTOR, STATES
-from taylor_verify.records.runs import Run, is_scored
+from taylor_verify.records.runs import Run
 from taylor_verify.records.studies.controls import Sight
 from taylor_verify.records.verdict import Verdict
 
@@ -128,7 +128,7 @@ def over_attainable(
     points: dict[str, list[Verdict]] = {}
     for run in runs:
         for verdict in run.state:
-            if is_scored(verdict) and verdict.ratio and verdict.attainable:
+            if verdict.is_compared and verdict.ratio and verdict.attainable:
                 points.setdefault(run.rung, []).append(verdict)
     rungs = rungs_upwards(points)
     traces = [_rung_points(n, rung, points[rung], palette) for n, rung in enumerate(rungs)]

@@ -21,7 +21,7 @@ from taylor_verify.publish.site.scene_page import ScenePage
 from taylor_verify.publish.site.source import Report
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import STATES
-from taylor_verify.records.runs import Run, gravest, is_scored
+from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
 
 NAVIGATION: Final = (
@@ -118,7 +118,7 @@ class _Pages:
         runs = {run.rung: run for run in self.report.runs_of(scene) if run.solver == "taylor"}
         portrait = self.report.portrait(scene)
         found = portrait or next(iter(self.report.records(scene).values()), {})
-        state = [v for run in runs.values() for v in run.state if is_scored(v)]
+        state = [v for run in runs.values() for v in run.state if v.is_compared]
         worst = max(state, key=lambda v: float("inf") if v.ratio is None else v.ratio, default=None)
         return [
             code(scene),
