@@ -344,7 +344,7 @@ def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: P
     columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
     found = judged(tmp_path, scene, columns)
     assert [finding.subject for finding in found.conventions] == ["omega", "quaternion"]
-    assert any(note.startswith("no gyroscopic term") for note in found.notes)
+    assert [cause.name for cause in found.causes] == ["no gyroscopic term"]
 
 
 @cache

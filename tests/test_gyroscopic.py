@@ -25,10 +25,10 @@ WORDS = {
 
 
 def causes(path: Path, scene: str, columns: Columns) -> list[str]:
-    """The notes of a file that name the gyroscopic term."""
+    """The causes of a file: they name the gyroscopic term."""
     found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
     assert isinstance(found, FileJudgement)
-    return [note for note in found.notes if "gyroscopic" in note]
+    return [cause.sentence for cause in found.causes]
 
 
 @pytest.mark.parametrize("scene", ["euler/with-attitude", "euler/full-tensor"])

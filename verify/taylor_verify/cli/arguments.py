@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from taylor_verify.cli import ci, claims, publishing, question, tradeoff, verbs
+from taylor_verify.cli import check, ci, claims, publishing, question, tradeoff, verbs
 from taylor_verify.cli.answer import Answer
 from taylor_verify.scenes.names import escaped
 from taylor_verify.version import __version__
@@ -176,7 +176,7 @@ def _add_exact(found: Any) -> None:
 def _add_check(found: Any) -> None:
     what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON"
     verb = _verb(
-        found, "check", what, "check mine.csv --scene euler/generic --rung f64", verbs.check
+        found, "check", what, "check mine.csv --scene euler/generic --rung f64", check.check
     )
     verb.add_argument(
         "file",

@@ -12,13 +12,12 @@ from rich.text import Text
 
 from taylor_verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
 from taylor_verify.records.json_text import converted
-from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.quantities import STATES
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import gravest
 
 if TYPE_CHECKING:
     from taylor_verify.batch.expectations import Agreement
-    from taylor_verify.judge.answer import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
 _ROOMY = 120
@@ -82,7 +81,7 @@ def _print_rows(console: Console, verdicts: Sequence[Verdict], held: Agreement) 
         place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
         expected = held.met(verdict)
         told = _told(verdict) if expected is None else f"as expected: {expected.why}"
-        print_line(console, _status(verdict.verdict.value), f"  {place}: {told}")
+        print_line(console, status_text(verdict.verdict.value), f"  {place}: {told}")
     for mismatch in held.mismatches:
         print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
     print_line(console)
@@ -113,7 +112,7 @@ def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
 
 
 def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
-    status = _status(gravest(v.verdict for v in group))
+    status = status_text(gravest(v.verdict for v in group))
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
@@ -148,12 +147,12 @@ def _ratio(verdict: Verdict) -> float:
 def _told(verdict: Verdict) -> str:
     if verdict.at is None:
         return verdict.because
-    return f"{'; '.join(_error(verdict.row()))}; bound = {verdict.because}"
+    return f"{'; '.join(error_sentences(verdict.row()))}; bound = {verdict.because}"
 
 
-def _error(gate: Mapping[str, Any]) -> tuple[str, str]:
+def error_sentences(gate: Mapping[str, Any]) -> tuple[str, str]:
     """Return the error and its ratio of a gate, from a row or an explanation; null is not finite."""
-    size, bound = _figure(gate["max"]), _figure(gate["bound"])
+    size, bound = figure(gate["max"]), figure(gate["bound"])
     ratio = "not finite" if gate["ratio"] is None else f"{gate['ratio']:.2g}"
     return (
         f"largest error {size} ({gate['unit']}) at t = {gate['at']:g}, where {bound} is allowed",
@@ -161,109 +160,12 @@ def _error(gate: Mapping[str, Any]) -> tuple[str, str]:
     )
 
 
-def _status(status: str) -> Text:
-    return Text(status, _COLOURS.get(status, "magenta"))
-
-
-# check
-
-
-def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
-    """What the file is, what its conventions are, a line for each quantity, and every reason."""
-    from taylor_verify.records.verdict import summary
-
-    console = new_console()
-    print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
-    print_line(console, f"judged as an answer to {scene} in {rung} arithmetic")
-    _print_conventions(console, judged)
-    print_line(console)
-    if any(verdict.at is not None for verdict in judged.verdicts):
-        console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
-        print_line(console)
-        print_line(
-            console,
-            f"allowed: {GATE_FACTOR} times what rounding the input and every step would leave;",
-        )
-        print_line(console, "/floor: the largest error over what it would leave, of all rows.")
-    for note in judged.notes:
-        print_line(console, Text("note", "yellow"), f"  {note}")
-    others = [verdict for verdict in judged.verdicts if verdict.verdict.value != "pass"]
-    if others:
-        print_line(console)
-    for verdict in others:
-        print_line(console, _status(verdict.verdict.value), f"  {verdict.quantity}")
-        _print_reason(console, verdict)
-    counts = ", ".join(f"{n} {status}" for status, n in summary(judged.verdicts).items() if n)
-    print_line(console, f"\n{counts}")
-    return text_of(console)
-
-
-def _extent(judged: FileJudgement) -> str:
-    times = judged.file.times
-    rows = f"{len(times)} row{'s' if len(times) > 1 else ''}"
-    return f"{rows} from t = {float(times[0]):g} to t = {float(times[-1]):g}"
-
-
-def _print_conventions(console: Console, judged: FileJudgement) -> None:
-    found = judged.conventions
-    if not found:
-        return
-    print_line(console)
-    certain = any(finding.is_certain for finding in found)
-    if not certain:
-        heading = (
-            "the file departs from the scene's conventions in a way that this motion cannot tell"
-        )
-    elif judged.accepted:
-        heading = "the file departs from the scene's conventions, and was corrected"
-    else:
-        heading = "the file departs from the scene's conventions, and was judged as it stands"
-    print_line(console, Text(heading, "bold yellow"))
-    for finding in found:
-        print_indented(console, "  ", finding.sentence)
-    if certain and not judged.accepted:
-        print_line(console, "  (--accept-conventions corrects this and judges the rest)")
-
-
-def _print_reason(console: Console, verdict: Verdict) -> None:
-    """Print the conclusion, the error and its place, its shift of time, and the arithmetic of the bound."""
-    reason = verdict.reason
-    if reason.conclusion:
-        print_indented(console, "    ", reason.conclusion)
-    if verdict.at is None:
-        return
-    print_indented(console, "    ", "; ".join(_error(verdict.row())))
-    if reason.meaning:
-        print_indented(console, "    ", reason.meaning)
-    print_indented(console, "    allowed: ", f"{_figure(verdict.bound)} = {reason.allowance}")
-
-
-def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
-    table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
-    numbers = ("largest error", "at t", "allowed", "/floor", "late by", "error left")
-    for heading in ("quantity", "verdict", *numbers, "unit"):
-        table.add_column(heading, justify="right" if heading in numbers else "left", no_wrap=True)
-    for v in verdicts:
-        figures = (v.max, v.at, v.bound, v.ratio)
-        cells = [*(_figure(f) for f in figures), *_shift_cells(v)]
-        table.add_row(v.quantity, _status(v.verdict.value), *cells, v.unit)
-    return table
-
-
-def _shift_cells(verdict: Verdict) -> tuple[str, str]:
-    """The shift of time that explains the error, and what it leaves: the fit of the reason."""
-    if verdict.remains is None:
-        return "", ""
-    left = _figure(verdict.remains)
-    if verdict.trend is not None:
-        return f"{_figure(verdict.trend)} t, {verdict.shift}", left
-    if verdict.shift == "constant":
-        return f"{_figure(verdict.time_shift)}, constant", left
-    return str(verdict.shift), left
-
-
-def _figure(value: float | None) -> str:
+def figure(value: float | None) -> str:
     return "not finite" if value is None or value != value else f"{value:.3g}"
+
+
+def status_text(status: str) -> Text:
+    return Text(status, _COLOURS.get(status, "magenta"))
 
 
 # exact
@@ -385,9 +287,9 @@ def _print_orbit(console: Console, found: Mapping[str, Any]) -> None:
 
 def _print_gate(console: Console, gate: Mapping[str, Any]) -> None:
     print_line(console)
-    print_line(console, f"  {gate['quantity']:9} ", _status(gate["verdict"]))
+    print_line(console, f"  {gate['quantity']:9} ", status_text(gate["verdict"]))
     if gate["at"] is not None:
-        for part in _error(gate):
+        for part in error_sentences(gate):
             print_indented(console, "    ", part)
     because = converted(gate["reason"], Reason).parts()
     for i, part in enumerate(because):

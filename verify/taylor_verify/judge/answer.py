@@ -6,7 +6,7 @@ Rows before the scene's start and rows after it are two runs that begin at the s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -20,6 +20,17 @@ from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.judge.file_notes import (
+    comparable,
+    coverage_notes,
+    cut_off,
+    missing_groups,
+    no_end,
+    no_start,
+    noun,
+    single_precision,
+    tracked,
+)
 from taylor_verify.judge.gyroscopic import gyroscopic_cause
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.inputs import input_rounding
@@ -27,13 +38,12 @@ from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.models.problem import NotRepresentable, adopt
-from taylor_verify.records.answers import Convention, FileRead
+from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
-from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import Recorded, TrajectoryFile
@@ -43,17 +53,8 @@ Array = np.ndarray[Any, Any]
 
 # What is not dyadic in a file, and a correction, is rounded so far below the rung.
 _SPARE_BITS: Final = 128
-_FLOAT32_BITS: Final = 24
-# Numbers as narrow as this are small integers and simple fractions in any precision.
-_TELLING_BITS: Final = 18
 # How far the Taylor route is sent for a file.
 _MOST_SPANS: Final = 100
-_MODELS: Final = {
-    "euler": ("omega", "quaternion", "attitude"),
-    "kirchhoff": tuple(COLUMNS),
-}
-
-
 # The columns that the states are read from; what is conserved may need any of them.
 _MADE_OF: Final = {
     "omega": ("omega",),
@@ -68,13 +69,14 @@ class FileJudgement(Judgement):
     """The verdicts on a file, and what was found out about it.
 
     ``conventions`` are those that are not the scene's, ``accepted`` says whether they were corrected,
-    ``notes`` are sentences about what was not compared and why.
+    ``notes`` are sentences about what was not compared and why, ``causes`` explain wrong dynamics.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
     notes: tuple[str, ...] = ()
+    causes: tuple[LikelyCause, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
@@ -89,6 +91,7 @@ class FileJudgement(Judgement):
             "verdicts": [verdict.row() for verdict in self.verdicts],
             "summary": summary(self.verdicts),
             "conventions": [complete(self._convention(finding)) for finding in self.conventions],
+            "causes": [complete(cause) for cause in self.causes],
             "file": complete(file),
         }
 
@@ -120,18 +123,21 @@ def judge_file(
     undecided, or vacuous if a ``partial`` answer is asked for. Raises Refused if it has nothing to
     compare.
     """
-    groups = _comparable(file, scene)
-    asked, notes = scene, tuple(_notes(file, groups, scene))
+    groups = comparable(file, scene)
+    asked, notes = scene, tuple(coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
-    scene = replace(scene, track=scene.track & _tracked(groups))
+    scene = replace(scene, track=scene.track & tracked(groups))
     found = Conventions((), World(scene), {})
     try:
         found = conventions(compared, scene, rung)
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
         judged = _judged(answer, compared, rung, found)
         extent = Extent.of(answer.scene, answer.times, rung)
-        notes += (*_no_start(answer.scene, answer.times), *_no_end(answer, extent))
-        lack = list(not_judged(extent, [_noun(name) for name in _missing(groups, asked)]))
+        notes += (
+            *no_start(answer.scene, answer.times),
+            *no_end(answer.scene, answer.times, extent),
+        )
+        lack = list(not_judged(extent, [noun(name) for name in missing_groups(groups, asked)]))
         if lack and judged.record is not None:
             complete = complete_verdict(scene, file.name, rung, lack, partial)
             judged = replace(judged, verdicts=(*judged.verdicts, complete))
@@ -140,12 +146,11 @@ def judge_file(
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
-    if "omega" in failed and (cause := gyroscopic_cause(compared, scene, rung, found)):
-        notes += (cause,)
+    causes = gyroscopic_cause(compared, scene, rung, found) if "omega" in failed else ()
     if failed:
-        notes += (*_cut_off(file, rung), *_single_precision(file, rung))
+        notes += (*cut_off(file, rung), *single_precision(file, rung))
     return FileJudgement(
-        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes
+        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes, causes
     )
 
 
@@ -175,118 +180,6 @@ def _alone(
 ) -> Judgement:
     """Return one row for a file that was not compared."""
     return unjudged(scene, Recorded({}, setting=file.name), rung, status, why, cause)
-
-
-# What can be compared, and what is said of the rest.
-
-
-def _comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
-    """The groups that the scene's motion has; what its model does not have is refused."""
-    foreign = [name for name in file.groups if name not in _MODELS[scene.model]]
-    known = " ".join(" ".join(COLUMNS[name]) for name in _MODELS[scene.model])
-    faults = [
-        f"expected columns of a scene of model {scene.model} ({known}), got "
-        f"{' '.join(COLUMNS[name])} @ {file.name}"
-        for name in foreign
-    ]
-    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
-    if not groups and not faults:
-        wanted = " or ".join(" ".join(COLUMNS[name]) for name in _wanted(scene))
-        got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
-        faults.append(f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name}")
-    if faults:
-        raise Refused(faults)
-    return groups
-
-
-def _is_known(group: str, scene: Scene) -> bool:
-    name = "attitude" if group == "quaternion" else group
-    return name in scene.track or name not in ("attitude", "centre")
-
-
-def _wanted(scene: Scene) -> list[str]:
-    return [
-        *MOMENTA[scene.model],
-        *(["quaternion"] if "attitude" in scene.track else []),
-        *(["centre"] if "centre" in scene.track else []),
-    ]
-
-
-def _tracked(groups: Sequence[str]) -> frozenset[str]:
-    found = {"attitude"} if {"attitude", "quaternion", "centre"} & set(groups) else set()
-    return frozenset(found | ({"centre"} & set(groups)))
-
-
-def _notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
-    for name in file.groups:
-        if name not in groups:
-            yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {_noun(name)}"
-    for name in _missing(groups, scene):
-        other = " or r11 ... r33" if name == "quaternion" else ""
-        columns = " ".join(COLUMNS[name])
-        yield f"the {_noun(name)} is not judged: the file has no {columns}{other}"
-
-
-def _missing(groups: Sequence[str], scene: Scene) -> list[str]:
-    """The groups that the scene asks for and the file lacks."""
-    has = {"quaternion" if name == "attitude" else name for name in groups}
-    return [name for name in _wanted(scene) if name not in has]
-
-
-def _no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
-    """Whether the initial state could not be compared."""
-    start = scene.clock.start
-    if all(float(time) != float(start) for time in times):
-        yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
-
-
-def _no_end(answer: _Answer, extent: Extent) -> Iterator[str]:
-    """Whether the file stops before the scene does."""
-    if extent.reaches_end or extent.rows[-1] < 0:
-        return
-    last = max(answer.times, key=lambda t: abs(t - answer.scene.clock.start))
-    end = float(answer.scene.clock.instants[-1])
-    yield (
-        f"the last row is at t = {float(last):.12g}, and the scene ends at t = {end:.12g}: "
-        "the rest was not judged"
-    )
-
-
-def _single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Whether every number of a wider rung is one of float32, and not by chance."""
-    if rung.bits <= _FLOAT32_BITS:
-        return
-    values = [v for rows in file.groups.values() for row in rows for v in row]
-    doubles = np.array([float(v) for v in values if isinstance(v, Fraction)])
-    with np.errstate(over="ignore"):
-        is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
-    if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):
-        yield (
-            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
-            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
-        )
-
-
-def _width(double: float) -> int:
-    """The bits of a number from its first to its last one."""
-    numerator = Fraction(double).numerator
-    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0
-
-
-def _cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Whether the file was printed with too few digits to be right."""
-    needed = truth_digits(rung.bits, 1)
-    if file.digits is not None and file.digits < needed - 2:
-        yield (
-            f"no number is written with more than {file.digits} significant digits, where "
-            f"{rung.name} has {needed}: what the printing cut off counts as error"
-        )
-
-
-def _noun(group: str) -> str:
-    return {"quaternion": "attitude", "omega": "angular velocity"}.get(group, group).replace(
-        "_", " "
-    )
 
 
 # The file as held numbers, corrected where that was accepted.

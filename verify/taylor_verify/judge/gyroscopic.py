@@ -27,6 +27,7 @@ from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import Conventions
 from taylor_verify.judge.shift import LEAVES
 from taylor_verify.models.problem import adopt
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -147,15 +148,16 @@ _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
 
 def gyroscopic_cause(
     file: TrajectoryFile, scene: Scene, rung: Rung, conventions: Conventions
-) -> str:
-    """The treatment of the gyroscopic term that explains the file's omega, in words; or nothing."""
+) -> tuple[LikelyCause, ...]:
+    """Return the treatment of the gyroscopic term that explains the file's omega; nothing if none does."""
     body = scene.body
     if not isinstance(body, RigidBody) or body.manufactured or "omega" not in file.groups:
-        return ""
+        return ()
     times = np.array([float(t) for t in conventions.world.times(file.times)])
     with np.errstate(all="ignore"):  # an answer that runs away has no cause here
         pairs = _pairs(times, _angular_velocity(file, scene, rung, conventions))
-        return _cause(_Body.of(body), *pairs) if len(pairs[0]) >= _FEWEST_PAIRS else ""
+        found = _cause(_Body.of(body), *pairs) if len(pairs[0]) >= _FEWEST_PAIRS else None
+    return () if found is None else (found,)
 
 
 def _pairs(times: Floats, omega: Floats) -> tuple[Floats, Floats, Floats]:
@@ -200,29 +202,28 @@ def _double(value: Fraction) -> float:
     return float(np.nan) if abs(value) >= 2**1000 else float(value)
 
 
-def _cause(body: _Body, begin: Floats, end: Floats, spans: Floats) -> str:
+def _cause(body: _Body, begin: Floats, end: Floats, spans: Floats) -> LikelyCause | None:
     pace, longest = body.pace(begin), float(np.max(np.abs(spans)))
     steps = ceil(longest * pace / _FLOW_STEP) if np.isfinite(pace) else _MOST_STEPS + 1
     if steps > _MOST_STEPS:
-        return ""
+        return None
     flow = _moved(_runge_kutta, body, begin, spans, np.full(len(spans), max(steps, 1)))
     defect = end - flow
     left = _left(_without(body, begin, spans) - flow, defect)
     if left <= LEAVES:
         why = "from row to row omega changes by I^-1 M alone, without omega x I omega"
-        return f"no gyroscopic term: {why}; this explains {_share(left)} of the error of omega"
+        return _likely("no gyroscopic term", why, left)
     fits = [
         (*_best_step(step, body, begin, spans, flow, defect), words, why)
         for words, why, step in _STEPS
     ]
     left, h, words, why = min(fits)
-    if not left <= LEAVES:
-        return ""
-    return f"{words}: {why}, with h = {h:.3g}; this explains {_share(left)} of the error of omega"
+    return _likely(words, f"{why}, with h = {h:.3g}", left) if left <= LEAVES else None
 
 
-def _share(left: float) -> str:
-    return f"{100 * (1 - left):.3g} %"
+def _likely(name: str, why: str, left: float) -> LikelyCause:
+    share = f"this explains {100 * (1 - left):.3g} % of the error of omega"
+    return LikelyCause(name, "omega", left, f"{name}: {why}; {share}")
 
 
 def _left(made: Floats, defect: Floats) -> float:

@@ -34,6 +34,20 @@ class Convention:
 
 
 @dataclass(frozen=True)
+class LikelyCause:
+    """A hypothesis about wrong dynamics that explains nearly all of the error of a quantity.
+
+    ``leaves`` is the part of the error that it does not explain. Of two that explain equally well both
+    are given.
+    """
+
+    name: Annotated[str, Meta(min_length=1, description="no gyroscopic term, damping, ...")]
+    quantity: str
+    leaves: Size
+    sentence: str
+
+
+@dataclass(frozen=True)
 class FileRead:
     """A trajectory file as it was read; ``notes`` say what was not compared, and why."""
 
@@ -97,4 +111,5 @@ class Answer:
     against: Against | None = None
     baseline: AgainstBaseline | None = None
     conventions: tuple[Convention, ...] = ()
+    causes: tuple[LikelyCause, ...] = ()
     file: FileRead | None = None

@@ -1,0 +1,134 @@
+"""Sentences about a file: what of it is compared, what is not and why, and how its numbers were stored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.arithmetic import truth_digits
+from taylor_verify.judge.complete import Extent
+from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.file import TrajectoryFile
+
+_FLOAT32_BITS: Final = 24
+# Numbers as narrow as this are small integers and simple fractions in any precision.
+_TELLING_BITS: Final = 18
+_MODELS: Final = {
+    "euler": ("omega", "quaternion", "attitude"),
+    "kirchhoff": tuple(COLUMNS),
+}
+
+
+def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
+    """The groups that the scene's motion has; what its model does not have is refused."""
+    foreign = [name for name in file.groups if name not in _MODELS[scene.model]]
+    known = " ".join(" ".join(COLUMNS[name]) for name in _MODELS[scene.model])
+    faults = [
+        f"expected columns of a scene of model {scene.model} ({known}), got "
+        f"{' '.join(COLUMNS[name])} @ {file.name}"
+        for name in foreign
+    ]
+    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
+    if not groups and not faults:
+        wanted = " or ".join(" ".join(COLUMNS[name]) for name in _wanted(scene))
+        got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
+        faults.append(f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name}")
+    if faults:
+        raise Refused(faults)
+    return groups
+
+
+def _is_known(group: str, scene: Scene) -> bool:
+    name = "attitude" if group == "quaternion" else group
+    return name in scene.track or name not in ("attitude", "centre")
+
+
+def _wanted(scene: Scene) -> list[str]:
+    return [
+        *MOMENTA[scene.model],
+        *(["quaternion"] if "attitude" in scene.track else []),
+        *(["centre"] if "centre" in scene.track else []),
+    ]
+
+
+def tracked(groups: Sequence[str]) -> frozenset[str]:
+    found = {"attitude"} if {"attitude", "quaternion", "centre"} & set(groups) else set()
+    return frozenset(found | ({"centre"} & set(groups)))
+
+
+def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
+    for name in file.groups:
+        if name not in groups:
+            yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {noun(name)}"
+    for name in missing_groups(groups, scene):
+        other = " or r11 ... r33" if name == "quaternion" else ""
+        columns = " ".join(COLUMNS[name])
+        yield f"the {noun(name)} is not judged: the file has no {columns}{other}"
+
+
+def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
+    """The groups that the scene asks for and the file lacks."""
+    has = {"quaternion" if name == "attitude" else name for name in groups}
+    return [name for name in _wanted(scene) if name not in has]
+
+
+def no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
+    """Whether the initial state could not be compared."""
+    start = scene.clock.start
+    if all(float(time) != float(start) for time in times):
+        yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
+
+
+def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
+    """Whether the file stops before the scene does."""
+    if extent.reaches_end or extent.rows[-1] < 0:
+        return
+    last = max(times, key=lambda t: abs(t - scene.clock.start))
+    end = float(scene.clock.instants[-1])
+    yield (
+        f"the last row is at t = {float(last):.12g}, and the scene ends at t = {end:.12g}: "
+        "the rest was not judged"
+    )
+
+
+def single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
+    """Whether every number of a wider rung is one of float32, and not by chance."""
+    if rung.bits <= _FLOAT32_BITS:
+        return
+    values = [v for rows in file.groups.values() for row in rows for v in row]
+    doubles = np.array([float(v) for v in values if isinstance(v, Fraction)])
+    with np.errstate(over="ignore"):
+        is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
+    if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):
+        yield (
+            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
+            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
+        )
+
+
+def _width(double: float) -> int:
+    """The bits of a number from its first to its last one."""
+    numerator = Fraction(double).numerator
+    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0
+
+
+def cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
+    """Whether the file was printed with too few digits to be right."""
+    needed = truth_digits(rung.bits, 1)
+    if file.digits is not None and file.digits < needed - 2:
+        yield (
+            f"no number is written with more than {file.digits} significant digits, where "
+            f"{rung.name} has {needed}: what the printing cut off counts as error"
+        )
+
+
+def noun(group: str) -> str:
+    return {"quaternion": "attitude", "omega": "angular velocity"}.get(group, group).replace(
+        "_", " "
+    )
