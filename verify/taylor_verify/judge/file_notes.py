@@ -98,11 +98,11 @@ def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[
 
 
 def single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Whether every number of a wider rung is one of float32, and not by chance."""
+    """Yield a note if every number of a wider rung is one of float32, and not by chance."""
     if rung.bits <= _FLOAT32_BITS:
         return
-    values = [v for rows in file.groups.values() for row in rows for v in row]
-    doubles = np.array([float(v) for v in values if isinstance(v, Fraction)])
+    values = np.concatenate([rows.doubles().ravel() for rows in file.rows.values()])
+    doubles = values[np.isfinite(values)]
     with np.errstate(over="ignore"):
         is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
     if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):

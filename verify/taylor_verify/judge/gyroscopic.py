@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from math import ceil
 from typing import Any, Final
 
@@ -153,19 +152,21 @@ def gyroscopic_cause(
     body = scene.body
     if not isinstance(body, RigidBody) or body.manufactured or "omega" not in file.groups:
         return ()
-    times = np.array([float(t) for t in conventions.world.times(file.times)])
+    first = _paired(file)
+    if len(first) < _FEWEST_PAIRS:
+        return ()
+    earlier, later = file.at(first), file.at([k + 1 for k in first])
+    spans = [[float(t) for t in conventions.world.times(half.times)] for half in (earlier, later)]
     with np.errstate(all="ignore"):  # an answer that runs away has no cause here
-        pairs = _pairs(times, _angular_velocity(file, scene, rung, conventions))
-        found = _cause(_Body.of(body), *pairs) if len(pairs[0]) >= _FEWEST_PAIRS else None
+        begin, end = (_angular_velocity(h, scene, rung, conventions) for h in (earlier, later))
+        found = _cause(_Body.of(body), begin, end, np.subtract(spans[1], spans[0])[:, None])
     return () if found is None else (found,)
 
 
-def _pairs(times: Floats, omega: Floats) -> tuple[Floats, Floats, Floats]:
-    """omega of a row and of the next, and the time between them, where all are numbers."""
-    finite = np.flatnonzero(np.all(np.isfinite(omega), axis=1))
-    first = finite[:-1][np.diff(finite) == 1]
-    first = first[evenly(len(first), _MOST_PAIRS)] if len(first) else first
-    return omega[first], omega[first + 1], (times[first + 1] - times[first])[:, None]
+def _paired(file: TrajectoryFile) -> list[int]:
+    """Return some rows, evenly chosen, that are finite as the next one is."""
+    first = np.flatnonzero(file.finite[:-1] & file.finite[1:])
+    return [int(first[k]) for k in evenly(len(first), _MOST_PAIRS)] if len(first) else []
 
 
 def _angular_velocity(
@@ -194,12 +195,7 @@ def _attitudes(file: TrajectoryFile, scene: Scene, rung: Rung, conventions: Conv
 
 
 def _floats(file: TrajectoryFile, group: str) -> Floats:
-    rows = [[v if isinstance(v, float) else _double(v) for v in row] for row in file.groups[group]]
-    return np.array(rows, dtype=float)
-
-
-def _double(value: Fraction) -> float:
-    return float(np.nan) if abs(value) >= 2**1000 else float(value)
+    return file.rows[group].doubles()
 
 
 def _cause(body: _Body, begin: Floats, end: Floats, spans: Floats) -> LikelyCause | None:

@@ -10,12 +10,11 @@ of them passes through a double on its way.
 
 from __future__ import annotations
 
-import math
 import os
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, final
 
@@ -24,11 +23,12 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.faults import Faults, Refused, cut, near
-from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike, shown
+from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike
 from taylor_verify.solvers.formats.reading import read_columns
+from taylor_verify.solvers.rows import Rows, check_numbers, exact_times, packed, written_digits
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.solvers.values import Value, exact
+from taylor_verify.solvers.values import Value
 
 KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
 # Printed by `publish --reference` beside the motion; it is no part of it.
@@ -41,9 +41,6 @@ _ELSEWHERE: Final = {
     **dict(zip(("qw", "qx", "qy", "qz"), COLUMNS["quaternion"], strict=True)),
     **dict(zip(("cx", "cy", "cz"), COLUMNS["centre"], strict=True)),
 }
-_DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
-# Errors are told as doubles, and so is whatever is as large as the answer itself.
-_LARGEST: Final = 2**1000
 
 
 @final
@@ -67,14 +64,33 @@ class Recorded(Solver):
 class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
-    ``groups`` maps the names of COLUMNS to rows of values; ``digits`` is the largest number of
+    ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
+    (solvers.rows); ``digits`` is the largest number of
     significant decimals that any value is written with, None where one is binary or a fraction.
     """
 
     name: str
     times: tuple[Fraction, ...]
-    groups: Mapping[str, tuple[tuple[Value, ...], ...]]
+    groups: Mapping[str, Sequence[tuple[Value, ...]]]
     digits: int | None = None
+
+    @cached_property
+    def rows(self) -> Mapping[str, Rows]:
+        """The groups with ways to many of their rows at once."""
+        return {name: Rows.of(group) for name, group in self.groups.items()}
+
+    @property
+    def finite(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """The rows of which every number is finite."""
+        found = np.ones(len(self.times), dtype=bool)
+        for rows in self.rows.values():
+            found &= rows.finite
+        return found
+
+    def at(self, places: Sequence[int]) -> TrajectoryFile:
+        """Return some of the rows as a file of their own."""
+        groups = {name: tuple(group[k] for k in places) for name, group in self.groups.items()}
+        return replace(self, times=tuple(self.times[k] for k in places), groups=groups)
 
 
 def read(file: str | os.PathLike[str]) -> TrajectoryFile:
@@ -89,17 +105,21 @@ def read(file: str | os.PathLike[str]) -> TrajectoryFile:
     _refuse_incomplete(columns, str(file), faults)
     lengths = _lengths(columns)
     _refuse_ragged(columns, lengths, str(file), faults)
-    wanted = [column for column in columns if column.name in KNOWN]
-    values = {c.name: list(_exact_column(c, str(file), faults)) for c in wanted}
+    wanted = [Column(c.name, packed(c.values)) for c in columns if c.name in KNOWN]
+    finite = {column.name: check_numbers(column, str(file), faults) for column in wanted}
+    values = dict(wanted)
     times = _times(values.get("t", []), str(file), faults)
     if faults.lines:
         raise Refused(faults.lines)
     groups = {
-        group: tuple(zip(*(values[name] for name in names), strict=True))
+        group: Rows(
+            [values[name] for name in names],
+            np.logical_and.reduce([finite[name] for name in names]),
+        )
         for group, names in COLUMNS.items()
         if names[0] in values
     }
-    return TrajectoryFile(str(file), times, groups, _written_digits(wanted))
+    return TrajectoryFile(str(file), times, groups, written_digits(wanted))
 
 
 # Which columns there are.
@@ -151,27 +171,11 @@ def _refuse_ragged(columns: Sequence[Column], length: int, file: str, faults: Fa
 # Numbers.
 
 
-def _exact_column(column: Column, file: str, faults: Faults) -> Iterator[Value]:
-    """Every value exactly; NaN stands for what is no number and was recorded as a fault."""
-    wrong = 0
-    for row, raw in enumerate(column.values, start=1):
-        try:
-            value = exact(raw)
-            if isinstance(value, Fraction) and abs(value) >= _LARGEST:
-                raise ValueError("a number below 2^1000 in size")
-            yield value
-        except ValueError as error:
-            wrong += 1
-            if wrong <= MOST_ALIKE:
-                faults.add(str(error), shown(raw), f"{file}, row {row}, column {column.name}")
-            yield math.nan
-    add_more_alike(faults, wrong, f"{file}, column {column.name}")
-
-
-def _times(values: Sequence[Value], file: str, faults: Faults) -> tuple[Fraction, ...]:
+def _times(column: Sequence[Any], file: str, faults: Faults) -> tuple[Fraction, ...]:
     """The times, strictly increasing or strictly decreasing; anything else is a fault."""
     if faults.lines:
         return ()
+    values = exact_times(column)
     times = [value for value in values if isinstance(value, Fraction)]
     if len(times) < len(values):
         row = next(i for i, v in enumerate(values, start=1) if not isinstance(v, Fraction))
@@ -195,17 +199,3 @@ def _word(rises: bool) -> str:
 
 def _time_text(time: Fraction) -> str:
     return f"{float(time):.17g}" if abs(time) < 10**300 else "a huge time"
-
-
-def _written_digits(columns: Iterable[Column]) -> int | None:
-    """The most significant digits of any decimal besides the times; None where they do not tell."""
-    most = 0
-    for name, values in columns:
-        for raw in values if name != "t" else ():
-            if not isinstance(raw, str) or not _DECIMAL.fullmatch(raw.strip()):
-                return None
-            mantissa = raw.lower().split("e")[0]
-            digits = "".join(character for character in mantissa if character.isdigit())
-            most = max(most, len(digits.lstrip("0")))
-    # Zeros alone are exact however they are written.
-    return most or None

@@ -29,12 +29,14 @@ _EXPONENT_BITS: Final = int(LARGEST_EXPONENT * math.log2(10))
 
 
 def exact(raw: object) -> Value:
-    """The rational that a text or a number is; NaN and infinity as they are.
+    """Return the rational that a text or a number is; NaN and infinity as they are.
 
     Raises ValueError, whose text is what was expected.
     """
     if isinstance(raw, str):
         return _from_text(raw.strip())
+    if isinstance(raw, Fraction):
+        return raw
     if isinstance(raw, bool | np.bool_):
         raise ValueError("a number")
     if isinstance(raw, float | np.floating):

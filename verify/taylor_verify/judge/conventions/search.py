@@ -113,12 +113,7 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
 
 def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
     """Finite rows of ever longer beginnings of a file, the shortest first."""
-    groups = file.groups.values()
-    finite = [
-        k
-        for k in range(len(file.times))
-        if all(isinstance(value, Fraction) for rows in groups for value in rows[k])
-    ]
+    finite = np.flatnonzero(file.finite).tolist()
     longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
     lengths, length = [_FEWEST_ROWS] if longest > _FEWEST_ROWS else [], _FIRST_ROWS
     while length < longest:
@@ -234,10 +229,7 @@ class _Search:
 
     @cached_property
     def values(self) -> dict[str, Floats]:
-        return {
-            group: np.array([[_float(v) for v in rows[k]] for k in self.rows])
-            for group, rows in self.file.groups.items()
-        }
+        return {group: rows.doubles(self.rows) for group, rows in self.file.rows.items()}
 
     @cached_property
     def frames(self) -> tuple[Frames, ...]:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from io import BytesIO
 from itertools import islice
 from lzma import LZMAError
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tokenize import TokenError
-from typing import BinaryIO, Final, NamedTuple
+from typing import Any, BinaryIO, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -114,9 +114,10 @@ def _check(members: list[_Member], path: Path) -> None:
     BYTES.check(sum(member.info.file_size for member in members), path)
 
 
-def _values(archive: zipfile.ZipFile, member: _Member) -> list[object]:
+def _values(archive: zipfile.ZipFile, member: _Member) -> Sequence[Any]:
     with archive.open(member.info) as stream:
         data = stream.read()
     if len(data) != member.info.file_size:
         raise ValueError(f"{member.name} ends early")
-    return list(np.frombuffer(data, member.dtype, offset=member.header_bytes))
+    found: Any = np.frombuffer(data, member.dtype, offset=member.header_bytes)
+    return cast("Sequence[Any]", found)

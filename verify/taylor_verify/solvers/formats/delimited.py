@@ -14,6 +14,7 @@ from taylor_verify.solvers.formats.column import (
     MOST_ALIKE,
     ROWS,
     Column,
+    Texts,
     add_more_alike,
     check_size,
 )
@@ -68,7 +69,7 @@ def _columns(lines: _Lines, path: Path) -> list[Column]:
         raise Refused(
             [f"expected a header line that names the columns, got numbers @ {path}, line 1"]
         )
-    cells: list[list[str]] = [[] for _ in header]
+    cells = [Texts() for _ in header]
     faults, ragged = Faults(), 0
     for count, row in enumerate(rows, start=1):
         if count % 1000 == 1:
