@@ -69,6 +69,28 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     return tuple(found)
 
 
+def decisive(scene: Scene, motion: Motion) -> list[int]:
+    """Rows of a motion that have the scales of all its invariants: any scale is that of these rows alone.
+
+    Each scale is made of the largest T, |H|, |x|, |y| and |y| + |c| |x|. Rows that are not finite are
+    passed over, if there are others.
+    """
+    body = scene.body
+    if isinstance(body, RigidBody):
+        T, H = _euler_energy(body), _applied(body.inertia, motion["omega"])
+        sizes = [abs(T.value(motion)), _norms(H)]
+    else:
+        x, y = _norms(motion["linear_impulse"]), _norms(motion["angular_impulse"])
+        sizes = [abs(_energy(body).value(motion)), x, y]
+        if "centre" in scene.track:
+            sizes.append(y + _norms(motion["centre"]) * x)
+    return sorted({max(range(len(rows)), key=lambda k: _finite_first(rows[k])) for rows in sizes})
+
+
+def _finite_first(size: Any) -> Any:
+    return size if size == size else -1
+
+
 # Euler: H = I omega.
 
 

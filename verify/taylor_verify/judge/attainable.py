@@ -72,12 +72,21 @@ class Floor:
 
     def of_invariant(self, invariant: Invariant, motion: Motion, scale: Any) -> Floats:
         """The attainable drift at every sample, over the invariant's scale; of a motion in MPFR."""
-        nodes = evenly(len(self.times), _MOST_NODES)
+        return self.of_gradients(invariant, _rows(motion, self.nodes), scale)
+
+    @property
+    def nodes(self) -> list[int]:
+        """The samples at which the gradients of conserved quantities are looked at."""
+        return evenly(len(self.times), _MOST_NODES)
+
+    def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
+        """The same, of a motion at the nodes alone."""
+        nodes = self.nodes
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
-            gradients = invariant.sensitivity(_rows(motion, nodes))
+            gradients = invariant.sensitivity(at_nodes)
             for block, gradient in gradients.items():
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before it is a float: the square of a small motion would be none.

@@ -23,9 +23,10 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.invariants import Invariant, invariants
+from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.series import Series, joined
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import exact_value
@@ -51,38 +52,87 @@ def drifts(
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
-    found, quick = invariants(scene), in_mpfr(answer)
-    if scene.body.is_free:
-        begin = in_mpfr(start)
+    found = Drifts(scene, start, digits)
+    found.add(scene.clock.elapsed, answer, held)
+    return found.errors()
+
+
+class Drifts:
+    """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath."""
+
+    def __init__(self, scene: Scene, start: Motion, digits: int) -> None:
+        self._scene, self._digits = scene, digits
+        self._found = invariants(scene)
+        self._series = {invariant.name: Series() for invariant in self._found}
+        self._begin = in_mpfr(start)
+        # Where the last block ended: its time, its state, and the sums of all increments.
+        self._before: tuple[Fraction, State] = Fraction(0), scene.initial
+        self._sums: dict[str, Column] = {}
+        # The rows so far that the scales are made of.
+        self._largest: Motion | None = None
+        self._is_lost = False
+
+    def add(self, elapsed: Sequence[Fraction], answer: Motion, held: Mapping[str, Column]) -> None:
+        """Take in the next rows. Raises Unsettled where an arc cannot be had."""
+        quick = in_mpfr(answer)
+        is_free = self._scene.body.is_free
+        self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
+        ends = None if is_free or self._is_lost else in_mpfr(self._arc_ends(elapsed, held))
         with precision():
-            return [(i, _errors(i, quick, _conserved(i, begin, quick))) for i in found]
-    if not _is_finite(answer):
-        lost = to_mpfr(np.array([mp.nan] * len(answer.radius), dtype=object))
-        with precision():
-            return [(i, _errors(i, quick, lost)) for i in found]
-    ends = in_mpfr(_arc_ends(scene, held, digits))
-    with precision():
-        return [(i, _errors(i, quick, _balance(i, quick, ends))) for i in found]
+            self._widen(quick)
+            assert self._largest is not None
+            for invariant in self._found:
+                if is_free:
+                    values = _conserved(invariant, self._begin, quick)
+                elif ends is None:
+                    values = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
+                else:
+                    values = self._balance(invariant, quick, ends)
+                scale = invariant.scale(self._largest)
+                scales = to_mpf(np.array([scale], dtype=object))
+                self._series[invariant.name].add(to_mpf(values / scale), scales[0])
+
+    def errors(self) -> list[tuple[Invariant, Errors]]:
+        """The drifts of all rows; if one is not finite under loads, NaN for all."""
+        return [(invariant, self._errors(invariant)) for invariant in self._found]
+
+    def _errors(self, invariant: Invariant) -> Errors:
+        values, scale = self._series[invariant.name].joined()
+        if self._is_lost:
+            values = np.full(len(values), np.nan)
+        unit = f"scale of {invariant.name}"
+        name = invariant.name
+        return Errors(name, unit, values, np.zeros(len(values)), {name: scale})
+
+    def _widen(self, answer: Motion) -> None:
+        rows = answer.at(decisive(self._scene, answer))
+        if self._largest is not None:
+            rows = joined(self._largest, rows)
+        self._largest = rows.at(decisive(self._scene, rows))
+
+    def _balance(self, invariant: Invariant, answer: Motion, ends: Motion) -> Column:
+        increments = invariant.value(answer) - invariant.value(ends)
+        if invariant.name in self._sums:
+            increments[0] = self._sums[invariant.name] + increments[0]
+        sums = np.cumsum(increments, axis=0)
+        self._sums[invariant.name] = sums[-1]
+        return _sizes(sums)
+
+    def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
+        """Where the exact motion leads from each sample (the first from the start) to the next one."""
+        states = _states(self._scene, held)
+        time, state = self._before
+        begins = (time, *elapsed[:-1])
+        spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
+        self._before = elapsed[-1], states[-1]
+        return arcs(self._scene, [state, *states[:-1]], spans, self._digits, begins)
 
 
 # What follows is in MPFR's numbers.
 
 
-def _errors(invariant: Invariant, answer: Motion, drift: Column) -> Errors:
-    scale = invariant.scale(answer)
-    values, scales = to_mpf(drift / scale), to_mpf(np.array([scale], dtype=object))
-    radius = np.array([mp.zero] * len(drift), dtype=object)
-    unit = f"scale of {invariant.name}"
-    return Errors(invariant.name, unit, values, radius, {invariant.name: scales[0]})
-
-
 def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
     return _sizes(invariant.value(answer) - invariant.value(start)[0])
-
-
-def _balance(invariant: Invariant, answer: Motion, ends: Motion) -> Column:
-    increments = invariant.value(answer) - invariant.value(ends)
-    return _sizes(np.cumsum(increments, axis=0))
 
 
 def _sizes(values: Column) -> Column:
@@ -93,14 +143,6 @@ def _sizes(values: Column) -> Column:
 
 
 # The arcs.
-
-
-def _arc_ends(scene: Scene, held: Mapping[str, Column], digits: int) -> Motion:
-    """Where the exact motion leads from each sample (the first from the start) to the next one."""
-    elapsed = scene.clock.elapsed
-    begins = (Fraction(0), *elapsed[:-1])
-    spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
-    return arcs(scene, [scene.initial, *_states(scene, held)[:-1]], spans, digits, begins)
 
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ulp
@@ -24,7 +24,7 @@ _LEAST: Final = ulp(0.0)
 
 @dataclass(frozen=True)
 class Errors:
-    """The error of one quantity at every sample, as mpf, in ``unit``.
+    """The error of one quantity at every sample, as mpf or float64, in ``unit``.
 
     ``parts`` names the quantities of the motion that it compares, each with the scale its error is
     divided by; ``truth_radius`` is how wide the truth is, in the same unit. ``is_state`` tells the
@@ -40,46 +40,89 @@ class Errors:
 
     @cached_property
     def doubles(self) -> Floats:
-        """The values as bounds are: of float64. What is not zero does not become it."""
-        return _doubles(self.values)
+        """The values as bounds are: of float64."""
+        return in_doubles(self.values)
 
     @cached_property
     def widths(self) -> Floats:
         """The truth's radii likewise."""
-        return _doubles(self.truth_radius)
+        return in_doubles(self.truth_radius)
 
 
-def _doubles(values: Column) -> Floats:
+def in_doubles(values: Column) -> Floats:
+    """The values as float64. What is not zero does not become it."""
+    if values.dtype != object:
+        return values
     return np.array([float(value) or (_LEAST if value else 0.0) for value in values])
+
+
+@dataclass(frozen=True)
+class Distances:
+    """How far one quantity is off at some samples, part by part, before it is divided by a scale.
+
+    ``widths`` are those of the truth, in the unit of the distances. ``sizes`` are what the scales are made
+    of: the scale of a part is its size, or 1 where that is zero.
+    """
+
+    quantity: str
+    unit: str
+    distances: Mapping[str, Column]
+    widths: Mapping[str, Column]
+    sizes: Mapping[str, Any]
+
+    def errors(self) -> Errors:
+        """The errors over the scales of these samples; the larger part counts."""
+        scales = {part: or_one(size) for part, size in self.sizes.items()}
+        values = _larger([rows / scales[part] for part, rows in self.distances.items()])
+        radius = _larger([rows / scales[part] for part, rows in self.widths.items()])
+        return Errors(self.quantity, self.unit, values, radius, scales, is_state=True)
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
     """The errors of everything tracked, evaluated at the ambient precision of mpmath."""
+    return [found.errors() for found in state_distances(scene, truth, answer)]
+
+
+def state_distances(
+    scene: Scene, truth: Motion, answer: Motion, arc: Arc | None = None
+) -> list[Distances]:
+    """The distances of everything tracked, likewise; ``arc`` is the path before these samples."""
     if scene.model == "euler":
-        errors = [_vector_error("omega", "max|omega|", ["omega"], truth, answer)]
+        found = [_vectors("omega", "max|omega|", ["omega"], truth, answer)]
     else:
         parts = ["linear_impulse", "angular_impulse"]
-        errors = [_vector_error("impulse", "max|x|, max|y|", parts, truth, answer)]
+        found = [_vectors("impulse", "max|x|, max|y|", parts, truth, answer)]
     if "attitude" in scene.track:
-        errors.append(_attitude_error(truth, answer))
+        found.append(_attitudes(truth, answer))
     if "centre" in scene.track:
-        errors.append(_centre_error(scene, truth, answer))
-    return errors
+        length = (arc or Arc()).through(scene, truth)
+        distances = norms(answer["centre"] - truth["centre"])
+        widths = _width(truth, "centre")
+        found.append(_distances("centre", "arc length", distances, widths, length))
+    return found
 
 
-def _vector_error(
+def _distances(name: str, unit: str, distances: Column, widths: Column, size: Any) -> Distances:
+    return Distances(name, unit, {name: distances}, {name: widths}, {name: size})
+
+
+def _vectors(
     quantity: str, unit: str, parts: Sequence[str], truth: Motion, answer: Motion
-) -> Errors:
-    """Each part over the largest norm it reaches (absolute where that is zero); the larger counts."""
-    scales = {part: or_one(largest(norms(truth[part]))) for part in parts}
-    by_part = [norms(answer[part] - truth[part]) / scales[part] for part in parts]
-    values = _larger(by_part)
-    radius = _larger([_width(truth, part) / scales[part] for part in parts])
-    return Errors(quantity, unit, values, radius, scales, is_state=True)
+) -> Distances:
+    """The size of each part is the largest norm that it reaches."""
+    return Distances(
+        quantity,
+        unit,
+        {part: norms(answer[part] - truth[part]) for part in parts},
+        {part: _width(truth, part) for part in parts},
+        {part: largest(norms(truth[part])) for part in parts},
+    )
 
 
 def _larger(by_part: Sequence[Column]) -> Column:
     """Sample by sample the largest of all parts."""
+    if len(by_part) == 1:
+        return by_part[0]
     return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
 
 
@@ -90,38 +133,43 @@ def _width(truth: Motion, quantity: str) -> Column:
     return width
 
 
-def _attitude_error(truth: Motion, answer: Motion) -> Errors:
+def _attitudes(truth: Motion, answer: Motion) -> Distances:
     """The angle of R_exact^T R: |R - R_exact| in the Frobenius norm is 2 sqrt 2 sin(angle/2)."""
     chords = norms(answer["attitude"] - truth["attitude"]) / (2 * mp.sqrt(2))
-    values = np.array([_angle(chord) for chord in chords], dtype=object)
+    angles = np.array([_angle(chord) for chord in chords], dtype=object)
     # |R|_F is sqrt 3, so a relative radius is less than this many radians.
-    radius = 2 * truth.radius_of("attitude")
-    return Errors("attitude", "rad", values, radius, {"attitude": mpf(1)}, is_state=True)
+    return _distances("attitude", "rad", angles, 2 * truth.radius_of("attitude"), mpf(1))
 
 
 def _angle(half_chord: Any) -> Any:
     return 2 * mp.asin(half_chord) if half_chord <= 1 else mp.pi + 0 * half_chord
 
 
-def _centre_error(scene: Scene, truth: Motion, answer: Motion) -> Errors:
-    """Relative to the whole arc length of the path (absolute where that is zero)."""
-    scale = or_one(arc_length(scene, truth))
-    values = norms(answer["centre"] - truth["centre"]) / scale
-    radius = _width(truth, "centre") / scale
-    return Errors("centre", "arc length", values, radius, {"centre": scale}, is_state=True)
-
-
 def arc_length(scene: Scene, truth: Motion) -> Any:
     """The length of the centre's path, from the speed |U| at the samples by the trapezium rule."""
-    body = scene.body
-    assert isinstance(body, ImmersedBody)
-    A, B = exact_matrix(body.linear), exact_matrix(body.coupling)
-    speeds = norms(truth["linear_impulse"] @ A.T + truth["angular_impulse"] @ B.T)
-    times = [mp.convert(t) for t in scene.clock.elapsed]
-    # The start is not always sampled; the speed there is close enough to the first sample's.
-    speeds, times = np.concatenate([speeds[:1], speeds]), [mpf(0), *times]
-    pairs = zip(times, times[1:], speeds, speeds[1:], strict=False)
-    return sum((abs(t1 - t0) * (v0 + v1) / 2 for t0, t1, v0, v1 in pairs), mpf(0))
+    return Arc().through(scene, truth)
+
+
+@dataclass
+class Arc:
+    """The length of a path so far, up to a time with a speed."""
+
+    length: Any = 0
+    end: tuple[Any, Any] | None = None
+
+    def through(self, scene: Scene, truth: Motion) -> Any:
+        """Take in further samples, at the instants of the scene, and return the whole length."""
+        body = scene.body
+        assert isinstance(body, ImmersedBody)
+        A, B = exact_matrix(body.linear), exact_matrix(body.coupling)
+        speeds = norms(truth["linear_impulse"] @ A.T + truth["angular_impulse"] @ B.T)
+        for elapsed, speed in zip(scene.clock.elapsed, speeds, strict=True):
+            time = mp.convert(elapsed)
+            # The start is not always sampled; the speed there is close enough to the first sample's.
+            since, before = self.end or (mpf(0), speed)
+            self.length = self.length + abs(time - since) * (before + speed) / 2
+            self.end = time, speed
+        return self.length
 
 
 def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Column:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from math import fsum, inf
 from typing import TYPE_CHECKING, Any
 
@@ -13,19 +12,20 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.arithmetic import MORE_DIGITS, truth_digits, working_bits
+from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, Floor, floor
 from taylor_verify.judge.balances import ClockWork, clock_work
-from taylor_verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
-from taylor_verify.judge.drifts import drifts
-from taylor_verify.judge.errors import Errors, state_errors
+from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
+from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
+from taylor_verify.judge.measured import Comparison
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.judge.shift import Shift, time_shifts
+from taylor_verify.judge.shift import Shift
 from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import GATE_FACTOR, MAIN
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record
@@ -170,35 +170,29 @@ def _unfinished(trajectory: Trajectory) -> Reason:
 def _compare(run: _Run, exact: Solution) -> Judgement:
     problem, trajectory = run.problem, run.trajectory
     given, bits = problem.given, problem.rung.bits
-    digits = truth_digits(bits)
-    costs = Costs()
-    with costs.of(TRUTH):
-        truth = exact.motion(given.clock.elapsed, digits)
-        start = exact.motion([Fraction(0)], digits + MORE_DIGITS)
-    answer = trajectory.motion(working_bits(bits))
+    digits, costs = truth_digits(bits), Costs()
+    with mp.workprec(working_bits(bits)), costs.of(CONDITION):
+        base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
+    compared = Comparison(given, exact, trajectory.quantities, digits, working_bits(bits))
+    measured = compared.measured(base.nodes, costs)
     with mp.workprec(working_bits(bits)):
-        with costs.of(CONDITION):
-            base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
-        with costs.of(ERRORS):
-            states = state_errors(given, truth, answer)
-            shifts = time_shifts(given, exact, truth, answer, digits, states)
-            gated = [
-                _state(run, base, errors, shift)
-                for errors, shift in zip(states, shifts, strict=True)
-            ]
+        gated = [
+            _state(run, base, errors, shift, measured.is_shifted_whole)
+            for errors, shift in zip(measured.states, measured.shifts, strict=True)
+        ]
         with costs.of(CONSERVED):
-            work, quick = clock_work(problem.scene), in_mpfr(truth)
+            work, quick = clock_work(problem.scene), in_mpfr(measured.at_nodes)
             gated += [
                 _conserved(
                     run,
                     base,
-                    base.of_invariant(invariant, quick, _scale(errors)),
+                    base.of_gradients(invariant, quick, _scale(errors)),
                     errors,
                     work.get(invariant.name),
                 )
-                for invariant, errors in drifts(given, start, answer, trajectory.quantities, digits)
+                for invariant, errors in measured.drifts
             ]
-            gated += _lengths(run, base)
+            gated += _lengths(run, base, measured.excess)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
     return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
 
@@ -210,7 +204,9 @@ def _scale(errors: Errors) -> Any:
 Gated = tuple[Verdict, GateRecord]
 
 
-def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated:
+def _state(
+    run: _Run, base: Floor, errors: Errors, shift: Shift | None, is_shifted_whole: bool
+) -> Gated:
     attainable = base.of_state(errors)
     finding = judge(errors, attainable, _reason(run, base, errors, attainable, Carried.ORBIT))
     if shift is None:
@@ -226,13 +222,13 @@ def _state(run: _Run, base: Floor, errors: Errors, shift: Shift | None) -> Gated
         trend=shift.trend if shift.kind is Kind.DRIFTING else None,
         remains=None if shift.kind is Kind.NONE else shift.remains,
     )
-    return verdict, _gate(errors, attainable, () if passed else shift.at_samples)
+    shifts = () if passed or not is_shifted_whole else shift.at_samples
+    return verdict, _gate(errors, attainable, shifts)
 
 
-def _lengths(run: _Run, base: Floor) -> list[Gated]:
+def _lengths(run: _Run, base: Floor, excess: Floats | None) -> list[Gated]:
     """The row of quaternions that are no unit quaternions; none where they are."""
-    quaternions = run.trajectory.quantities.get("quaternion")
-    failed = None if quaternions is None else unit_quaternion(quaternions, base)
+    failed = None if excess is None else unit_quaternion(excess, base)
     if failed is None:
         return []
     errors, attainable, finding = failed
@@ -295,24 +291,16 @@ def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> G
     return GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=_four_digits(errors.doubles),
-        attainable=_four_digits(attainable),
-        truth_radius=_bound(max(errors.widths)),
-        shifts=_four_digits(shifts),
+        errors=four_digits(errors.doubles),
+        attainable=four_digits(attainable),
+        truth_radius=_bound(float(np.max(errors.widths))),
+        shifts=four_digits(shifts),
     )
 
 
 def _bound(radius: float) -> float:
     """Three digits, and not less: the rest tells how the truth was come by, which may differ by run."""
     return float(f"{1.006 * radius:.3g}")
-
-
-def _four_digits(values: Iterable[Any]) -> tuple[float, ...]:
-    return tuple(float(f"{float(value):.4g}") for value in values)
-
-
-def _floats(values: Iterable[Any]) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
 
 
 def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ...]) -> Record:
@@ -337,7 +325,7 @@ def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ..
         outcome=trajectory.outcome.value,
         steps=trajectory.steps,
         unit_roundoff=float(problem.rung.unit_roundoff),
-        times=_floats(problem.given.clock.instants),
+        times=Doubles(float(t) for t in problem.given.clock.instants),
         gates=gates,
     )
 

@@ -12,13 +12,12 @@ fails. A quaternion that is a unit one to roundoff needs no row to say so.
 from __future__ import annotations
 
 from math import log2
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from mpmath import mp
 
 from taylor_verify.judge.attainable import Floats, Floor
-from taylor_verify.judge.errors import Errors, norms
+from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
@@ -28,24 +27,20 @@ from taylor_verify.records.status import Status
 _SHOWN: Final = 1e-4
 
 
-def unit_quaternion(
-    quaternions: np.ndarray[Any, Any], base: Floor
-) -> tuple[Errors, Floats, Finding] | None:
+def unit_quaternion(excess: Floats, base: Floor) -> tuple[Errors, Floats, Finding] | None:
     """The errors of length, what is attainable, and the failure; None where q is a unit quaternion.
 
-    ``quaternions`` (n, 4) are numbers of mpmath; one that is not finite is the attitude's failure.
+    ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure.
     """
-    lengths = norms(quaternions)
-    if not all(mp.isfinite(length) for length in lengths):
+    if not np.isfinite(excess).all():
         return None
-    exact = np.array([mp.zero] * len(lengths), dtype=object)
-    errors = Errors(UNIT_QUATERNION, "1", abs(lengths - 1), exact, {})
+    errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
     elapsed = base.times / (np.max(base.times) or 1.0)
     steps = 1 + float(np.sum(base.steps_at)) * elapsed
     attainable = base.unit_roundoff * steps
     worst = index_of_largest(errors.doubles)
-    lowest, highest = (float(end(lengths - 1)) for end in (min, max))
-    extent = dict.fromkeys(_length(excess, attainable[worst]) for excess in (lowest, highest))
+    lowest, highest = (float(end(excess)) for end in (np.min, np.max))
+    extent = dict.fromkeys(_length(end, attainable[worst]) for end in (lowest, highest))
     terms = RoundoffFloor(
         Carried.LENGTH,
         shown(float(attainable[worst])),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,15 +12,21 @@ class GateRecord:
     """The samples of one gate, ``errors`` and ``attainable``, to the four digits a picture needs.
 
     ``shifts`` are the shifts of time of a state quantity whose gate did not pass; empty else, where
-    they are as random as the roundings behind them.
+    they are as random as the roundings behind them, and of so many samples that they were not sought
+    at each.
     """
 
     quantity: str
     unit: str
-    errors: tuple[float, ...]
-    attainable: tuple[float, ...]
+    errors: Sequence[float]
+    attainable: Sequence[float]
     truth_radius: float
-    shifts: tuple[float, ...] = ()
+    shifts: Sequence[float] = ()
+
+    def document(self) -> dict[str, Any]:
+        """The gate as JSON holds it."""
+        series = {name: tuple(getattr(self, name)) for name in ("errors", "attainable", "shifts")}
+        return {**vars(self), **series}
 
 
 @dataclass(frozen=True)
@@ -40,9 +47,10 @@ class Record:
     outcome: str
     steps: int
     unit_roundoff: float
-    times: tuple[float, ...]
+    times: Sequence[float]
     gates: tuple[GateRecord, ...]
 
     def document(self) -> dict[str, Any]:
-        """The record as JSON holds it. Its tuples are the record's own: a run has thousands of numbers."""
-        return {**vars(self), "gates": [vars(gate) for gate in self.gates]}
+        """The record as JSON holds it."""
+        gates = [gate.document() for gate in self.gates]
+        return {**vars(self), "times": tuple(self.times), "gates": gates}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -70,6 +71,41 @@ class Postponed(Mapping[str, np.ndarray[Any, Any]]):
         return dict, (self._formed,)
 
 
+class ByRows(Mapping[str, np.ndarray[Any, Any]]):
+    """Quantities that are formed when some of their rows are looked at; ``count`` is that of all rows."""
+
+    count: int
+
+    @abstractmethod
+    def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
+        """The quantities in some rows."""
+
+    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
+        return self.rows(range(self.count))[quantity]
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+def rows_at(
+    quantities: Mapping[str, np.ndarray[Any, Any]], places: Sequence[int]
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Quantities of an answer in some rows."""
+    if isinstance(quantities, ByRows):
+        return quantities.rows(places)
+    return {name: rows[list(places)] for name, rows in quantities.items()}
+
+
+def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Motion:
+    """Quantities of an answer as a Motion: attitude matrices are formed with ``bits`` of precision."""
+    found = {k: v for k, v in quantities.items() if k != "quaternion"}
+    if "quaternion" in quantities:
+        with mp.workprec(bits):
+            found["attitude"] = _rotations(quantities["quaternion"])
+    samples = len(next(iter(found.values())))
+    return Motion(found, np.array([mp.zero] * samples, dtype=object))
+
+
 @dataclass(frozen=True)
 class Trajectory:
     """The answer of one solver to one problem.
@@ -93,12 +129,7 @@ class Trajectory:
 
     def motion(self, bits: int) -> Motion:
         """The same as a Motion: attitude matrices are formed with ``bits`` of precision."""
-        quantities = {k: v for k, v in self.quantities.items() if k != "quaternion"}
-        if "quaternion" in self.quantities:
-            with mp.workprec(bits):
-                quantities["attitude"] = _rotations(self.quantities["quaternion"])
-        samples = len(next(iter(quantities.values())))
-        return Motion(quantities, np.array([mp.zero] * samples, dtype=object))
+        return motion_of(self.quantities, bits)
 
 
 def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
