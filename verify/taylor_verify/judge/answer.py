@@ -6,9 +6,11 @@ Rows before the scene's start and rows after it are two runs that begin at the s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from operator import neg
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +20,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
+from taylor_verify.judge.conventions.readings import Reading
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.file_notes import (
@@ -47,7 +50,7 @@ from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import Recorded, TrajectoryFile
-from taylor_verify.solvers.values import held
+from taylor_verify.solvers.trajectory import ByRows
 
 Array = np.ndarray[Any, Any]
 
@@ -186,48 +189,76 @@ def _alone(
 
 
 @dataclass(frozen=True)
-class _Answer:
-    """Times and quantities of a run, and the scene it is held against."""
+class _Answer(ByRows):
+    """Rows of a file, and the scene it is held against. ``times`` are those of all its rows.
+
+    ``places`` are the rows that count, in the order away from the start.
+    """
 
     scene: Scene
-    times: tuple[Fraction, ...]
-    quantities: Mapping[str, Array]
+    times: Sequence[Fraction]
+    file: TrajectoryFile
+    rung: Rung
+    readings: Mapping[str, Reading]
+    places: range
 
     @classmethod
     def of(
         cls, file: TrajectoryFile, scene: Scene, rung: Rung, accepted: Conventions | None
     ) -> _Answer:
-        bits = rung.bits + _SPARE_BITS
-        quantities = {name: held(rows, bits) for name, rows in file.groups.items()}
-        if "attitude" in quantities:
-            quantities["attitude"] = quantities["attitude"].reshape(-1, 3, 3)
+        places = range(len(file.times))
         if accepted is None:
-            return cls(scene, file.times, quantities)
+            return cls(scene, file.times, file, rung, {}, places)
         world = accepted.world
-        scene, times = world.scene, world.times(file.times)
-        if accepted.readings:
-            R = _attitudes(scene, rung, times, bits)
+        return cls(world.scene, world.times(file.times), file, rung, accepted.readings, places)
+
+    @property
+    def count(self) -> int:  # type: ignore[override]
+        return len(self.places)
+
+    @property
+    def instants(self) -> tuple[Fraction, ...]:
+        """The times of the rows that count."""
+        return tuple(self.times[k] for k in self.places)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.file.groups)
+
+    def rows(self, places: Sequence[int]) -> dict[str, Array]:
+        asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
+        found = {name: rows.held(asked, bits) for name, rows in self.file.rows.items()}
+        if "attitude" in found:
+            found["attitude"] = found["attitude"].reshape(-1, 3, 3)
+        if self.readings:
+            R = _attitudes(self.scene, self.rung, tuple(self.times[k] for k in asked), bits)
             with mp.workprec(bits):
-                for name, reading in accepted.readings.items():
-                    quantities[name] = reading.read(quantities[name], R)
-        return cls(scene, times, quantities)
+                for name, reading in self.readings.items():
+                    found[name] = reading.read(found[name], R)
+        return found
 
     def sides(self) -> list[_Answer]:
         """The rows after the start and those before it, each in the order away from the start."""
-        start = self.scene.clock.start
-        later = sorted((k for k, t in enumerate(self.times) if t >= start), key=self._distance)
-        earlier = sorted((k for k, t in enumerate(self.times) if t < start), key=self._distance)
-        at_start = [k for k in later if self.times[k] == start]
-        if earlier and later == at_start:
-            later, earlier = [], at_start + earlier
-        return [self._rows(rows) for rows in (later, earlier) if rows]
+        start, times, count = self.scene.clock.start, self.times, len(self.times)
+        if times[0] <= times[-1]:
+            at, beyond = bisect_left(times, start), bisect_right(times, start)
+            earlier, here, later = range(at - 1, -1, -1), range(at, beyond), range(beyond, count)
+        else:
+            at = bisect_left(times, -start, key=neg)
+            beyond = bisect_right(times, -start, key=neg)
+            earlier, here, later = range(beyond, count), range(at, beyond), range(at - 1, -1, -1)
+        if earlier and not later:
+            sides = [range(earlier.start - earlier.step * len(here), earlier.stop, earlier.step)]
+        else:
+            first = later.start - later.step * len(here) if later else at
+            sides = [range(first, later.stop, later.step) if later else here, earlier]
+        return [replace(self, places=side) for side in sides if side]
 
-    def _distance(self, row: int) -> Fraction:
-        return abs(self.times[row] - self.scene.clock.start)
 
-    def _rows(self, rows: list[int]) -> _Answer:
-        quantities = {name: values[rows] for name, values in self.quantities.items()}
-        return _Answer(self.scene, tuple(self.times[k] for k in rows), quantities)
+def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
+    """The places of some of these rows in the file."""
+    if isinstance(places, range) and places.step == 1:
+        return rows[places.start : places.stop]
+    return [rows[k] for k in places]
 
 
 def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
@@ -247,8 +278,8 @@ class _Side:
 
 
 def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
-    problem = adopt(answer.scene, rung, answer.times)
-    judged = partial_judgement(problem, Recorded(answer.quantities, setting=name))
+    problem = adopt(answer.scene, rung, answer.instants)
+    judged = partial_judgement(problem, Recorded(answer, setting=name))
     if judged.record is None:
         return _Side(judged, [])
     inputs = input_rounding(problem.given, rung, problem.scene)
@@ -271,12 +302,17 @@ def _verdict(sides: Sequence[Graded], file: TrajectoryFile) -> Verdict:
 
 
 def _flaw(file: TrajectoryFile, quantity: str) -> str:
-    """Where the first value of a quantity stands that is no finite number; empty if there is none."""
-    groups = _MADE_OF.get(quantity, tuple(COLUMNS))
-    for row, time in enumerate(file.times):
-        for group in groups:
-            values = file.groups[group][row] if group in file.groups else ()
-            for name, value in zip(COLUMNS[group], values, strict=False):
-                if not isinstance(value, Fraction):
-                    return f"{name} is {value} in row {row + 1}, t = {float(time):g}"
-    return ""
+    """The place of the first value of a quantity that is no finite number; empty if there is none."""
+    groups = [name for name in _MADE_OF.get(quantity, tuple(COLUMNS)) if name in file.groups]
+    lost = {name: np.flatnonzero(~file.rows[name].finite) for name in groups}
+    first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
+    if not first:
+        return ""
+    group = min(first, key=lambda name: first[name])
+    row = first[group]
+    name, value = next(
+        (name, value)
+        for name, value in zip(COLUMNS[group], file.groups[group][row], strict=True)
+        if not isinstance(value, Fraction)
+    )
+    return f"{name} is {value} in row {row + 1}, t = {float(file.times[row]):g}"

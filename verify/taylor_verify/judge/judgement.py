@@ -267,7 +267,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         errors.quantity,
         finding.status,
         max=float(errors.doubles[worst]),
-        mean=_mean(errors.doubles),
+        mean=mean(errors.doubles),
         final=float(errors.doubles[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
@@ -279,7 +279,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
     )
 
 
-def _mean(errors: Floats) -> float:
+def mean(errors: Floats) -> float:
     """The mean; infinite where the sum is beyond doubles."""
     try:
         return fsum(errors) / len(errors)

@@ -1,4 +1,4 @@
-"""The errors of an answer, measured block of rows by block of rows, so that a million rows need no more room.
+"""The errors of an answer, measured block of rows by block of rows.
 
 The exact motion and the answer are there for one block at a time; of every row remain its errors, in
 doubles. Shifts of time are sought on some thousands of the rows, the rows of the largest errors among them.
@@ -64,7 +64,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Block:
-    """Some rows: their places among all, their scene, the exact motion, and the answer in both its forms."""
+    """Some rows: their places among all, a scene at their instants, the exact motion and the answer."""
 
     places: Sequence[int]
     scene: Scene

@@ -6,7 +6,7 @@ row that rests on it is reported.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -14,24 +14,30 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.looks import evenly
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.angular_shift import angular_shift
 from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, floor
-from taylor_verify.judge.errors import Errors, norms, state_errors
+from taylor_verify.judge.costs import Costs
+from taylor_verify.judge.errors import Distances, Errors, largest, norms
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import angular_velocity
-from taylor_verify.judge.judgement import Judgement, judgement
+from taylor_verify.judge.judgement import Judgement, judgement, mean
+from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.series import Series, States
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.solvers.file import Recorded
-from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.solvers.trajectory import ByRows, Outcome, rows_at
 
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 Gated = tuple[Verdict, GateRecord]
@@ -47,32 +53,65 @@ def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
     The problem's scenes track what the answer has of attitude and centre, and no more.
     """
     own, given = solver.quantities, problem.given
-    truth = _truth(problem)
+    exact = solution(given)
+    digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
+    one_row = exact.motion(given.clock.elapsed[:1], digits)
     has = {"attitude" if name == "quaternion" else name for name in own}
-    filled = {n: rows for n, rows in own.items() if n != "omega" or n in truth.quantities}
-    filled |= {name: rows for name, rows in truth.quantities.items() if name not in has}
+    filled = Filled(
+        own,
+        tuple(name for name in own if name != "omega" or name in one_row.quantities),
+        tuple(name for name in one_row.quantities if name not in has),
+        lambda places: exact.motion([given.clock.elapsed[k] for k in places], digits),
+        len(given.clock.instants),
+    )
     apart: list[Gated] = []
-    if "omega" not in truth.quantities and "omega" in own:
-        apart.append(_angular_velocity(problem, solver, truth))
+    if "omega" not in one_row.quantities and "omega" in own:
+        apart.append(_angular_velocity(problem, solver, exact))
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
-        apart += _states_apart(problem, solver, truth, filled)
-        filled = {n: rows for n, rows in filled.items() if n not in ("attitude", "centre")}
+        apart += _states_apart(problem, solver, exact, filled)
+        filled = filled.without("attitude", "centre")
         problem = replace(problem, given=replace(given, track=frozenset()))
     whole = judgement(problem, solver, replace(solver, quantities=filled).solve(problem))
     if whole.record is None:
         return whole
-    sound = _rows_resting_on(problem, truth, has)
+    sound = _rows_resting_on(problem, one_row, has)
     pairs = [*zip(whole.verdicts, whole.record.gates, strict=True), *apart]
     kept = [(verdict, gate) for verdict, gate in pairs if verdict.quantity in sound]
     record = replace(whole.record, gates=tuple(gate for _, gate in kept))
     return Judgement(tuple(verdict for verdict, _ in kept), record)
 
 
-def _truth(problem: Problem) -> Motion:
-    digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
-    return solution(problem.given).motion(problem.given.clock.elapsed, digits)
+@dataclass(frozen=True)
+class Filled(ByRows):
+    """What an answer has, and the truth in place of what it lacks.
+
+    ``exact`` is the truth in some rows, and ``count`` the number of all.
+    """
+
+    own: Quantities
+    has: tuple[str, ...]
+    lacks: tuple[str, ...]
+    exact: Callable[[Sequence[int]], Motion]
+    count: int
+
+    def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
+        own = rows_at(self.own, places)
+        found = {name: own[name] for name in self.has}
+        if self.lacks:
+            truth = self.exact(places)
+            found |= {name: truth[name] for name in self.lacks}
+        return found
+
+    def without(self, *names: str) -> Filled:
+        has, lacks = (
+            tuple(name for name in group if name not in names) for group in (self.has, self.lacks)
+        )
+        return replace(self, has=has, lacks=lacks)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self.has, *self.lacks))
 
 
 def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
@@ -89,14 +128,15 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
 
 
 def _states_apart(
-    problem: Problem, solver: Recorded, truth: Motion, filled: Quantities
+    problem: Problem, solver: Recorded, exact: Solution, filled: Quantities
 ) -> list[Gated]:
     """Attitude and centre against the truth, and nothing that is conserved."""
-    given, rung = problem.given, problem.rung
-    with mp.workprec(working_bits(rung.bits)):
+    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
+    states = Comparison(given, exact, filled, truth_digits(rung.bits, _GUARD_DIGITS), bits).states()
+    with mp.workprec(bits):
         base = floor(given, problem.scene, rung.unit_roundoff, 0)
         rows = []
-        for errors in state_errors(given, truth, Motion(filled, truth.radius)):
+        for errors in states:
             if errors.quantity in ("attitude", "centre"):
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
@@ -108,37 +148,68 @@ def _states_apart(
 # The angular velocity of a solid in a fluid: Omega = B^T x + C y.
 
 
-@dataclass(frozen=True)
-class _Omega:
-    """The exact angular velocity, its largest size, and what a rounding of x and y makes of it."""
-
-    rows: Any
-    scale: Any
-    attainable: Floats
-
-
-def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gated:
-    with mp.workprec(working_bits(problem.rung.bits)):
-        exact = _omega(problem, truth)
-        values = norms(solver.quantities["omega"] - exact.rows) / exact.scale
-        errors = Errors("omega", "max|omega|", values, truth.radius, {"omega": exact.scale})
+def _angular_velocity(problem: Problem, solver: Recorded, exact: Solution) -> Gated:
+    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
+    digits = truth_digits(rung.bits, _GUARD_DIGITS)
+    errors, sizes = _omega_errors(Comparison(given, exact, solver.quantities, digits, bits))
+    with mp.workprec(bits):
+        scale = errors.parts["omega"]
+        attainable = _omega_attainable(problem, sizes, scale)
         terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
-        row, gate = _row(problem, solver, errors, exact.attainable, terms)
-        digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
-        shift = angular_shift(problem.given, solver.quantities["omega"], digits)
+        row, gate = _row(problem, solver, errors, attainable, terms)
+        places = evenly(len(sizes), MOST_SHIFTED)
+        clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
+        own = rows_at(solver.quantities, places)["omega"]
+        shift = angular_shift(replace(given, clock=clock), own, digits)
         if shift is None:
             return row, gate
-        late, left = float(shift.time_shift), shift.residual / float(exact.scale)
+        late, left = float(shift.time_shift), shift.residual / float(scale)
         remains = None if shift.kind is Kind.NONE else left
         row = replace(row, time_shift=late, residual=left, shift=shift.kind.value)
         return replace(row, remains=remains), gate
+
+
+def _omega_errors(compared: Comparison) -> tuple[Errors, Floats]:
+    """The errors of Omega, and its own size at every sample over the largest."""
+    body = compared.scene.body
+    assert isinstance(body, ImmersedBody)
+    states, sizes, radii = States(), Series(), Series()
+    for block in compared.blocks(Costs()):
+        with mp.workprec(compared.bits):
+            rows = angular_velocity(body, block.truth.quantities)
+            size, distances = norms(rows), norms(block.own["omega"] - rows)
+            zeros = {"omega": 0 * block.truth.radius}
+            scale = states.add(
+                Distances(
+                    "omega", "max|omega|", {"omega": distances}, zeros, {"omega": largest(size)}
+                )
+            )["omega"]
+            sizes.add(size / scale, scale)
+            radii.add(block.truth.radius, mpf(1))
+    (errors,) = states.errors()
+    errors = replace(errors, truth_radius=radii.joined()[0], is_state=False)
+    return errors, sizes.joined()[0]
+
+
+def _omega_attainable(problem: Problem, sizes: Floats, scale: Any) -> Floats:
+    """What a rounding of x and y, and of Omega itself, leaves."""
+    body = problem.given.body
+    assert isinstance(body, ImmersedBody)
+    base = floor(problem.given, problem.scene, problem.rung.unit_roundoff, 0)
+    squares = (base.unit_roundoff * sizes) ** 2
+    for part, matrix in (("linear_impulse", body.coupling), ("angular_impulse", body.angular)):
+        norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
+        alone = Errors(part, "", sizes, sizes, {part: scale})
+        squares = squares + (norm * base.of_state(alone)) ** 2
+    attainable: Floats = np.sqrt(squares)
+    return attainable
 
 
 def _row(
     problem: Problem, solver: Recorded, errors: Errors, attainable: Floats, terms: Reason
 ) -> Gated:
     finding = judge(errors, attainable, terms)
-    instants, worst, values = problem.given.clock.instants, finding.worst, errors.values
+    instants, worst, values = problem.given.clock.instants, finding.worst, errors.doubles
     verdict = Verdict(
         scene=problem.scene.name,
         solver=solver.name,
@@ -148,7 +219,7 @@ def _row(
         verdict=finding.status,
         outcome=Outcome.FINISHED.value,
         max=float(values[worst]),
-        mean=float(sum(values) / len(values)),
+        mean=mean(values),
         final=float(values[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
@@ -163,24 +234,8 @@ def _row(
     gate = GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=tuple(float(v) for v in values),
-        attainable=tuple(float(a) for a in attainable),
-        truth_radius=float(max(errors.truth_radius)),
+        errors=Doubles(values),
+        attainable=Doubles(attainable),
+        truth_radius=float(np.max(errors.widths)),
     )
     return verdict, gate
-
-
-def _omega(problem: Problem, truth: Motion) -> _Omega:
-    given = problem.given
-    body = given.body
-    assert isinstance(body, ImmersedBody)
-    rows = angular_velocity(body, truth.quantities)
-    sizes = norms(rows)
-    scale = max(sizes) or mpf(1)
-    base = floor(given, problem.scene, problem.rung.unit_roundoff, 0)
-    squares = (base.unit_roundoff * (sizes / scale).astype(float)) ** 2
-    for part, matrix in (("linear_impulse", body.coupling), ("angular_impulse", body.angular)):
-        norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
-        alone = Errors(part, "", truth.radius, truth.radius, {part: scale})
-        squares = squares + (norm * base.of_state(alone)) ** 2
-    return _Omega(rows, scale, np.sqrt(squares))

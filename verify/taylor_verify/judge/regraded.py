@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.doubles import four_digits
 from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.reason import Cause, InputShare, Reason
 from taylor_verify.records.record import GateRecord, Record
@@ -88,10 +88,9 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
 
 def _verdict(side: Graded, flaw: str) -> Verdict:
     gate, times, attainable = side.verdict, side.times, side.attainable
-    column = np.array([mpf(float(e)) for e in side.errors], dtype=object)
-    widths = np.array([mp.inf if side.is_doubtful else mp.zero] * len(times), dtype=object)
+    widths = np.full(len(times), np.inf if side.is_doubtful else 0.0)
     is_state = gate.quantity in STATES
-    errors = Errors(gate.quantity, gate.unit, column, widths, {}, is_state)
+    errors = Errors(gate.quantity, gate.unit, side.errors, widths, {}, is_state)
     finding = judge(errors, attainable, side.terms)
     worst = finding.worst
     return replace(
@@ -114,7 +113,7 @@ def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:
     record = max(records, key=lambda r: len(r.times))
     used = {g.verdict.quantity: g for g in gates if len(g.times) == len(record.times)}
     kept = tuple(
-        replace(gate, attainable=tuple(float(f"{a:.4g}") for a in used[gate.quantity].attainable))
+        replace(gate, attainable=four_digits(used[gate.quantity].attainable))
         for gate in record.gates
         if gate.quantity in used
     )

@@ -65,15 +65,18 @@ class States:
         self._errors: dict[tuple[str, str], Series] = {}
         self._widths: dict[tuple[str, str], Series] = {}
 
-    def add(self, found: Distances) -> None:
-        """Take in the next rows of one quantity."""
+    def add(self, found: Distances) -> dict[str, Any]:
+        """Take in the next rows of one quantity, and return its scales so far."""
+        scales = {}
         self._about[found.quantity] = found
         for part, distances in found.distances.items():
             key = found.quantity, part
             size = _larger(self._sizes.get(key), found.sizes[part])
-            self._sizes[key], scale = size, or_one(size)
+            self._sizes[key] = size
+            scales[part] = scale = or_one(size)
             self._errors.setdefault(key, Series()).add(distances / scale, scale)
             self._widths.setdefault(key, Series()).add(found.widths[part] / scale, scale)
+        return scales
 
     def errors(self) -> list[Errors]:
         """The errors of all rows, in the order in which the quantities came first."""
