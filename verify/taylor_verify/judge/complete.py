@@ -6,11 +6,13 @@ than one of its own sampling intervals after the start, and to have more than on
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.judge.judgement import unjudged
 from taylor_verify.records.quantities import COMPLETE
@@ -28,6 +30,21 @@ _CLOCK_STEPS: Final = 10**6
 _FEWEST_ROWS: Final = 3
 
 
+class _Since(Sequence[Fraction]):
+    """Strictly monotonic times, counted from a start in one direction and put in ascending order."""
+
+    def __init__(self, times: Sequence[Fraction], start: Fraction, sign: int) -> None:
+        self._times, self._start, self._sign = times, start, sign
+        rises = sign * (times[-1] - times[0]) >= 0
+        self._places = range(len(times)) if rises else range(len(times) - 1, -1, -1)
+
+    def __len__(self) -> int:
+        return len(self._times)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._sign * (self._times[self._places[place]] - self._start)
+
+
 @dataclass(frozen=True)
 class Extent:
     """The rows of a file, as times since the scene's start in the direction of its motion, sorted.
@@ -35,7 +52,7 @@ class Extent:
     ``begin`` and ``end`` are the first and the last instant of the scene, counted likewise.
     """
 
-    rows: tuple[Fraction, ...]
+    rows: Sequence[Fraction]
     begin: Fraction
     end: Fraction
     slack: Fraction
@@ -44,7 +61,7 @@ class Extent:
     def of(cls, scene: Scene, times: Sequence[Fraction], rung: Rung) -> Extent:
         start, elapsed = scene.clock.start, scene.clock.elapsed
         sign = 1 if elapsed[-1] >= 0 else -1
-        rows = tuple(sorted(sign * (t - start) for t in times))
+        rows = _Since(times, start, sign)
         end = sign * elapsed[-1]
         rounded = _CLOCK_STEPS * rung.unit_roundoff * (end + abs(start))
         # In less than half an interval no row of the file is missing.
@@ -55,10 +72,16 @@ class Extent:
     def reaches_end(self) -> bool:
         return self.rows[-1] >= self.end - self.slack
 
+    @cached_property
+    def inside(self) -> range:
+        """The places of the rows within the scene's span."""
+        first = bisect_left(self.rows, -self.slack)
+        return range(first, bisect_right(self.rows, self.end + self.slack))
+
     @property
-    def inside(self) -> tuple[Fraction, ...]:
-        """The rows within the scene's span."""
-        return tuple(t for t in self.rows if -self.slack <= t <= self.end + self.slack)
+    def first(self) -> Fraction:
+        """The first row within the span."""
+        return self.rows[self.inside[0]]
 
     @property
     def reaches_start(self) -> bool:
@@ -66,9 +89,11 @@ class Extent:
 
         Of two rows nobody can tell the interval.
         """
-        inside = self.inside
-        gaps = [b - a for a, b in pairwise(inside)] if len(inside) >= _FEWEST_ROWS else []
-        return bool(inside) and inside[0] <= max([self.begin, *gaps]) + self.slack
+        if not self.inside or self.first <= self.begin + self.slack:
+            return bool(self.inside)
+        inside = pairwise(self.rows[k] for k in self.inside)
+        is_known = len(self.inside) >= _FEWEST_ROWS
+        return is_known and any(self.first <= b - a + self.slack for a, b in inside)
 
     @property
     def is_one_state(self) -> bool:
@@ -84,7 +109,7 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
         yield f"the motion along {span} (one row is no trajectory)"
         return
     if not extent.reaches_start:
-        yield f"the first {float(extent.inside[0]):.6g} of {span}"
+        yield f"the first {float(extent.first):.6g} of {span}"
     if not extent.reaches_end:
         yield f"the last {float(extent.end - max(extent.rows[-1], Fraction(0))):.6g} of {span}"
 

@@ -88,21 +88,19 @@ class Drifts:
                     values = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
                 else:
                     values = self._balance(invariant, quick, ends)
-                scale = invariant.scale(self._largest)
-                scales = to_mpf(np.array([scale], dtype=object))
-                self._series[invariant.name].add(to_mpf(values / scale), scales[0])
+                self._series[invariant.name].add(values, invariant.scale(self._largest))
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
         """The drifts of all rows; if one is not finite under loads, NaN for all."""
         return [(invariant, self._errors(invariant)) for invariant in self._found]
 
     def _errors(self, invariant: Invariant) -> Errors:
-        values, scale = self._series[invariant.name].joined()
+        with precision():
+            values, scale = self._series[invariant.name].joined()
         if self._is_lost:
             values = np.full(len(values), np.nan)
-        unit = f"scale of {invariant.name}"
-        name = invariant.name
-        return Errors(name, unit, values, np.zeros(len(values)), {name: scale})
+        name, (in_mpf,) = invariant.name, to_mpf(np.array([scale], dtype=object))
+        return Errors(name, f"scale of {name}", values, np.zeros(len(values)), {name: in_mpf})
 
     def _widen(self, answer: Motion) -> None:
         rows = answer.at(decisive(self._scene, answer))

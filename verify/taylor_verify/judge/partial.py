@@ -184,7 +184,7 @@ def _omega_errors(compared: Comparison) -> tuple[Errors, Floats]:
                     "omega", "max|omega|", {"omega": distances}, zeros, {"omega": largest(size)}
                 )
             )["omega"]
-            sizes.add(size / scale, scale)
+            sizes.add(size, scale)
             radii.add(block.truth.radius, mpf(1))
     (errors,) = states.errors()
     errors = replace(errors, truth_radius=radii.joined()[0], is_state=False)

@@ -1,8 +1,8 @@
 """Errors of a long answer, of which only some rows are there at a time.
 
 An error is divided by a scale that is known when all rows have come, as the largest size of the motion is.
-Each block is divided by the scale so far, and by what is missing of the whole one at the end: a factor that
-is 1 unless the motion grows. So it costs eight bytes for each row, and an answer in one block nothing.
+All rows are divided by the scale of the first block, and at the end by what is missing of the whole one. So
+a row takes eight bytes, equal errors stay equal, and errors that came in one block are what they would be.
 """
 
 from __future__ import annotations
@@ -34,26 +34,26 @@ def joined(one: Motion, other: Motion) -> Motion:
 
 
 class Series:
-    """Numbers over a scale that does not shrink, in blocks, as float64."""
+    """Numbers of which blocks come one by one, over a scale of all of them, as float64."""
 
     def __init__(self) -> None:
         self._blocks: list[Floats] = []
-        self._scales: list[Any] = []
+        self._first: Any = None
+        self._scale: Any = None
 
     def add(self, values: Column, scale: Any) -> None:
-        """Take in numbers that are divided by ``scale`` already, the scale of all rows so far."""
-        self._blocks.append(in_doubles(values))
-        self._scales.append(scale)
+        """Take in further numbers, and the scale of all that have come."""
+        self._scale = scale
+        if not self._blocks:
+            self._first = scale
+        self._blocks.append(in_doubles(values / self._first))
 
     def joined(self) -> tuple[Floats, Any]:
         """All of them over the last scale, and that scale."""
-        last = self._scales[-1]
-        for block, scale in zip(self._blocks, self._scales, strict=True):
-            if scale != last:
-                block *= float(scale / last)
-        self._blocks = [np.concatenate(self._blocks)]
-        self._scales = [last]
-        return self._blocks[0], last
+        found = np.concatenate(self._blocks)
+        if self._first != self._scale:
+            found *= float(self._first / self._scale)
+        return found, self._scale
 
 
 class States:
@@ -74,8 +74,8 @@ class States:
             size = _larger(self._sizes.get(key), found.sizes[part])
             self._sizes[key] = size
             scales[part] = scale = or_one(size)
-            self._errors.setdefault(key, Series()).add(distances / scale, scale)
-            self._widths.setdefault(key, Series()).add(found.widths[part] / scale, scale)
+            self._errors.setdefault(key, Series()).add(distances, scale)
+            self._widths.setdefault(key, Series()).add(found.widths[part], scale)
         return scales
 
     def errors(self) -> list[Errors]:

@@ -140,7 +140,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     return replace(
         posed,
         scene=replace(scene, clock=clock),
-        times=tuple(t / posed.units.time for t in clock.elapsed),
+        times=Instants(len(instants), lambda: (t / posed.units.time for t in clock.elapsed)),
         given=replace(scene, body=body, initial=initial, clock=clock),
     )
 

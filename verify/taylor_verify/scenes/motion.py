@@ -59,6 +59,8 @@ class Clock:
     @cached_property
     def elapsed(self) -> tuple[Fraction, ...]:
         """Time since the initial state. The equations are autonomous: this alone enters them."""
+        if not self.start:
+            return tuple(self.instants)
         return tuple(instant - self.start for instant in self.instants)
 
 

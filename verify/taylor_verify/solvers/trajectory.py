@@ -83,6 +83,9 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self.rows(range(self.count))[quantity]
 
+    def __contains__(self, quantity: object) -> bool:
+        return any(quantity == name for name in self)
+
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
