@@ -144,6 +144,9 @@ class _Read:
     motion: float
     others: tuple[Reading, ...]
 
+    def is_explained(self, plain: _Read, noise: float) -> bool:
+        return self.error <= max(noise, EXPLAINS * max(plain.error, self.motion))
+
 
 @dataclass(frozen=True)
 class _Fit:
@@ -182,8 +185,7 @@ class _Fit:
         if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
             return False
         return all(
-            read.error <= max(noise, EXPLAINS * max(plain.groups[group].error, read.motion))
-            for group, read in self.groups.items()
+            read.is_explained(plain.groups[group], noise) for group, read in self.groups.items()
         )
 
 
@@ -210,7 +212,7 @@ class _Search:
         noise = self.noise
         if self.plain.worst <= noise / EXPLAINS:
             return Conventions((), World(self.scene), {})
-        tried = [fit for world in self.worlds() for fit in self.fits(world)]
+        tried = (fit for world in self.worlds() for fit in self.fits(world))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, noise))]
         return _conventions(self.plain, *_simplest(fits, noise))
 
@@ -254,7 +256,10 @@ class _Search:
         return tracked, solution(tracked)
 
     def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[_Fit]:
-        """The best readings in a world under each renaming of axes."""
+        """The best readings in a world under each renaming of axes.
+
+        Without ``frames``, under those that leave no group unexplained: no other one is the finding.
+        """
         given, exact = self.solution(world)
         reach = _MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
         elapsed = given.clock.elapsed
@@ -265,13 +270,17 @@ class _Search:
             near, truth = [], {}
         floats = _as_floats(_with_omega(given, truth)) if near else {}
         columns = vector_columns(next(iter(self.values))) if self._is_one_vector else ()
-        return [
-            _Fit(
-                replace(world, frames=renamed, axes_words=renamed.words(columns)),
-                {group: self._best(group, floats, near, renamed) for group in self.values},
-            )
-            for renamed in frames or self.frames
-        ]
+        fits = []
+        for renamed in frames or self.frames:
+            groups: dict[str, _Read] = {}
+            for group in self.values:
+                groups[group] = read = self._best(group, floats, near, renamed)
+                if not frames and not read.is_explained(self.plain.groups[group], self.noise):
+                    break
+            else:
+                words = renamed.words(columns)
+                fits.append(_Fit(replace(world, frames=renamed, axes_words=words), groups))
+        return fits
 
     @property
     def _is_one_vector(self) -> bool:
@@ -349,22 +358,18 @@ def _distance(group: str, got: Floats, right: Floats) -> float:
 
     Of a frame turned by a small angle, that angle. Infinite where anything is not finite.
     """
-    flat = (got - right).reshape(len(right), -1)
-    if not np.all(np.isfinite(flat)):
+    largest = _largest(got - right)
+    if not largest < inf:
         return inf
-    size = np.max(np.linalg.norm(right.reshape(len(right), -1), axis=1)) or 1.0
-    if group in _ATTITUDES:
-        size = np.sqrt(2)
-    error = float(np.max(np.linalg.norm(flat, axis=1)) / size)
+    size = np.sqrt(2) if group in _ATTITUDES else _largest(right) or 1.0
     # Beyond doubles both may be infinite: no reading is right then.
-    return error if error == error else inf
+    return float(largest / size) if size < inf else inf
 
 
-def _float(value: Fraction | float) -> float:
-    try:
-        return float(value)
-    except OverflowError:
-        return inf
+def _largest(rows: Floats) -> float:
+    """The largest norm of all rows."""
+    flat = rows.reshape(len(rows), -1)
+    return float(np.sqrt(np.einsum("ij,ij->i", flat, flat).max()))
 
 
 # The findings.

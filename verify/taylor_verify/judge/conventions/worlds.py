@@ -7,6 +7,7 @@ with it the one row that says whether the file begins at the scene's initial sta
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -76,17 +77,24 @@ def _clocks(
 ) -> list[tuple[Fraction, Fraction, tuple[str, ...]]]:
     """Units of time, each with the file's origin and with its first row at the scene's own."""
     start, instants = scene.clock.start, scene.clock.instants
-    first = min(times) if instants[-1] > start else max(times)
+    first = min(times[0], times[-1]) if instants[-1] > start else max(times[0], times[-1])
     clocks: list[tuple[Fraction, Fraction, tuple[str, ...]]] = []
     for scale, unit in ((Fraction(1), ""), *_SCALES):
         words = (f"t counts {unit}",) if unit else ()
         clocks.append((scale, Fraction(0), words))
-        if any(scale * t == start for t in times):
+        if _is_among(start / scale, times):
             continue
         for origin in dict.fromkeys((start, instants[0])):
             if shift := scale * first - origin:
                 clocks.append((scale, shift, (*words, _late(shift))))
     return clocks
+
+
+def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
+    """Return True if a time is one of strictly monotonic ones."""
+    sign = 1 if times[-1] >= times[0] else -1
+    place = bisect_left(times, sign * time, key=lambda t: sign * t)
+    return place < len(times) and times[place] == time
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
