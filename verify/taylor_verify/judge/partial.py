@@ -23,8 +23,9 @@ from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import angular_velocity
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION
+from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
@@ -41,7 +42,9 @@ _GUARD_DIGITS: Final = 6
 _BLOCKS: Final = {"momentum": "omega"}
 
 
-def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
+def partial_judgement(
+    problem: Problem, solver: Recorded, tolerances: Tolerances = NO_TOLERANCES
+) -> Judgement:
     """The verdicts on what the answer has. Raises Unsettled where there is no truth.
 
     The problem's scenes track what the answer has of attitude and centre, and no more.
@@ -53,14 +56,15 @@ def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
     filled |= {name: rows for name, rows in truth.quantities.items() if name not in has}
     apart: list[Gated] = []
     if "omega" not in truth.quantities and "omega" in own:
-        apart.append(_angular_velocity(problem, solver, truth))
+        apart.append(_angular_velocity(problem, solver, truth, tolerances))
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
-        apart += _states_apart(problem, solver, truth, filled)
+        apart += _states_apart(problem, solver, truth, filled, tolerances)
         filled = {n: rows for n, rows in filled.items() if n not in ("attitude", "centre")}
         problem = replace(problem, given=replace(given, track=frozenset()))
-    whole = judgement(problem, solver, replace(solver, quantities=filled).solve(problem))
+    answer = replace(solver, quantities=filled).solve(problem)
+    whole = judgement(problem, solver, answer, tolerances=tolerances)
     if whole.record is None:
         return whole
     sound = _rows_resting_on(problem, truth, has)
@@ -89,7 +93,11 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
 
 
 def _states_apart(
-    problem: Problem, solver: Recorded, truth: Motion, filled: Quantities
+    problem: Problem,
+    solver: Recorded,
+    truth: Motion,
+    filled: Quantities,
+    tolerances: Tolerances,
 ) -> list[Gated]:
     """Attitude and centre against the truth, and nothing that is conserved."""
     given, rung = problem.given, problem.rung
@@ -101,7 +109,7 @@ def _states_apart(
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
                 terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
-                rows.append(_row(problem, solver, errors, attainable, terms))
+                rows.append(_row(problem, solver, errors, attainable, terms, tolerances))
     return rows
 
 
@@ -117,13 +125,15 @@ class _Omega:
     attainable: Floats
 
 
-def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gated:
+def _angular_velocity(
+    problem: Problem, solver: Recorded, truth: Motion, tolerances: Tolerances
+) -> Gated:
     with mp.workprec(working_bits(problem.rung.bits)):
         exact = _omega(problem, truth)
         values = norms(solver.quantities["omega"] - exact.rows) / exact.scale
         errors = Errors("omega", "max|omega|", values, truth.radius, {"omega": exact.scale})
         terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
-        row, gate = _row(problem, solver, errors, exact.attainable, terms)
+        row, gate = _row(problem, solver, errors, exact.attainable, terms, tolerances)
         digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
         shift = angular_shift(problem.given, solver.quantities["omega"], digits)
         if shift is None:
@@ -135,9 +145,14 @@ def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gate
 
 
 def _row(
-    problem: Problem, solver: Recorded, errors: Errors, attainable: Floats, terms: Reason
+    problem: Problem,
+    solver: Recorded,
+    errors: Errors,
+    attainable: Floats,
+    terms: Reason,
+    tolerances: Tolerances,
 ) -> Gated:
-    finding = judge(errors, attainable, terms)
+    finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
     instants, worst, values = problem.given.clock.instants, finding.worst, errors.values
     verdict = Verdict(
         scene=problem.scene.name,
@@ -152,7 +167,8 @@ def _row(
         final=float(values[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
-        bound=float(GATE_FACTOR * attainable[worst]),
+        bound=finding.bound,
+        tolerance=finding.tolerance,
         reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

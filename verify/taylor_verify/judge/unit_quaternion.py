@@ -6,7 +6,8 @@ rounds q in every step and takes none of it back leaves, after N steps, no more 
     | |q| - 1 |  <=  u N,
 
 all roundings going one way. The row is there only where the length is beyond ten times that: then it
-fails. A quaternion that is a unit one to roundoff needs no row to say so.
+fails. A quaternion that is a unit one to roundoff needs no row to say so. A tolerance for the attitude
+takes the place of the ten times.
 """
 
 from __future__ import annotations
@@ -29,11 +30,12 @@ _SHOWN: Final = 1e-4
 
 
 def unit_quaternion(
-    quaternions: np.ndarray[Any, Any], base: Floor
+    quaternions: np.ndarray[Any, Any], base: Floor, tolerance: float | None = None
 ) -> tuple[Errors, Floats, Finding] | None:
     """The errors of length, what is attainable, and the failure; None where q is a unit quaternion.
 
-    ``quaternions`` (n, 4) are numbers of mpmath; one that is not finite is the attitude's failure.
+    ``quaternions`` (n, 4) are numbers of mpmath; one that is not finite is the attitude's failure. With a
+    ``tolerance`` the length may be off by the tolerance.
     """
     lengths = norms(quaternions)
     if not all(mp.isfinite(length) for length in lengths):
@@ -53,7 +55,7 @@ def unit_quaternion(
         round(steps[worst]),
         lengths=" to ".join(extent),
     )
-    finding = judge(errors, attainable, Reason(floor=terms))
+    finding = judge(errors, attainable, Reason(floor=terms), tolerance)
     return (errors, attainable, finding) if finding.status is Status.FAIL else None
 
 
