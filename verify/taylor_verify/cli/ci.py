@@ -120,8 +120,8 @@ def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) ->
         found = "no row was compared"
     else:
         undecided = len(comparison.undecided)
-        found = f"{undecided} rows not comparable" if undecided else "no regression"
-    return f"decided by the baseline {file} alone: {found} ({others} rows are no pass by their own bound)"
+        found = f"{undecided} not comparable" if undecided else "no regression"
+    return f"decided by the baseline {file} alone: {found}; no pass by their own bounds: {others} rows"
 
 
 def _write_junit(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.cli.answer import WrongCall
 
@@ -32,13 +32,14 @@ def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
     if text is None:
         return NO_TOLERANCES
     try:
-        return tolerances(_by_name(text) if "=" in text else _number(text), scenes, _PLACE)
+        asked: Any = _by_name(text) if "=" in text else _number(text)
+        return tolerances(asked, scenes, _PLACE)
     except ValueError as error:
         raise WrongCall(str(error)) from error
 
 
-def _by_name(text: str) -> dict[str, float]:
-    found: dict[str, float] = {}
+def _by_name(text: str) -> dict[str, Any]:
+    found: dict[str, Any] = {}
     for part in text.split(","):
         name, equals, value = (word.strip() for word in part.partition("="))
         if not equals or name in found:
@@ -48,15 +49,11 @@ def _by_name(text: str) -> dict[str, float]:
     return found
 
 
-def _number(text: str) -> float:
-    """Return the number in a text as a double. Raises ValueError for what is no tolerance."""
-    from taylor_verify.judge.tolerances import EXPECTED
+def _number(text: str) -> float | str:
+    """Return the number in a text as a double; the text itself, to be refused as it is, for any other."""
     from taylor_verify.scenes.table import exact_number
 
     try:
-        exact = exact_number(text)
-        if not 0 < float(exact) < 1:
-            raise ValueError(EXPECTED)
-        return float(exact)
-    except (OverflowError, ValueError) as error:
-        raise ValueError(f"expected {EXPECTED}, got {text!r} @ {_PLACE}") from error
+        return float(exact_number(text)) or text
+    except (OverflowError, ValueError):
+        return text

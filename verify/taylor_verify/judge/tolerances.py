@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Tolerance = float | Mapping[str, float] | None
 """What a caller gives: a number for all quantities, or a number for each of some."""
 
-EXPECTED: Final = "a positive number below 1, the error of the answer zero"
+_EXPECTED: Final = "a positive number below 1 (the error of the answer zero)"
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ def tolerances(
 ) -> Tolerances:
     """Return the tolerances that a caller asks for in some scenes; Tolerances stay as they are.
 
-    Raises ValueError for a name that is no quantity of these scenes, and for a tolerance that is no
-    positive number below 1.
+    Raises ValueError, with every fault, for a name that is no quantity of these scenes and for a tolerance
+    that is no positive number below 1.
     """
     if isinstance(asked, Tolerances):
         return asked
@@ -56,20 +56,26 @@ def tolerances(
         return NO_TOLERANCES
     if not isinstance(asked, Mapping):
         return Tolerances(every=_tolerance(asked, place))
-    known = _quantities(scenes)
+    known, faults = _quantities(scenes), []
     unknown = [str(name) for name in asked if name not in known]
     if unknown or not asked:
         got = ", ".join(unknown) or "nothing"
-        raise ValueError(f"expected some of {', '.join(known)}, got {got} @ {place}")
-    return Tolerances(
-        each=tuple(sorted((name, _tolerance(value, place)) for name, value in asked.items()))
-    )
+        faults.append(f"expected some of {', '.join(known)}, got {got} @ {place}")
+    each: dict[str, float] = {}
+    for name, value in asked.items():
+        try:
+            each[str(name)] = _tolerance(value, f"{place} {name}")
+        except ValueError as error:
+            faults.append(str(error))
+    if faults:
+        raise ValueError("\n".join(faults))
+    return Tolerances(each=tuple(sorted(each.items())))
 
 
 def _tolerance(value: Any, place: str) -> float:
-    number = positive(value, place, EXPECTED)
+    number = positive(value, place, _EXPECTED)
     if not number < 1:
-        raise ValueError(f"expected {EXPECTED}, got {brief(value)} @ {place}")
+        raise ValueError(f"expected {_EXPECTED}, got {brief(value)} @ {place}")
     return number
 
 
