@@ -7,6 +7,7 @@ from typing import Final
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.quantities import STATES
+from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.faults import brief
@@ -104,10 +105,19 @@ def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
         yield "against", f"its value on {against}" if verdict.is_conserved else against
     if verdict.bound is not None:
         yield "bound", f"{_short(verdict.bound)}{_unit(verdict)}{_times_attainable(verdict)}"
-    yield "because", verdict.because
+    yield from _because(verdict.reason)
     yield "mend", _MEND.get(verdict.verdict, "")
     if verdict.verdict is Status.UNAVAILABLE:
         yield "mend", _MEND_UNAVAILABLE.get(verdict.outcome, "")
+
+
+def _because(reason: Reason) -> Iterator[tuple[str, str]]:
+    """The reason; the arithmetic of a bound that a tolerance has replaced is left out."""
+    if reason.tolerance is None:
+        yield "because", str(reason)
+        return
+    yield "because", "; ".join(filter(None, [reason.conclusion, reason.tolerance.sentence()]))
+    yield "time", reason.shift.sentence() if reason.shift else ""
 
 
 def _times_attainable(verdict: Verdict) -> str:

@@ -121,7 +121,9 @@ def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) ->
     else:
         undecided = len(comparison.undecided)
         found = f"{undecided} not comparable" if undecided else "no regression"
-    return f"decided by the baseline {file} alone: {found}; no pass by their own bounds: {others} rows"
+    return (
+        f"decided by the baseline {file} alone: {found}; no pass by their own bounds: {others} rows"
+    )
 
 
 def _write_junit(
