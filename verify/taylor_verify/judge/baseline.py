@@ -103,7 +103,7 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
 
 
 def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
-    """Return a comparison that decides alone, whatever the gates of the rows made say.
+    """Return the comparison ``held``, made to decide alone, whatever the gates of the rows made say.
 
     A row that failed and has no finite error is a regression, though the baseline has none either. A row
     that shows nothing cannot be compared: it is undecided, vacuous or refused, or it fails and is new.

@@ -45,10 +45,10 @@ NO_TOLERANCES: Final = Tolerances()
 def tolerances(
     asked: Tolerances | Tolerance, scenes: Iterable[Scene], place: str = "tolerance"
 ) -> Tolerances:
-    """Return the tolerances that a caller asks for in some scenes; Tolerances stay as they are.
+    """Return the tolerances that are ``asked`` for in some scenes; Tolerances stay as they are.
 
-    Raises ValueError, with every fault, for a name that is no quantity of these scenes and for a tolerance
-    that is no positive number below 1.
+    Raises ValueError, with every fault and its ``place``, for a name that is no quantity of these scenes and
+    for a tolerance that is no positive number below 1.
     """
     if isinstance(asked, Tolerances):
         return asked
