@@ -24,7 +24,9 @@ from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import GATE_FACTOR, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.tolerances import tolerances
+from taylor_verify.publish.page import counts
 from taylor_verify.pytest_plugin import SolverGate
+from taylor_verify.records import store
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
@@ -316,3 +318,18 @@ def test_the_expected_verdicts_are_those_of_the_ordinary_bounds() -> None:
     found = compare_with_expectations([failed])
     assert found.mismatches == ()
     assert found.exit_status([failed]) == 1
+
+
+def test_a_page_says_that_a_tolerance_has_judged() -> None:
+    """The pages of a report explain the bounds of the arithmetic: rows without them are counted."""
+    (row, *others) = taylor_verify.run("euler/rest").verdicts
+    assert "tolerance" not in counts([row, *others])
+    tolerated = replace(row, tolerance=1e-8)
+    assert "**1** of them were judged by a tolerance" in counts([tolerated, *others])
+
+
+def test_what_is_stored_of_an_ordinary_row_names_no_tolerance() -> None:
+    """Published rows stay what they were; a row with a tolerance has it."""
+    (row, *_) = taylor_verify.run("euler/rest").verdicts
+    assert "tolerance" not in store.row(row)
+    assert store.row(replace(row, tolerance=1e-8))["tolerance"] == 1e-8

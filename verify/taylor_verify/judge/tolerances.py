@@ -47,8 +47,8 @@ def tolerances(
 ) -> Tolerances:
     """Return the tolerances that are ``asked`` for in some scenes; Tolerances stay as they are.
 
-    Raises ValueError, with every fault and its ``place``, for a name that is no quantity of these scenes and
-    for a tolerance that is no positive number below 1.
+    Raises ValueError, with every fault and its ``place``, for a name that is no quantity of these scenes
+    and for a tolerance that is no positive number below 1.
     """
     if isinstance(asked, Tolerances):
         return asked
