@@ -84,12 +84,15 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     that, roundings drawn anew may explain it.
     """
     rows = paired(_compared(baseline), _compared(made))
-    regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
+    # This row is there only where it fails: of a sound run neither baseline nor result has one.
+    mended = [verdict for verdict in rows.missing if verdict.quantity == UNIT_QUATERNION]
+    gone = [verdict for verdict in rows.missing if verdict not in mended]
+    regressions = [_row(verdict, "this row", "none") for verdict in gone]
     undecided: list[Departure] = []
-    # This row is there only where it fails: of a sound run no baseline has one.
     spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
     other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
     changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
+    changes += [_row(verdict, "a row that fails", "none: it is mended") for verdict in mended]
     changes += _machines(rows.absent)
     for old, new in rows.shared:
         other = list(_other_question(old, new))
