@@ -62,6 +62,15 @@ def test_a_quaternion_that_loses_its_length_is_a_regression() -> None:
     assert hold([row()], [row(), row(quantity="T")]).regressions == ()
 
 
+def test_a_quaternion_that_has_its_length_again_is_no_regression() -> None:
+    """The row is there only where it fails: that it is gone is told, and fails nothing."""
+    lost = row(errors=50.0, verdict=Status.FAIL, quantity="unit quaternion")
+    found = hold([row(), lost], [row()])
+    assert (found.regressions, found.status) == ((), 0)
+    (change,) = found.changes
+    assert "got none: it is mended" in str(change)
+
+
 # Errors.
 
 

@@ -14,10 +14,11 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.demand import demands
+from taylor_verify.demand import demanded_rows
 from taylor_verify.explanation import explanation
 from taylor_verify.judge.convergence import sweep
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
@@ -224,24 +225,27 @@ def test_a_tolerance_a_target_and_a_step_are_positive_numbers(
         recommend(SCENE, number)
     with pytest.raises(ValueError, match=r"expected a positive number, got .* @ steps\[1\]"):
         sweep(SCENE, lambda problem, step: still(problem), [0.1, number])
+    scene = taylor_verify.load(SCENE)
     if number is not None:  # which asks for no tolerance
-        with pytest.raises(ValueError, match=r"expected a positive number, got .* @ tolerance"):
-            demands(judgement, number)
-    with pytest.raises(ValueError, match=r"expected a positive number, got .* @ tolerance"):
-        demands(judgement, {"omega": number})
+        with pytest.raises(ValueError, match=r"expected a positive number .*, got .* @ tolerance"):
+            tolerances(number, [scene])
+    with pytest.raises(
+        ValueError, match=r"expected a positive number .*, got .* @ tolerance omega"
+    ):
+        tolerances({"omega": number}, [scene])
 
 
 @pytest.mark.parametrize("number", [Fraction(1, 1000), Decimal("0.001"), np.float64(1e-3)])
-def test_a_tolerance_may_be_a_number_of_any_kind(number: Any, judgement: Judgement) -> None:
+def test_a_tolerance_may_be_a_number_of_any_kind(number: Any) -> None:
     """Fractions, Decimals and NumPy's numbers are tolerances."""
-    assert {demand.tolerance for demand in demands(judgement, number)} == {1e-3}
+    assert tolerances(number, []).of("omega") == 1e-3
 
 
 @pytest.mark.parametrize("only", [3, b"omega", [1], [None]])
 def test_only_takes_names(only: Any, judgement: Judgement) -> None:
     """What is no name is refused before it is compared with names."""
     with pytest.raises(ValueError, match=r"expected names of quantities, got .* @ only"):
-        demands(judgement, None, only)
+        demanded_rows(judgement, only)
 
 
 @pytest.mark.parametrize(

@@ -449,8 +449,10 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
     assert main(call) == 0
     assert is_green(Path("r.xml").read_text(encoding="utf-8"))
     capsys.readouterr()
+    # A file of another name is compared all the same: each run writes one.
     Path("base.json").write_text(printed.replace("mine.csv", "other.csv"), encoding="utf-8")
-    assert main(call) == 3  # the rows of another file say nothing of this one
+    assert main(call) == 0
+    assert "the baseline is of the file other.csv, and this is mine.csv" in capsys.readouterr().err
     Path("base.json").write_text(printed, encoding="utf-8")
     capsys.readouterr()
     trajectory(short, capsys, math.degrees(1.0))
@@ -654,9 +656,11 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     Path("with space").mkdir()
     shutil.copy(short, "other.toml")
 
+    inputs_of_the_step = ("SCENES", "RUNG", "SOLVER", "BASELINE", "GATE", "TOLERANCE")
+
     def step(**given: str) -> int:
         files = {"GITHUB_OUTPUT": "output", "GITHUB_STEP_SUMMARY": "summary.md"}
-        empty = dict.fromkeys(("SCENES", "RUNG", "SOLVER", "BASELINE"), "")
+        empty = dict.fromkeys(inputs_of_the_step, "")
         environment = {
             **os.environ,
             "PYTHONPATH": str(ROOT / "verify"),
@@ -684,6 +688,9 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     assert step(SCENES="short.toml", RUNG="f32", BASELINE=str(baseline), SOLVER="taylor") == 1
     assert not is_green(Path(results["junit"]).read_text(encoding="utf-8"))
     assert Path("summary.md").read_text(encoding="utf-8").count("## taylor-verify") == 2
+    assert step(SCENES="short.toml", TOLERANCE="1e-19") == 1
+    assert step(SCENES="short.toml", TOLERANCE="omega=1e-8,T=1e-8", GATE="bound") == 0
+    assert step(SCENES="short.toml", GATE="baseline") == 2
 
 
 def test_remarks_of_the_same_row_are_all_told() -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from taylor_verify.cli import main
+from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.solvers import entrant
@@ -66,6 +67,30 @@ def test_a_missing_package_is_exit_2_with_the_command(
     assert last_line(told.out).startswith("nothing was judged: ")
     assert command in last_line(told.out)
     assert command in told.err
+
+
+def test_a_missing_package_is_a_cause_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program reads it in a word; a rung that a scene does not fit has another."""
+    without_scipy(monkeypatch)
+    (verdict,) = run(SCENE, "scipy:DOP853").verdicts
+    (remark,) = verdict.reason.remarks
+    assert (remark.cause, verdict.outcome) == (Cause.MISSING_PACKAGE, Outcome.NO_PACKAGE.value)
+    (verdict,) = run(SCENE, "geometric:splitting?step=0.1", "f128").verdicts
+    assert [each.cause for each in verdict.reason.remarks] == [Cause.NOT_POSED]
+
+
+@pytest.mark.parametrize(("is_terminal", "times"), [(True, 0), (False, 1)])
+def test_on_a_terminal_the_reason_is_said_once(
+    is_terminal: bool, times: int, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """Both streams are read together there, however the text is folded; a pipe has it on stderr too."""
+    without_scipy(monkeypatch)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: is_terminal)
+    monkeypatch.setenv("COLUMNS", "50")
+    assert main(["run", SCENE, "--solver", "scipy:DOP853"]) == 2
+    told = capsys.readouterr()
+    assert told.out.count("nothing was judged") == 1
+    assert told.err.count("nothing was judged") == times
 
 
 def test_an_environment_that_cannot_be_made_is_a_missing_package(

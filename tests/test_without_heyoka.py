@@ -103,6 +103,18 @@ def test_run_names_the_command_that_installs_it(scenes: list[str], tmp_path: Pat
     assert err.splitlines()[-1] == f"taylor-verify: {why}"
 
 
+def test_the_plugin_advises_to_install_it(tmp_path: Path) -> None:
+    """A missing package is no matter of the rung."""
+    (tmp_path / "test_mine.py").write_text(
+        "def test_it(verify_solver):\n    verify_solver('euler/rest', 'taylor')\n"
+    )
+    done = lacking(tmp_path, HEYOKA, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_mine.py")
+    assert done.returncode == 1
+    assert f"because  expected heyoka, got no such package: {INSTALL}" in done.stdout
+    assert "mend     install the package that is missing" in done.stdout
+    assert "take another" not in done.stdout
+
+
 def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
     """One that cannot be imported is named with the reason, and the same command mends it."""
     (tmp_path / "heyoka.py").write_text("raise ImportError('no libLLVM')\n")

@@ -17,6 +17,7 @@ from taylor_verify.batch import judging
 from taylor_verify.batch import store as module
 from taylor_verify.batch.job import Job, jobs
 from taylor_verify.batch.store import unfinished
+from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.run import run
 from taylor_verify.solvers.solver import Callback
 
@@ -58,6 +59,8 @@ def test_what_is_kept_is_what_was_judged(cache: Path) -> None:
             Job("euler/rest", job.solver, job.rungs),
             Job(job.scene, "taylor?tol=1e-9", job.rungs),
             Job(job.scene, job.solver, ("f32",)),
+            Job(job.scene, job.solver, job.rungs, Tolerances(every=1e-8)),
+            Job(job.scene, job.solver, job.rungs, Tolerances(each=(("omega", 1e-8),))),
         ):
             assert store.recall(other) is None
 

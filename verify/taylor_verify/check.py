@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.scenes.precision import Rung
     from taylor_verify.scenes.scene import Scene
@@ -20,6 +21,7 @@ def check(
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
+    tolerance: Tolerances | Tolerance = None,
 ) -> Judgement:
     """Judge a solver of one's own, or a trajectory file, on a scene.
 
@@ -39,6 +41,8 @@ def check(
     partial
         Accept a file that lacks tracked columns or covers a part of the span: its row `complete` is vacuous
         and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.
+    tolerance
+        The error that is allowed, as that of `run`.
 
     Returns
     -------
@@ -51,13 +55,13 @@ def check(
     scenes.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
-        For what is neither a callable nor a file, and for a name that is no rung.
+        For what is neither a callable nor a file, for a name that is no rung, and for a tolerance as `run`.
     """
     if callable(solve_or_file):
         from taylor_verify.run import run
         from taylor_verify.solvers.solver import Callback
 
-        return run(scene, Callback(solve_or_file), rung)
+        return run(scene, Callback(solve_or_file), rung, tolerance)
     if not isinstance(solve_or_file, str | PathLike):
         kind = type(solve_or_file).__name__
         raise ValueError(
@@ -65,9 +69,11 @@ def check(
             "(write it to a file, or return it from a callable)"
         )
     from taylor_verify.judge.answer import judge_file
+    from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reader import as_scene
     from taylor_verify.solvers.file import read
 
-    file = read(solve_or_file)
-    return judge_file(file, as_scene(scene), rung_named(rung), accept_conventions, partial)
+    file, scene = read(solve_or_file), as_scene(scene)
+    asked = tolerances(tolerance, [scene])
+    return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)

@@ -11,8 +11,8 @@
 solver, ``"process:./my_simulator"`` among them, or a Solver. Both fixtures and the marker take
 
     rung       the precision of the arithmetic, "f64"; the marker also several
-    tolerance  what a coarse method is allowed, in place of what rounding leaves: one number for all
-               quantities, or a number for each of some
+    tolerance  the error that a coarse method is allowed, in place of what rounding leaves: one number for
+               all quantities, or a number for each of some, as in `taylor_verify.run`
     only       the quantities that are judged, or "conserved" for all that are
 
 and the fixtures return the Judgement. Whatever is not a pass fails the test, undecided and vacuous
@@ -35,8 +35,9 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, final
 import pytest
 
 if TYPE_CHECKING:
-    from taylor_verify.demand import Only, Tolerance
+    from taylor_verify.demand import Only
     from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.judge.tolerances import Tolerance
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.solver import Solver
 
@@ -75,18 +76,18 @@ class SolverGate:
         only: Only = None,
     ) -> Judgement:
         __tracebackhide__ = True
-        from taylor_verify.demand import demands, report
+        from taylor_verify.demand import demanded_rows, is_met, report
 
-        judgement, raised = _judgement(scene, solve, rung)
+        judgement, raised = _judgement(scene, solve, rung, tolerance)
         self.judged += 1
         try:
-            demanded = demands(judgement, tolerance, only)
+            demanded = demanded_rows(judgement, only)
         except ValueError as fault:
             raise pytest.fail.Exception(str(fault)) from None
-        is_blind = all(demand.is_conserved for demand in demanded)
+        is_blind = all(verdict.is_conserved for verdict in demanded)
         if is_blind:
             self.notes.append((_NOTE, f"{judgement.verdicts[0].scene} on {rung}: {_BLIND}"))
-        if not demanded or not all(demand.is_met for demand in demanded):
+        if not demanded or not all(is_met(verdict) for verdict in demanded):
             told = report(judgement, demanded)
             raise pytest.fail.Exception(f"{told}\n{_BLIND}" if is_blind else told) from raised
         return judgement
@@ -150,10 +151,11 @@ def verify_scene(request: pytest.FixtureRequest) -> SceneGate:
 
 
 def _judgement(
-    scene: Scene | Path | str, solve: Solve, rung: str
+    scene: Scene | Path | str, solve: Solve, rung: str, tolerance: Tolerance
 ) -> tuple[Judgement, BaseException | None]:
     """The judgement, and what a callable raised if it did: its traceback is worth more than a row."""
     __tracebackhide__ = True
+    from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.run import run
     from taylor_verify.scenes.faults import Refused
     from taylor_verify.scenes.precision import rung as rung_named
@@ -183,10 +185,10 @@ def _judgement(
             solver = Callback(answer, name=name)
         else:
             raise ValueError(f"expected a callable, a Solver or a name of one, got {solve!r}")
-        exact_rung = rung_named(rung)
+        exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
     except (Refused, ValueError) as fault:
         raise pytest.fail.Exception(str(fault)) from None
-    judgement = run(scene, solver, exact_rung)
+    judgement = run(scene, solver, exact_rung, asked)
     return judgement, raised[0] if raised else None
 
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.scenes.precision import Rung
     from taylor_verify.scenes.scene import Scene
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def run(
-    scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
+    scene: Scene | str | PathLike[str],
+    solver: Solver | str = "taylor",
+    rung: Rung | str = "f64",
+    tolerance: Tolerances | Tolerance = None,
 ) -> Judgement:
     """Solve one scene on one rung and judge the answer.
 
@@ -29,6 +33,10 @@ def run(
         A Solver, or a name such as ``taylor?tol=1e-9`` or ``process:./mine``.
     rung
         A Rung or ``f32 f64 f80 f128 mpN``.
+    tolerance
+        The error that is allowed, in place of the bounds that follow from the arithmetic: a number for all
+        quantities, or a number by quantity (``{"omega": 1e-8}``; the others keep their bounds). It is
+        relative, and radians for the attitude.
 
     Returns
     -------
@@ -41,13 +49,15 @@ def run(
     scenes.faults.Refused
         For a scene that cannot be read.
     ValueError
-        For a name that is no solver or no rung.
+        For a name that is no solver or no rung, and for a tolerance that is no positive number below 1 or
+        is given for a quantity that the scene does not have.
     """
     from dataclasses import replace
 
     from taylor_verify.judge.costs import SOLVING, Costs, total
     from taylor_verify.judge.initial import with_initial
     from taylor_verify.judge.judgement import judgement, unjudged
+    from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.records.reason import Cause
     from taylor_verify.records.status import Status
     from taylor_verify.scenes.precision import rung as rung_named
@@ -56,18 +66,20 @@ def run(
     from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
     scene, solver, rung = as_scene(scene), as_solver(solver), rung_named(rung)
+    asked = tolerances(tolerance, [scene])
     problem = _posed(scene, solver, rung)
     if isinstance(problem, Trajectory):
         is_refused = problem.outcome is Outcome.NOT_REPRESENTABLE
         status = Status.REFUSED if is_refused else Status.UNAVAILABLE
-        why, cause = problem.detail, Cause.NOT_POSED
-        return unjudged(scene, solver, rung, status, why, cause, problem.outcome)
+        is_missing = problem.outcome is Outcome.NO_PACKAGE
+        cause = Cause.MISSING_PACKAGE if is_missing else Cause.NOT_POSED
+        return unjudged(scene, solver, rung, status, problem.detail, cause, problem.outcome)
     costs = Costs()
     began = perf_counter()
     with costs.of(SOLVING):
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
-    found = judgement(problem, solver, trajectory, seconds)
+    found = judgement(problem, solver, trajectory, seconds, asked)
     found = with_initial(found, float(problem.given.clock.start))
     return replace(found, costs=total([costs.seconds, found.costs]))
 

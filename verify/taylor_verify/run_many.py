@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import Progress
     from taylor_verify.batch.selection import Selection
+    from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.scenes.scene import Scene
 
 
@@ -24,6 +25,7 @@ def run_many(
     resume: bool = False,
     out: str | PathLike[str] | None = None,
     progress: Progress | None = None,
+    tolerance: Tolerances | Tolerance = None,
 ) -> Judgements:
     """Solve many scenes on some rungs and judge the answers.
 
@@ -53,6 +55,8 @@ def run_many(
     progress
         Called as ``progress(finished, total, job)`` at the start, with None for the job, and as each scene
         ends. ``str(job)`` names the scene and its rungs.
+    tolerance
+        The error that is allowed, as that of `run`. A name is that of a quantity of some of the scenes.
 
     Returns
     -------
@@ -65,7 +69,7 @@ def run_many(
     scenes.faults.Refused
         For scenes that cannot be read, with every fault of all of them.
     ValueError
-        For what is no solver, no rung, or no number of processes.
+        For what is no solver, no rung, no number of processes or no tolerance.
     batch.lock.Occupied
         If another run writes to ``out``.
     batch.failure.Failed
@@ -88,6 +92,7 @@ def run_many(
     from taylor_verify.batch.lock import alone_in
     from taylor_verify.batch.report import ReportNotWritten, write_report
     from taylor_verify.batch.selection import Selection, select
+    from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.solvers.registry import check_name
 
     if jobs is not None and not jobs >= 1:
@@ -98,9 +103,10 @@ def run_many(
     if isinstance(scenes, Selection) and rungs is not None:
         raise ValueError("expected rungs within the Selection, got others besides @ rungs")
     selection = scenes if isinstance(scenes, Selection) else select(scenes, rungs)
+    tolerated = tolerances(tolerance, selection.scenes)
     folder = Path(out) if out is not None else None
     with alone_in(folder) if folder is not None else nullcontext():
-        asked = selection.jobs(solver)
+        asked = selection.jobs(solver, tolerated)
         judgements = judge_all(asked, progress, jobs, executor, resume, folder)
         results = Judgements(tuple(judgements), selection, solver)
         if folder is not None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge import baseline, rounding_class
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.solvers.file import Recorded
 
 if TYPE_CHECKING:
     from taylor_verify.judge.rounding_class import Departure
@@ -23,7 +24,8 @@ class Comparison:
     ``failures`` fail the comparison: the regressions from a baseline, or whatever left the rounding class
     of a published row. ``undecided`` rows were asked another question before, and ``changes`` fail
     nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
-    asked for again. The truth value is ``passed``.
+    asked for again, ``notes`` what else there is to say. With ``decides`` the comparison alone decides
+    whether a run is red, whatever its own bounds say. The truth value is ``passed``.
     """
 
     compared: int
@@ -31,6 +33,8 @@ class Comparison:
     undecided: tuple[Departure, ...]
     changes: tuple[Departure, ...]
     before: tuple[Verdict, ...]
+    notes: tuple[str, ...] = ()
+    decides: bool = False
 
     @property
     def exit_status(self) -> int:
@@ -61,13 +65,20 @@ class Earlier:
     source: str
     verdicts: tuple[Verdict, ...]
 
-    def compare_as_baseline(self, results: Judgements | Judgement) -> Comparison:
-        """Find regressions: errors beyond what rounding explains, worse verdicts, rows that are gone."""
-        before = _asked_again(self.verdicts, results)
+    def compare_as_baseline(
+        self, results: Judgements | Judgement, decides: bool = False
+    ) -> Comparison:
+        """Find regressions: errors beyond what rounding explains, worse verdicts, rows that are gone.
+
+        With ``decides`` the comparison decides alone: what shows nothing of its own is no pass either.
+        """
+        before, notes = _of_one_file(self.verdicts, results)
+        before = _asked_again(before, results)
         report = baseline.hold(before, results.verdicts)
-        return Comparison(
-            report.compared, report.regressions, report.undecided, report.changes, before
-        )
+        if decides:
+            report = baseline.decided_alone(report, before, _unexpected(results))
+        departures = (report.regressions, report.undecided, report.changes)
+        return Comparison(report.compared, *departures, before, notes, decides)
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
@@ -76,13 +87,17 @@ class Earlier:
         return Comparison(report.compared, report.departures, (), (), before)
 
 
-def compare_with_baseline(results: Judgements | Judgement, file: str | PathLike[str]) -> Comparison:
+def compare_with_baseline(
+    results: Judgements | Judgement, file: str | PathLike[str], decides: bool = False
+) -> Comparison:
     """Compare a result with a baseline file, as `taylor-verify run --baseline FILE` does.
 
     Of the baseline those rows count that were asked for again: the same solver, its rungs and, where
-    scenes were named, these. Raises what `read_baseline` raises.
+    scenes were named, these. One trajectory file is compared with the one file of a baseline whatever their
+    names are. With ``decides`` it is the comparison of `--gate baseline`. Raises what `read_baseline`
+    raises.
     """
-    return read_baseline(file).compare_as_baseline(results)
+    return read_baseline(file).compare_as_baseline(results, decides)
 
 
 def read_baseline(file: str | PathLike[str]) -> Earlier:
@@ -101,6 +116,35 @@ def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> 
         return tuple(verdict for verdict in before if _run(verdict) in runs)
     asked = results.selection
     return tuple(v for v in before if v.solver == results.solver and asked.has(v.scene, v.rung))
+
+
+def _of_one_file(
+    before: tuple[Verdict, ...], results: Judgements | Judgement
+) -> tuple[tuple[Verdict, ...], tuple[str, ...]]:
+    """Return the earlier rows under the name of this file where both are of one file, and a note of it.
+
+    Whoever writes a file for each run gives each a name of its own.
+    """
+    files = {v.setting for v in results.verdicts if v.solver == Recorded.name}
+    if isinstance(results, Judgements) or len(files) != 1:
+        return before, ()
+    (name,) = files
+    asked = {(v.scene, v.solver, v.rung) for v in results.verdicts}
+    others = {v.setting for v in before if (v.scene, v.solver, v.rung) in asked}
+    if len(others) != 1 or others == files:
+        return before, ()
+    (other,) = others
+    note = (
+        f"the baseline is of the file {other}, and this is {name}: they are compared all the same"
+    )
+    return tuple(replace(v, setting=name) if v.setting == other else v for v in before), (note,)
+
+
+def _unexpected(results: Judgements | Judgement) -> list[Verdict]:
+    """Return the rows that are not the expected answers of an extreme."""
+    if isinstance(results, Judgement):
+        return list(results.verdicts)
+    return [v for v in results.verdicts if results.agreement.met(v) is None]
 
 
 def _run(verdict: Verdict) -> tuple[str, ...]:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
+
 if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
 
@@ -14,12 +16,14 @@ if TYPE_CHECKING:
 class Job:
     """A scene on several rungs by one solver: the rungs share the condition of the orbit.
 
-    ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory.
+    ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory. ``tolerances``
+    take the place of bounds.
     """
 
     scene: str | Scene
     solver: str
     rungs: tuple[str, ...]
+    tolerances: Tolerances = NO_TOLERANCES
 
     @property
     def name(self) -> str:

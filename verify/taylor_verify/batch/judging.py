@@ -100,7 +100,7 @@ def run_job(job: Job) -> list[Judgement]:
         scene = as_scene(job.scene)
         for rung in job.rungs:
             place = f"{job.name} on {rung}"
-            judgements.append(run(scene, job.solver, rung))
+            judgements.append(run(scene, job.solver, rung, job.tolerances))
     except Exception as error:
         # Only text is sure to pass from process to process.
         reason = str(error) if isinstance(error, Refused) else fault(error)

@@ -73,13 +73,15 @@ def write_junit(
     """Write the verdicts of results as JUnit XML, in place of an earlier file.
 
     What came as expected is left out. With the ``comparison`` with a baseline, a regression is a failure of
-    its row. The file is green only where the exit statuses are 0. Raises OSError.
+    its row; where that comparison decides alone, what fails its own bound alone is none. The file is green
+    only where the exit statuses are 0. Raises OSError.
     """
     from taylor_verify.publish.ci.junit import junit
     from taylor_verify.records.replacement import replace_files
 
     place = Path(file)
-    text = junit(shown_verdicts(results), remarks(results, comparison))
+    by_remarks = comparison is not None and comparison.decides
+    text = junit(shown_verdicts(results), remarks(results, comparison), by_remarks)
     replace_files(place.parent, {place.name: text})
 
 
@@ -116,31 +118,36 @@ def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
 
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
-    remarked = _unexpected(results) if isinstance(results, Judgements) else []
+    remarked = [] if comparison is not None and comparison.decides else _mismatches(results)
+    if isinstance(results, Judgements) and results.unjudged and results.exit_status:
+        remarked += _undecided(results.verdicts, "nothing was judged")
     if comparison is not None:
         remarked += _regressions(comparison, [*results.verdicts, *comparison.before])
+        if not comparison.compared:
+            remarked += _undecided(results.verdicts, "no row was compared with the baseline")
     return remarked
 
 
-def _unexpected(results: Judgements) -> list[Remark]:
-    """Return a failure for each row that is not as expected, its solver's name taken from its run.
-
-    Where nothing was judged, and that is no success, every row is undecided.
-    """
+def _mismatches(results: Judgements | Judgement) -> list[Remark]:
+    """Return a failure for each row that is not as expected, its solver's name taken from its run."""
     from taylor_verify.publish.ci.case import Remark
 
+    if isinstance(results, Judgement):
+        return []
     solvers = {(v.scene, v.rung): (v.solver, v.setting) for v in results.verdicts}
-    mismatches = [
+    return [
         Remark(scene, *solvers[scene, rung], rung, quantity, Status.FAIL, str(mismatch))
         for mismatch in results.agreement.mismatches
         for scene, rung, quantity in (mismatch.row,)
     ]
-    if not results.unjudged or not results.exit_status:
-        return mismatches
-    text = "nothing was judged"
+
+
+def _undecided(verdicts: Sequence[Verdict], text: str) -> list[Remark]:
+    from taylor_verify.publish.ci.case import Remark
+
     return [
         Remark(v.scene, v.solver, v.setting, v.rung, v.quantity, Status.UNDECIDED, text)
-        for v in results.verdicts
+        for v in verdicts
     ]
 
 

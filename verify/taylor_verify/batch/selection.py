@@ -8,6 +8,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from taylor_verify.batch.job import Job
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.precision import Rung
@@ -36,9 +37,9 @@ class Selection:
         """The scenes of which a rung is run."""
         return [scene for scene in self.scenes if self._rungs(scene)]
 
-    def jobs(self, solver: str) -> list[Job]:
+    def jobs(self, solver: str, tolerances: Tolerances = NO_TOLERANCES) -> list[Job]:
         """Return a job for each scene that is run, on the rungs that are not left out."""
-        return [Job(scene, solver, self._rungs(scene)) for scene in self.scenes_run]
+        return [Job(scene, solver, self._rungs(scene), tolerances) for scene in self.scenes_run]
 
     def _rungs(self, scene: Scene) -> tuple[str, ...]:
         return tuple(rung for rung in self.rungs if (scene.name, rung) not in self.left_out)

@@ -3,7 +3,7 @@
 A run, its folder of reports included, has a folder of its own in the user's cache, which no other run
 reads or writes: a lock says who is in it. Each job's judgements are a file, written whole or not at
 all: the digest of the rest, then JSON, which runs nothing when it is read. The name of a file is made of
-all that its judgements depend on: scene, solver, rungs, versions and the text of this package.
+all that its judgements depend on: scene, solver, rungs, tolerances, versions and the text of this package.
 """
 
 from __future__ import annotations
@@ -136,9 +136,12 @@ def from_bytes(content: bytes) -> list[Judgement]:
 # What a judgement depends on.
 
 
-def _words(job: Job) -> tuple[str, str, tuple[str, ...]]:
-    """Return the scene's name, the solver and the rungs. A Scene itself has no fixed order in its text."""
-    return job.name, job.solver, job.rungs
+def _words(job: Job) -> tuple[object, ...]:
+    """Return the scene's name, the solver, the rungs and the tolerances.
+
+    A Scene itself has no fixed order in its text.
+    """
+    return job.name, job.solver, job.rungs, job.tolerances
 
 
 def _programs(solver: str) -> list[str]:

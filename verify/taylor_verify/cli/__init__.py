@@ -38,6 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _print(answer: Answer, as_json: bool) -> int:
+    said = ""
     if as_json:
         import json
 
@@ -45,9 +46,13 @@ def _print(answer: Answer, as_json: bool) -> int:
         # JSON escapes every other control character by itself.
         print_out(text.replace("\x7f", "\\u007f"))
     else:
-        print_out(answer.text())
+        text = answer.text()
+        print_out(text)
+        # On a terminal both streams are read together, the text folded to its width.
+        said = "".join(text.split()) if sys.stdout.isatty() else ""
     for message in answer.messages:
-        say(message)
+        if "".join(message.split()) not in said:
+            say(message)
     return answer.status
 
 

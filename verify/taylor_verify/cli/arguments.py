@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from taylor_verify.cli import check, ci, claims, publishing, question, tradeoff, verbs
+from taylor_verify.cli import check, ci, claims, publishing, question, tolerance, tradeoff, verbs
 from taylor_verify.cli.answer import Answer
 from taylor_verify.scenes.names import escaped
 from taylor_verify.version import __version__
@@ -154,6 +154,7 @@ def _add_run(found: Any) -> None:
         metavar="DIR",
         help="fail if a number has left the rounding class of the one published there",
     )
+    tolerance.add_option(verb)
     ci.add_options(verb)
 
 
@@ -206,6 +207,7 @@ def _add_check(found: Any) -> None:
         help="judge what the file has, without undecided for tracked columns or a part of the span that "
         "it lacks",
     )
+    tolerance.add_option(verb)
     ci.add_options(verb)
 
 

@@ -19,6 +19,7 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.check_text import check_text
     from taylor_verify.cli.ci import outputs, tell
     from taylor_verify.cli.progress import working
+    from taylor_verify.cli.tolerance import read_tolerances
     from taylor_verify.judge.answer import judge_file
     from taylor_verify.records.verdict import exit_status
     from taylor_verify.scenes.precision import rung
@@ -26,12 +27,15 @@ def check(options: argparse.Namespace) -> Answer:
     (name,) = known_rungs([options.rung])
     scene, file = _scene_and_file(options.scene, options.file)
     asked = outputs(options)
+    tolerances = read_tolerances(options.tolerance, [scene])
     with working(f"check {options.file}"):
-        judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
+        judged = judge_file(
+            file, scene, rung(name), options.accept_conventions, options.partial, tolerances
+        )
     text = partial(check_text, judged, scene.name, name)
     to_ci = tell(asked, judged, exit_status(judged.verdicts))
     document = {**judged.document(), **to_ci.document}
-    return Answer(to_ci.status, document, text, to_ci.messages)
+    return Answer(to_ci.status, document, to_ci.closing(text), to_ci.messages)
 
 
 def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:

@@ -30,9 +30,13 @@ def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
     if any(verdict.at is not None for verdict in judged.verdicts):
         console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
         print_line(console)
+        has_tolerance = any(verdict.tolerance is not None for verdict in judged.verdicts)
+        first = (
+            "the tolerance that was asked for, where there is one; else " if has_tolerance else ""
+        )
         print_line(
             console,
-            f"allowed: {GATE_FACTOR} times what rounding the input and every step would leave;",
+            f"allowed: {first}{GATE_FACTOR} times what rounding the input and every step would leave;",
         )
         print_line(console, "/floor: the largest error over what it would leave, of all rows.")
     for cause in judged.causes:
@@ -87,7 +91,8 @@ def _print_reason(console: Console, verdict: Verdict) -> None:
     print_indented(console, "    ", "; ".join(error_sentences(verdict.row())))
     if reason.meaning:
         print_indented(console, "    ", reason.meaning)
-    print_indented(console, "    allowed: ", f"{figure(verdict.bound)} = {reason.allowance}")
+    sign = ": " if reason.tolerance else " = "
+    print_indented(console, "    allowed: ", f"{figure(verdict.bound)}{sign}{reason.allowance}")
 
 
 def _quantities_table(verdicts: Sequence[Verdict]) -> Table:

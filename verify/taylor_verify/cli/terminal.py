@@ -74,6 +74,8 @@ def _print_rows(console: Console, verdicts: Sequence[Verdict], held: Agreement) 
     print_line(
         console, "/floor is the largest error over what perfect rounding would leave, of all gates."
     )
+    if any(verdict.tolerance is not None for verdict in verdicts):
+        print_line(console, "Judged by the tolerance that was asked for.")
     others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
     if others:
         print_line(console)

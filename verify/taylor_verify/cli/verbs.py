@@ -42,6 +42,7 @@ def run(options: argparse.Namespace) -> Answer:
     from taylor_verify.batch.selection import select
     from taylor_verify.cli.ci import outputs
     from taylor_verify.cli.progress import advancing
+    from taylor_verify.cli.tolerance import read_tolerances
     from taylor_verify.run_many import run_many
 
     rungs = known_rungs(options.rung) if options.rung else None
@@ -54,6 +55,7 @@ def run(options: argparse.Namespace) -> Answer:
     folder = writable(options.out) if options.out is not None else None
     published = _published(options.against) if options.against is not None else None
     asked = outputs(options)
+    tolerances = read_tolerances(options.tolerance, selection.scenes)
     try:
         with advancing() as progress:
             results = run_many(
@@ -63,6 +65,7 @@ def run(options: argparse.Namespace) -> Answer:
                 resume=options.resume,
                 out=folder,
                 progress=progress,
+                tolerance=tolerances,
             )
     except Occupied as error:
         raise WrongCall(f"{error} (--out)") from error
@@ -105,7 +108,7 @@ def _run_answer(
     if len(results.selection.scenes) > 1 and results.costs:
         messages.append(sentence(results.costs))
     text = partial(verdicts_text, results.verdicts, results.agreement)
-    return Answer(to_ci.status, {**document, **to_ci.document}, text, messages)
+    return Answer(to_ci.status, {**document, **to_ci.document}, to_ci.closing(text), messages)
 
 
 def _published(folder: str) -> Earlier:

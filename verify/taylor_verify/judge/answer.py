@@ -40,6 +40,7 @@ from taylor_verify.judge.inputs import input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
@@ -117,14 +118,15 @@ def judge_file(
     rung: Rung,
     accept_conventions: bool = False,
     partial: bool = False,
+    tolerances: Tolerances = NO_TOLERANCES,
 ) -> FileJudgement:
     """Judge a file as arithmetic of the rung.
 
     What its columns are is that of solvers.file; its times are absolute, in the scene's unit, and each
     row is compared at its own time. With ``accept_conventions`` what was found out about it is corrected
     before it is judged. A file that lacks a part of what the scene asks has a row `complete` that is
-    undecided, or vacuous if a ``partial`` answer is asked for. Raises Refused if it has nothing to
-    compare.
+    undecided, or vacuous if a ``partial`` answer is asked for. ``tolerances`` take the place of bounds.
+    Raises Refused if it has nothing to compare.
     """
     groups = comparable(file, scene)
     asked, notes = scene, tuple(coverage_notes(file, groups, scene))
@@ -134,7 +136,7 @@ def judge_file(
     try:
         found = conventions(compared, scene, rung)
         answer = _Answer.of(compared, scene, rung, found if accept_conventions else None)
-        judged = _judged(answer, compared, rung, found)
+        judged = _judged(answer, compared, rung, found, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
         notes += (
             *no_start(answer.scene, answer.times),
@@ -157,7 +159,9 @@ def judge_file(
     )
 
 
-def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Conventions) -> Judgement:
+def _judged(
+    answer: _Answer, file: TrajectoryFile, rung: Rung, found: Conventions, tolerances: Tolerances
+) -> Judgement:
     scene = answer.scene
     if found.world.scale != 1 and is_far(scene, answer.times):
         why = (
@@ -171,7 +175,7 @@ def _judged(answer: _Answer, file: TrajectoryFile, rung: Rung, found: Convention
             "form: its exact motion is not computed up to there"
         )
         return _alone(scene, file, rung, Status.UNDECIDED, why, Cause.TOO_FAR)
-    sides = [_side(part, rung, file.name) for part in answer.sides()]
+    sides = [_side(part, rung, file.name, tolerances) for part in answer.sides()]
     unfinished = next((side.judgement for side in sides if side.judgement.record is None), None)
     if unfinished is not None:
         return unfinished
@@ -277,9 +281,9 @@ class _Side:
     gates: list[Graded]
 
 
-def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
+def _side(answer: _Answer, rung: Rung, name: str, tolerances: Tolerances) -> _Side:
     problem = adopt(answer.scene, rung, answer.instants)
-    judged = partial_judgement(problem, Recorded(answer, setting=name))
+    judged = partial_judgement(problem, Recorded(answer, setting=name), tolerances)
     if judged.record is None:
         return _Side(judged, [])
     inputs = input_rounding(problem.given, rung, problem.scene)

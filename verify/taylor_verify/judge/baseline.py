@@ -19,7 +19,11 @@ A row that was asked another question (another text of the scene, another unit o
 be held against its former self: it is undecided, never green. All else that left its class is told
 and fails nothing: an error that shrank, a better verdict, a new row, another cost.
 
-A baseline excuses nothing: a gate that fails does so though it failed before.
+A verdict by another tolerance is no worse verdict; the errors are compared all the same.
+
+A baseline excuses nothing: a gate that fails does so though it failed before. A caller may let the
+baseline alone decide (`decided_alone`): then a failed gate is none of its business, and what shows nothing
+of its own is never green.
 """
 
 from __future__ import annotations
@@ -80,12 +84,15 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
     that, roundings drawn anew may explain it.
     """
     rows = paired(_compared(baseline), _compared(made))
-    regressions = [_row(verdict, "this row", "none") for verdict in rows.missing]
+    # This row is there only where it fails: of a sound run neither baseline nor result has one.
+    mended = [verdict for verdict in rows.missing if verdict.quantity == UNIT_QUATERNION]
+    gone = [verdict for verdict in rows.missing if verdict not in mended]
+    regressions = [_row(verdict, "this row", "none") for verdict in gone]
     undecided: list[Departure] = []
-    # This row is there only where it fails: of a sound run no baseline has one.
     spoiled = [verdict for verdict in rows.extra if verdict.quantity == UNIT_QUATERNION]
     other_rows = [verdict for verdict in rows.extra if verdict not in spoiled]
     changes = [_row(verdict, "a row of the baseline", "a new one") for verdict in other_rows]
+    changes += [_row(verdict, "a row that fails", "none: it is mended") for verdict in mended]
     changes += _machines(rows.absent)
     for old, new in rows.shared:
         other = list(_other_question(old, new))
@@ -96,6 +103,34 @@ def hold(baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
         changes += [] if other or grown else departures(old, new)
     regressions += [_row(verdict, "no such row", "one that fails") for verdict in spoiled]
     return Held(len(rows.shared), tuple(regressions), tuple(undecided), tuple(changes))
+
+
+def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdict]) -> Held:
+    """Return the comparison ``held``, made to decide alone, whatever the gates of the rows made say.
+
+    A row that failed and has no finite error is a regression, though the baseline has none either. A row
+    that shows nothing cannot be compared: it is undecided, vacuous or refused, or it fails and is new.
+    """
+    known = {_name(verdict) for verdict in baseline}
+    told_of = {(d.scene, d.rung, d.quantity) for d in (*held.regressions, *held.undecided)}
+    lost, unshown = [], []
+    for verdict in made:
+        status = exit_status([verdict])
+        if status == 0 or _name(verdict) in told_of:
+            continue
+        if status != 1:
+            got = f"{verdict.verdict} ({verdict.because})"
+            unshown.append(_departure(verdict, "", "a row that shows something", got))
+        elif finite(verdict, "max") is None:
+            lost.append(_departure(verdict, "max", "a finite error", told(None)))
+        elif _name(verdict) not in known:
+            unshown.append(_row(verdict, "a row of the baseline", "a new one that fails"))
+    regressions, undecided = (*held.regressions, *lost), (*held.undecided, *unshown)
+    return Held(held.compared, regressions, undecided, held.changes)
+
+
+def _name(verdict: Verdict) -> tuple[str, str, str]:
+    return verdict.scene, verdict.rung, verdict.quantity
 
 
 def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
@@ -114,7 +149,7 @@ def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
 
 
 def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
-    if _grade(new) > _grade(old):
+    if _grade(new) > _grade(old) and not _have_unlike_tolerances(old, new):
         yield _departure(new, "verdict", old.verdict.value, new.verdict.value)
     grown = [(name, *found) for name in ERRORS if (found := _grown(old, new, name)) is not None]
     if grown:
@@ -122,6 +157,11 @@ def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
         name, limit, got = grown[0]
         others = ", ".join(other for other, *_ in grown[1:])
         yield _departure(new, f"{name} (and {others})" if others else name, limit, got)
+
+
+def _have_unlike_tolerances(old: Verdict, new: Verdict) -> bool:
+    """Return True for two comparisons by unlike gates, of which neither verdict tells of the other."""
+    return old.is_compared and new.is_compared and old.tolerance != new.tolerance
 
 
 def _grown(old: Verdict, new: Verdict, name: str) -> tuple[str, str] | None:

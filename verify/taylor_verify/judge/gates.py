@@ -1,4 +1,7 @@
-"""Gates: a bound with its reason, asked of every sample, written so that a NaN cannot pass."""
+"""Gates: a bound with its reason, asked of every sample, written so that a NaN cannot pass.
+
+The bound follows from the arithmetic, unless the caller has asked for a tolerance.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.errors import Errors, Floats
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.records.reason import Cause, Reason
+from taylor_verify.records.reason import AskedTolerance, Cause, Reason, shown
 from taylor_verify.records.status import Status
 
 # Steps that somebody else claims widen a gate as their square root, WIDENING times at most beyond
@@ -22,37 +25,66 @@ STEPS_PER_SECOND = 10**8
 TRUTH_SHARE = 16
 # At an error of one the answer zero would do as well: such a bound forbids nothing.
 _VACUOUS = 1.0
+_TOO_FINE = (
+    "the tolerance is finer than the roundings of this precision: take a wider precision, or a larger "
+    "tolerance"
+)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """The finding of a gate: the status, the sample that decided and the numbers there."""
+    """The finding of a gate: the status, the sample that decided and the numbers there.
+
+    ``bound`` is what was allowed at the sample of the largest error, a ``tolerance`` where one was asked
+    for. ``is_rounding`` is true if the roundings of the arithmetic explain the error.
+    """
 
     status: Status
     worst: int
+    bound: float
+    tolerance: float | None
+    is_rounding: bool
     ratio: float
     ratio_at: int
     reason: Reason
 
 
-def judge(errors: Errors, attainable: Floats, terms: Reason) -> Finding:
-    """Compare every sample's error with GATE_FACTOR times the attainable one.
+def judge(
+    errors: Errors, attainable: Floats, terms: Reason, tolerance: float | None = None
+) -> Finding:
+    """Compare every sample's error with GATE_FACTOR times the attainable one, or with a tolerance.
 
     The ratio is the largest of the samples that are asked, or of all if none is. ``terms`` say what is
-    attainable; the finding adds the factor, and a remark where the numbers do not say everything.
+    attainable; the finding adds the factor, the tolerance, and a remark where the numbers do not say
+    everything. A tolerance is below 1, so that no gate that has one is vacuous.
     """
-    bounds = GATE_FACTOR * attainable
+    roundings = GATE_FACTOR * attainable
+    bounds = roundings if tolerance is None else np.full(len(roundings), tolerance)
     worst = index_of_largest(errors.doubles)
     ratios = _ratios(errors.doubles, attainable)
-    ratio_at = index_of_largest(ratios[: _asked(bounds) or None])
-    status = _status(errors, bounds)
+    ratio_at = index_of_largest(ratios[: _asked(roundings) or None])
+    status, by_rounding = _status(errors, bounds), _status(errors, roundings)
     reason = replace(terms, factor=float(GATE_FACTOR))
+    if tolerance is not None:
+        reason = replace(reason, tolerance=AskedTolerance(tolerance, shown(roundings[worst])))
+        is_explained = by_rounding in (Status.PASS, Status.VACUOUS)
+        if status is Status.FAIL and (is_explained or not attainable[worst] <= tolerance):
+            reason = reason.with_remark(Cause.FINE_TOLERANCE, _TOO_FINE)
     if status is Status.VACUOUS:
         reason = reason.with_remark(Cause.VACUOUS, _vacuous(errors, bounds))
     if status is Status.UNDECIDED:
         wide = f"the truth is wider than 1/{TRUTH_SHARE} of the bound"
         reason = reason.with_remark(Cause.WIDE_TRUTH, wide)
-    return Finding(status, worst, float(ratios[ratio_at]), ratio_at, reason)
+    return Finding(
+        status=status,
+        worst=worst,
+        bound=float(bounds[worst]),
+        tolerance=tolerance,
+        is_rounding=by_rounding is Status.PASS,
+        ratio=float(ratios[ratio_at]),
+        ratio_at=ratio_at,
+        reason=reason,
+    )
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:

@@ -1,7 +1,8 @@
 """The verdict on the start alone: an answer that is wrong there says so before anything else.
 
 Of the rows of all states at the start the one counts that is nearest to its bound. The gate is that of
-the state at this sample: a rounding of the data, and nothing that an orbit has made of it.
+the state at this sample: a rounding of the data, and nothing that an orbit has made of it. Where a
+tolerance was asked for, the start may be off by the tolerance of its state.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def with_initial(judgement: Judgement, start: float) -> Judgement:
         return judgement
     times = np.array(record.times)
     gates = [
-        Graded.of(verdict, times, np.array(gate.errors), np.array(gate.attainable), verdict.reason)
+        Graded.of(verdict, gate, times, np.array(gate.attainable), verdict.reason)
         for verdict, gate in zip(judgement.verdicts, record.gates, strict=True)
     ]
     initial = initial_verdict(gates, start, Carried.START)
@@ -53,16 +54,11 @@ def initial_verdict(
     if not starts:
         return None
     findings = [_finding(gate, k, carried) for gate, k in starts]
-    worst = index_of_largest(np.array([finding.ratio for finding in findings]))
+    worst = index_of_largest(
+        np.array([_nearness(*row) for row in zip(starts, findings, strict=True)])
+    )
     (gate, k), finding = starts[worst], findings[worst]
     error, attainable = float(gate.errors[k]), float(gate.attainable[k])
-    is_within = error <= GATE_FACTOR * attainable
-    said = (
-        f"the row at the start, t = {start:g}, is the scene's initial state"
-        if is_within
-        else f"the row at the start, t = {start:g}, is not the scene's initial state: its "
-        f"{gate.verdict.quantity} is off by {error:.3g}, and everything after follows from it"
-    )
     return replace(
         gate.verdict,
         quantity=INITIAL,
@@ -71,8 +67,9 @@ def initial_verdict(
         mean=error,
         final=error,
         at=start,
-        bound=GATE_FACTOR * attainable,
-        reason=finding.reason.with_remark(Cause.START, said),
+        bound=finding.bound,
+        tolerance=finding.tolerance,
+        reason=finding.reason.with_remark(Cause.START, _said(gate, error, finding, start)),
         attainable=attainable,
         ratio=finding.ratio,
         ratio_at=start,
@@ -84,9 +81,31 @@ def initial_verdict(
     )
 
 
+def _nearness(row: tuple[Graded, int], finding: Finding) -> float:
+    """How near the start of a state is to its bound, in tenths of the bound."""
+    gate, k = row
+    tolerance = finding.tolerance
+    return finding.ratio if tolerance is None else GATE_FACTOR * float(gate.errors[k]) / tolerance
+
+
+def _said(gate: Graded, error: float, finding: Finding, start: float) -> str:
+    row, off = (
+        f"the row at the start, t = {start:g}",
+        f"its {gate.verdict.quantity} is off by {error:.3g}",
+    )
+    if not error <= finding.bound:
+        return (
+            f"{row}, is not the scene's initial state: {off}, and everything after follows from it"
+        )
+    if finding.is_rounding or finding.tolerance is None:
+        return f"{row}, is the scene's initial state"
+    return f"{row}, is the scene's initial state to within the tolerance: {off}"
+
+
 def _finding(gate: Graded, k: int, carried: Carried) -> Finding:
     error = np.array([mpf(float(gate.errors[k]))], dtype=object)
     width = np.array([mp.inf if gate.is_doubtful else mp.zero], dtype=object)
     row = Errors(gate.verdict.quantity, gate.verdict.unit, error, width, {}, is_state=True)
     floor = RoundoffFloor(carried, shown(float(gate.attainable[k])))
-    return judge(row, gate.attainable[k : k + 1], Reason(floor=floor))
+    terms = Reason(floor=floor)
+    return judge(row, gate.attainable[k : k + 1], terms, gate.verdict.tolerance)

@@ -23,10 +23,11 @@ from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.shift import Shift
 from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.judge.steps import Steps, count_steps
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles, four_digits
-from taylor_verify.records.quantities import GATE_FACTOR, MAIN
+from taylor_verify.records.quantities import MAIN, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
@@ -116,6 +117,10 @@ class _Run:
     solver: Solver
     trajectory: Trajectory
     steps: Steps
+    tolerances: Tolerances
+
+    def judge(self, errors: Errors, attainable: Floats, terms: Reason) -> Finding:
+        return judge(errors, attainable, terms, self.tolerances.of(errors.quantity))
 
     def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
         scene, trajectory = self.problem.scene, self.trajectory
@@ -137,15 +142,19 @@ class _Run:
 
 
 def judgement(
-    problem: Problem, solver: Solver, trajectory: Trajectory, seconds: float | None = None
+    problem: Problem,
+    solver: Solver,
+    trajectory: Trajectory,
+    seconds: float | None = None,
+    tolerances: Tolerances = NO_TOLERANCES,
 ) -> Judgement:
     """Compare a trajectory with the exact solution of the same rounded data, and judge it.
 
     ``seconds`` is how long the answer took by the caller's clock, which limits the steps that a solver
-    may claim. A trajectory that is not finished, and a truth that cannot be had, are verdicts and raise
-    nothing.
+    may claim. ``tolerances`` take the place of bounds. A trajectory that is not finished, and a truth
+    that cannot be had, are verdicts and raise nothing.
     """
-    run = _Run(problem, solver, trajectory, Steps(trajectory.steps))
+    run = _Run(problem, solver, trajectory, Steps(trajectory.steps), tolerances)
     main = main_quantity(problem.scene)
     if trajectory.outcome is not Outcome.FINISHED:
         status = Status.UNAVAILABLE if trajectory.outcome.is_unavailable else Status.FAIL
@@ -208,11 +217,12 @@ def _state(
     run: _Run, base: Floor, errors: Errors, shift: Shift | None, is_shifted_whole: bool
 ) -> Gated:
     attainable = base.of_state(errors)
-    finding = judge(errors, attainable, _reason(run, base, errors, attainable, Carried.ORBIT))
+    finding = run.judge(errors, attainable, _reason(run, base, errors, attainable, Carried.ORBIT))
     if shift is None:
         return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
-    passed = finding.status is Status.PASS
-    if not passed:
+    # A shift that roundings alone have made is another one on every machine.
+    is_told = not (finding.status is Status.PASS and finding.is_rounding)
+    if is_told:
         finding = replace(finding, reason=replace(finding.reason, shift=shift.terms()))
     verdict = replace(
         _verdict(run, errors, attainable, finding),
@@ -222,13 +232,14 @@ def _state(
         trend=shift.trend if shift.kind is Kind.DRIFTING else None,
         remains=None if shift.kind is Kind.NONE else shift.remains,
     )
-    shifts = () if passed or not is_shifted_whole else shift.at_samples
+    shifts = shift.at_samples if is_told and is_shifted_whole else ()
     return verdict, _gate(errors, attainable, shifts)
 
 
 def _lengths(run: _Run, base: Floor, excess: Floats | None) -> list[Gated]:
     """The row of quaternions that are no unit quaternions; none where they are."""
-    failed = None if excess is None else unit_quaternion(excess, base)
+    allowed = run.tolerances.of(UNIT_QUATERNION)
+    failed = None if excess is None else unit_quaternion(excess, base, allowed)
     if failed is None:
         return []
     errors, attainable, finding = failed
@@ -244,7 +255,7 @@ def _conserved(
         roundoff = run.problem.rung.unit_roundoff
         attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
     reason = _reason(run, base, errors, attainable, Carried.GRADIENT, work is not None)
-    finding = judge(errors, attainable, reason)
+    finding = run.judge(errors, attainable, reason)
     return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
 
 
@@ -271,7 +282,8 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         final=float(errors.doubles[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
-        bound=float(GATE_FACTOR * attainable[worst]),
+        bound=finding.bound,
+        tolerance=finding.tolerance,
         reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

@@ -28,9 +28,10 @@ from taylor_verify.judge.judgement import Judgement, judgement, mean
 from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.series import Series, States
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
-from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION
+from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
@@ -47,7 +48,9 @@ _GUARD_DIGITS: Final = 6
 _BLOCKS: Final = {"momentum": "omega"}
 
 
-def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
+def partial_judgement(
+    problem: Problem, solver: Recorded, tolerances: Tolerances = NO_TOLERANCES
+) -> Judgement:
     """The verdicts on what the answer has. Raises Unsettled where there is no truth.
 
     The problem's scenes track what the answer has of attitude and centre, and no more.
@@ -66,14 +69,15 @@ def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
     )
     apart: list[Gated] = []
     if "omega" not in one_row.quantities and "omega" in own:
-        apart.append(_angular_velocity(problem, solver, exact))
+        apart.append(_angular_velocity(problem, solver, exact, tolerances))
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
-        apart += _states_apart(problem, solver, exact, filled)
+        apart += _states_apart(problem, solver, exact, filled, tolerances)
         filled = filled.without("attitude", "centre")
         problem = replace(problem, given=replace(given, track=frozenset()))
-    whole = judgement(problem, solver, replace(solver, quantities=filled).solve(problem))
+    answer = replace(solver, quantities=filled).solve(problem)
+    whole = judgement(problem, solver, answer, tolerances=tolerances)
     if whole.record is None:
         return whole
     sound = _rows_resting_on(problem, one_row, has)
@@ -128,7 +132,7 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
 
 
 def _states_apart(
-    problem: Problem, solver: Recorded, exact: Solution, filled: Quantities
+    problem: Problem, solver: Recorded, exact: Solution, filled: Quantities, tolerances: Tolerances
 ) -> list[Gated]:
     """Attitude and centre against the truth, and nothing that is conserved."""
     given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
@@ -141,14 +145,16 @@ def _states_apart(
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
                 terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
-                rows.append(_row(problem, solver, errors, attainable, terms))
+                rows.append(_row(problem, solver, errors, attainable, terms, tolerances))
     return rows
 
 
 # The angular velocity of a solid in a fluid: Omega = B^T x + C y.
 
 
-def _angular_velocity(problem: Problem, solver: Recorded, exact: Solution) -> Gated:
+def _angular_velocity(
+    problem: Problem, solver: Recorded, exact: Solution, tolerances: Tolerances
+) -> Gated:
     given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
     digits = truth_digits(rung.bits, _GUARD_DIGITS)
     errors, sizes = _omega_errors(Comparison(given, exact, solver.quantities, digits, bits))
@@ -156,7 +162,7 @@ def _angular_velocity(problem: Problem, solver: Recorded, exact: Solution) -> Ga
         scale = errors.parts["omega"]
         attainable = _omega_attainable(problem, sizes, scale)
         terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
-        row, gate = _row(problem, solver, errors, attainable, terms)
+        row, gate = _row(problem, solver, errors, attainable, terms, tolerances)
         places = evenly(len(sizes), MOST_SHIFTED)
         clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
         own = rows_at(solver.quantities, places)["omega"]
@@ -206,9 +212,14 @@ def _omega_attainable(problem: Problem, sizes: Floats, scale: Any) -> Floats:
 
 
 def _row(
-    problem: Problem, solver: Recorded, errors: Errors, attainable: Floats, terms: Reason
+    problem: Problem,
+    solver: Recorded,
+    errors: Errors,
+    attainable: Floats,
+    terms: Reason,
+    tolerances: Tolerances,
 ) -> Gated:
-    finding = judge(errors, attainable, terms)
+    finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
     instants, worst, values = problem.given.clock.instants, finding.worst, errors.doubles
     verdict = Verdict(
         scene=problem.scene.name,
@@ -223,7 +234,8 @@ def _row(
         final=float(values[-1]),
         at=float(instants[worst]),
         unit=errors.unit,
-        bound=float(GATE_FACTOR * attainable[worst]),
+        bound=finding.bound,
+        tolerance=finding.tolerance,
         reason=finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

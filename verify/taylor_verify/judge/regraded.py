@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.doubles import four_digits
-from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.quantities import STATES
 from taylor_verify.records.reason import Cause, InputShare, Reason
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -43,11 +44,20 @@ class Graded:
 
     @classmethod
     def of(
-        cls, verdict: Verdict, times: Floats, errors: Floats, attainable: Floats, terms: Reason
+        cls, verdict: Verdict, gate: GateRecord, times: Floats, attainable: Floats, terms: Reason
     ) -> Graded:
         """A gate whose verdict tells whether the truth was narrow enough."""
         is_doubtful = verdict.verdict is Status.UNDECIDED
-        return cls(verdict, times, errors, attainable, is_doubtful, terms)
+        return cls(verdict, times, _errors(verdict, gate), attainable, is_doubtful, terms)
+
+
+def _errors(verdict: Verdict, gate: GateRecord) -> Floats:
+    """The errors at all samples: the record has four digits of them, the verdict all of the largest."""
+    errors = np.array(gate.errors)
+    if verdict.max is not None and isfinite(verdict.max):
+        errors = np.minimum(errors, verdict.max)
+        errors[index_of_largest(errors)] = verdict.max
+    return errors
 
 
 def graded(judgement: Judgement, inputs: InputRounding, roundoff: float) -> list[Graded]:
@@ -69,7 +79,7 @@ def _graded(
     worst = index_of_largest(np.array(gate.errors))
     share = InputShare(inputs.moved, roundoff, float(moved[worst]), float(both[worst]))
     terms = replace(verdict.reason, remarks=(), input=share)
-    return Graded.of(verdict, times, np.array(gate.errors), both, terms)
+    return Graded.of(verdict, gate, times, both, terms)
 
 
 def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
@@ -81,7 +91,7 @@ def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
 
 
 def _gravity(verdict: Verdict) -> tuple[int, float]:
-    ratio = verdict.ratio
+    ratio = verdict.ratio if verdict.tolerance is None else verdict.max
     told = float("inf") if ratio is None or ratio != ratio else ratio
     return GRAVITY.index(verdict.verdict), -told
 
@@ -91,14 +101,14 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
     widths = np.full(len(times), np.inf if side.is_doubtful else 0.0)
     is_state = gate.quantity in STATES
     errors = Errors(gate.quantity, gate.unit, side.errors, widths, {}, is_state)
-    finding = judge(errors, attainable, side.terms)
+    finding = judge(errors, attainable, side.terms, gate.tolerance)
     worst = finding.worst
     return replace(
         gate,
         verdict=finding.status,
         max=float(side.errors[worst]),
         at=float(times[worst]),
-        bound=float(GATE_FACTOR * attainable[worst]),
+        bound=finding.bound,
         reason=finding.reason.with_remark(Cause.NOT_FINITE, flaw) if flaw else finding.reason,
         attainable=float(attainable[worst]),
         ratio=finding.ratio,

@@ -6,7 +6,8 @@ rounds q in every step and takes none of it back leaves, after N steps, no more 
     | |q| - 1 |  <=  u N,
 
 all roundings going one way. The row is there only where the length is beyond ten times that: then it
-fails. A quaternion that is a unit one to roundoff needs no row to say so.
+fails. A quaternion that is a unit one to roundoff needs no row to say so. A tolerance for the attitude
+takes the place of the ten times.
 """
 
 from __future__ import annotations
@@ -27,10 +28,13 @@ from taylor_verify.records.status import Status
 _SHOWN: Final = 1e-4
 
 
-def unit_quaternion(excess: Floats, base: Floor) -> tuple[Errors, Floats, Finding] | None:
+def unit_quaternion(
+    excess: Floats, base: Floor, tolerance: float | None = None
+) -> tuple[Errors, Floats, Finding] | None:
     """The errors of length, what is attainable, and the failure; None where q is a unit quaternion.
 
-    ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure.
+    ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure. With a ``tolerance``
+    the length may be off by the tolerance.
     """
     if not np.isfinite(excess).all():
         return None
@@ -48,7 +52,7 @@ def unit_quaternion(excess: Floats, base: Floor) -> tuple[Errors, Floats, Findin
         round(steps[worst]),
         lengths=" to ".join(extent),
     )
-    finding = judge(errors, attainable, Reason(floor=terms))
+    finding = judge(errors, attainable, Reason(floor=terms), tolerance)
     return (errors, attainable, finding) if finding.status is Status.FAIL else None
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import figure, instant, judged, reason
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
 from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import versions
@@ -24,12 +24,23 @@ def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
 
 
 def counts(verdicts: Iterable[Verdict]) -> str:
-    """How many verdicts of each kind, and the largest error over attainable."""
+    """The number of verdicts of each kind, the largest error over attainable, and what judged them."""
     found = list(verdicts)
     by_status = summary(found)
     columns = [Column(status, to_right=True) for status in by_status]
     row = [_standing_out(Status(status), count) for status, count in by_status.items()]
-    return "\n\n".join([table(columns, [row]), _worst(found)])
+    return "\n\n".join(filter(None, [table(columns, [row]), _worst(found), _tolerated(found)]))
+
+
+def _tolerated(verdicts: Sequence[Verdict]) -> str:
+    """The number of rows whose bound is a tolerance; empty where there is none."""
+    count = sum(verdict.tolerance is not None for verdict in verdicts)
+    if not count:
+        return ""
+    return (
+        f"{bold(str(count))} of them were judged by a tolerance that was asked for, and not by "
+        f"{GATE_FACTOR} times what is attainable."
+    )
 
 
 def _standing_out(status: Status, count: int) -> str:

@@ -71,7 +71,7 @@ class AgainstBaseline:
     """The comparison with an earlier run.
 
     ``regressions`` are worse by more than rounding explains, ``undecided`` could not be compared, and
-    ``changes`` are all other differences.
+    ``changes`` are all other differences. ``notes`` say how rows were paired.
     """
 
     file: str
@@ -79,6 +79,14 @@ class AgainstBaseline:
     regressions: Sentences
     undecided: Sentences
     changes: Sentences
+    notes: Sentences = ()
+    gate: Annotated[
+        str,
+        Meta(
+            description="bound: the verdicts and the comparison decide the exit status. baseline: the "
+            "comparison alone does."
+        ),
+    ] = "bound"
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 remarks   conclusions that the numbers of the verdict do not say, each with its cause
 factor    what the gate allows, in units of the roundoff floor
+tolerance the tolerance that was asked for, in place of the bound that the factor makes of the floor
 floor     the roundoff floor at the sample of the largest error, and the terms it is made of
 input     the part of the floor that the rounding of the input adds, for an answer from elsewhere
 claim     the steps that a solver claims, where fewer are counted
@@ -26,10 +27,12 @@ class Cause(StrEnum):
     NOT_FINITE = "not finite"
     VACUOUS = "vacuous bound"
     WIDE_TRUTH = "wide truth"
+    FINE_TOLERANCE = "fine tolerance"
     START = "start"
     UNFINISHED = "unfinished"
     NO_TRUTH = "no truth"
     NOT_POSED = "not posed"
+    MISSING_PACKAGE = "missing package"
     TOO_FAR = "too far"
     INCOMPLETE = "incomplete"
     STATED = "stated"
@@ -142,6 +145,24 @@ class InputShare:
 
 
 @dataclass(frozen=True)
+class AskedTolerance:
+    """The tolerance that was ``asked`` for, and what arithmetic alone would have ``allowed`` there.
+
+    Both are in the unit of the error; None stands for no finite number.
+    """
+
+    asked: float
+    allowed: float | None
+
+    def sentence(self) -> str:
+        """Return both numbers."""
+        return (
+            f"a tolerance of {_exponent(self.asked)} was asked for; arithmetic alone would have "
+            f"allowed {_figure(self.allowed)}"
+        )
+
+
+@dataclass(frozen=True)
 class ClaimedSteps:
     """The steps that a solver claims, and those counted: at most what the ``limit`` says in words."""
 
@@ -209,6 +230,7 @@ class Reason:
 
     remarks: tuple[Remark, ...] = ()
     factor: float | None = None
+    tolerance: AskedTolerance | None = None
     floor: RoundoffFloor | None = None
     input: InputShare | None = None
     claim: ClaimedSteps | None = None
@@ -221,8 +243,12 @@ class Reason:
 
     @property
     def rule(self) -> str:
-        """The gate in units of the roundoff floor; empty where nothing was compared."""
-        return "" if self.factor is None else f"{self.factor:g} x attainable"
+        """The gate in units of the roundoff floor; empty where nothing was compared.
+
+        With a tolerance it is the sentence of both.
+        """
+        rule = "" if self.factor is None else f"{self.factor:g} x attainable"
+        return f"{self.tolerance.sentence()} = {rule}" if self.tolerance else rule
 
     @property
     def allowance(self) -> str:
@@ -273,6 +299,11 @@ def stated(cause: Cause, text: str) -> Reason:
 
 def _late(shift: float) -> str:
     return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
+
+
+def _exponent(value: float) -> str:
+    """Return a number as people write it: 1e-8."""
+    return f"{value:g}".replace("e-0", "e-")
 
 
 def _figure(value: float | None, digits: int = 2) -> str:

@@ -124,6 +124,8 @@ def row(verdict: Verdict) -> dict[str, Any]:
     """A verdict as it is stored: without what is another number every time, or on every machine."""
     stored = verdict.row()
     del stored["seconds"]
+    if stored["tolerance"] is None:
+        del stored["tolerance"]
     if verdict.verdict is not Status.FAIL:
         # Which way roundings push the time is another draw on every machine.
         for name in _SHIFT:

@@ -51,6 +51,13 @@ class Verdict:
     bound: Annotated[
         Size | None, Meta(description="What is allowed at the time of the largest error.")
     ] = None
+    tolerance: Annotated[
+        Size | None,
+        Meta(
+            description="The tolerance that was asked for: it is the bound, and max decides. Null where "
+            "the bound follows from the arithmetic."
+        ),
+    ] = None
     reason: Reason = NO_REASON
     attainable: Annotated[
         Size | None,
@@ -58,7 +65,10 @@ class Verdict:
     ] = None
     ratio: Annotated[
         Size | None,
-        Meta(description="The largest error over attainable, of all samples; it decides."),
+        Meta(
+            description="The largest error over attainable, of all samples; it decides "
+            "unless there is a tolerance."
+        ),
     ] = None
     ratio_at: Annotated[float | None, Meta(description="The time of the largest ratio.")] = None
     time_shift: Annotated[

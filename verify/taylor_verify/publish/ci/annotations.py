@@ -27,9 +27,12 @@ _HARMLESS: Final = "notice"
 _MOST: Final = 10
 
 
-def annotation_lines(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> list[str]:
-    """The lines, errors first; none where every row is a pass."""
-    shown = [case for case in cases(verdicts, remarks) if case.status is not Status.PASS]
+def annotation_lines(
+    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
+) -> list[str]:
+    """The lines, errors first; none where every row counts as a pass. ``by_remarks`` as in `cases`."""
+    found = cases(verdicts, remarks, by_remarks)
+    shown = [case for case in found if case.counted is not Status.PASS]
     lines: list[str] = []
     for level in (*dict.fromkeys(_LEVELS.values()), _HARMLESS):
         lines += _of_level(level, [case for case in shown if _level(case) == level])
@@ -37,7 +40,7 @@ def annotation_lines(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()
 
 
 def _level(case: Case) -> str:
-    return _HARMLESS if case.is_harmless else _LEVELS[case.status]
+    return _HARMLESS if case.is_harmless else _LEVELS[case.counted]
 
 
 def _of_level(level: str, found: list[Case]) -> Iterator[str]:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from taylor_verify.publish.cells import figure, instant, ratio, reason
-from taylor_verify.records.status import GRAVITY, Status
-from taylor_verify.records.verdict import Verdict
+from taylor_verify.records.status import Status, gravest
+from taylor_verify.records.verdict import Verdict, exit_status
 
 Key = tuple[str, str, str, str, str]
 
@@ -35,7 +35,8 @@ class Case:
     """One quantity of one run; ``verdict`` is None for a row that only a remark speaks of.
 
     ``status`` is the gravest of the verdict's and the remarks', ``sentences`` say why, none for a
-    pass without a remark.
+    pass without a remark. ``counted`` is the status that colours the row: that of the remarks where they
+    alone decide.
     """
 
     scene: str
@@ -44,41 +45,51 @@ class Case:
     rung: str
     quantity: str
     status: Status
+    counted: Status
     sentences: tuple[str, ...]
     verdict: Verdict | None
 
     @property
     def is_harmless(self) -> bool:
-        """Whether the row is no pass and yet leaves the exit status as it is."""
+        """True if the row is no pass and yet leaves the exit status as it is."""
         is_waived = self.verdict is not None and self.verdict.is_waived
-        return self.status is Status.UNAVAILABLE or (is_waived and self.status is Status.VACUOUS)
+        return self.counted is Status.UNAVAILABLE or (is_waived and self.counted is Status.VACUOUS)
 
     @property
     def title(self) -> str:
-        return f"{self.scene} on {self.rung}: {self.quantity} {self.status}"
+        return f"{self.scene} on {self.rung}: {self.quantity} {self.counted}"
 
     @property
     def text(self) -> str:
         return "\n".join(self.sentences)
 
 
-def cases(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> tuple[Case, ...]:
-    """A case for every row, in the order of the verdicts; then those that only remarks speak of."""
+def cases(
+    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
+) -> tuple[Case, ...]:
+    """A case for every row, in the order of the verdicts; then those that only remarks speak of.
+
+    ``by_remarks`` tells that the remarks alone decide, as with `--gate baseline`.
+    """
     rows = {_key(verdict): verdict for verdict in verdicts}
     said: dict[Key, list[Remark]] = {key: [] for key in rows}
     for remark in remarks:
         said.setdefault(_key(remark), []).append(remark)
-    return tuple(_case(key, rows.get(key), told) for key, told in said.items())
+    return tuple(_case(key, rows.get(key), told, by_remarks) for key, told in said.items())
 
 
 def _key(row: Verdict | Remark) -> Key:
     return row.scene, row.solver, row.setting, row.rung, row.quantity
 
 
-def _case(key: Key, verdict: Verdict | None, remarks: list[Remark]) -> Case:
+def _case(key: Key, verdict: Verdict | None, remarks: list[Remark], by_remarks: bool) -> Case:
+    said = [remark.status for remark in remarks]
     own = [] if verdict is None else [verdict.verdict]
-    status = min((*own, *(remark.status for remark in remarks)), key=GRAVITY.index)
-    return Case(*key, status, tuple(_sentences(verdict, remarks)), verdict)
+    counted = own
+    if by_remarks and verdict is not None and exit_status([verdict]):
+        counted = [Status.PASS]
+    sentences = tuple(_sentences(verdict, remarks))
+    return Case(*key, gravest((*own, *said)), gravest((*counted, *said)), sentences, verdict)
 
 
 def _sentences(verdict: Verdict | None, remarks: list[Remark]) -> Iterator[str]:

@@ -10,6 +10,8 @@ A run is a testsuite, each of its quantities a testcase. The file is green where
     unavailable                   skipped: this machine has no such number type
     vacuous as --partial asks     skipped
 
+Where a baseline alone decides, a row that fails its own bound and is no regression is a pass here.
+
 Both the schema of Surefire 3.0 and that of Jenkins (junit-10) admit it: the root is ``testsuites``
 for the latter, each suite in it is one of the former.
 """
@@ -41,10 +43,12 @@ _HEAD: Final = '<?xml version="1.0" encoding="UTF-8"?>'
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def junit(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> str:
-    """The document, which ends with a newline."""
+def junit(
+    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), by_remarks: bool = False
+) -> str:
+    """The document, which ends with a newline; ``by_remarks`` as in `cases`."""
     # A row that vanished has its place in the suite of its run.
-    found = sorted(cases(verdicts, remarks), key=_Runs().place)
+    found = sorted(cases(verdicts, remarks, by_remarks), key=_Runs().place)
     root = Element("testsuites", name="taylor-verify")
     for _, group in groupby(found, key=_run):
         root.append(_suite(list(group)))
@@ -96,13 +100,13 @@ def _testcase(case: Case, seconds: float) -> Element:
     if name:
         inside = SubElement(found, name, message=_xml(case.text))
         if name != "skipped":  # Surefire's has no type
-            inside.set("type", case.status.value)
+            inside.set("type", case.counted.value)
         inside.text = _xml(f"{case.title}\n{case.text}")
     return found
 
 
 def _element(case: Case) -> str:
-    return "skipped" if case.is_harmless else _ELEMENTS[case.status]
+    return "skipped" if case.is_harmless else _ELEMENTS[case.counted]
 
 
 def _classname(case: Case) -> str:

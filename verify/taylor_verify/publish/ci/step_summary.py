@@ -20,25 +20,32 @@ _LEGEND: Final = (
 _NUMBERS: Final = ("max", "at t", "bound", "over attainable")
 
 
-def step_summary(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> str:
-    """The page, never longer than GitHub takes."""
+def step_summary(
+    verdicts: Iterable[Verdict], remarks: Iterable[Remark] = (), decision: str = ""
+) -> str:
+    """The page, never longer than GitHub takes; ``decision`` says what decided if not the verdicts."""
     rows = list(verdicts)
     found = cases(rows, remarks)
     notable = [case for case in found if case.sentences]
     for most in (len(found), len(found) // 10, 100, 10):
-        text = _page(rows, found, notable, most)
+        text = _page(rows, found, notable, most, decision)
         if len(text.encode()) <= _MOST_BYTES:
             return text
-    return _page(rows, found, notable, 0)
+    return _page(rows, found, notable, 0, decision)
 
 
 def _page(
-    verdicts: Sequence[Verdict], found: Sequence[Case], notable: Sequence[Case], most: int
+    verdicts: Sequence[Verdict],
+    found: Sequence[Case],
+    notable: Sequence[Case],
+    most: int,
+    decision: str,
 ) -> str:
     # A row of the second table is short; it is the reasons that are long.
     folded = found if most == len(found) else ()
     blocks = [
         "## taylor-verify",
+        bold(prose(decision)) if decision else "",
         counts(verdicts),
         _beyond_verdicts(found),
         _table("What is no pass, or not what it was", notable[:most], reasons=True),

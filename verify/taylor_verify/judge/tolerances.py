@@ -1,0 +1,94 @@
+"""Tolerances that a caller asks for, in place of the bounds that follow from the arithmetic.
+
+A tolerance is a relative error, and radians for an attitude. It is below 1: the answer zero has an error
+of 1, so that a larger one would forbid nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.records.quantities import STATES, UNIT_QUATERNION
+from taylor_verify.scenes.faults import brief
+from taylor_verify.scenes.positive import positive
+
+if TYPE_CHECKING:
+    from taylor_verify.scenes.scene import Scene
+
+Tolerance = float | Mapping[str, float] | None
+"""What a caller gives: a number for all quantities, or a number for each of some."""
+
+_EXPECTED: Final = "a positive number below 1 (the error of the answer zero)"
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """The tolerance of ``every`` quantity, or of ``each`` of some; the others keep their own bounds."""
+
+    every: float | None = None
+    each: tuple[tuple[str, float], ...] = ()
+
+    def of(self, quantity: str) -> float | None:
+        """Return the tolerance of a quantity; None where its own bound stands.
+
+        The length of a quaternion has the tolerance of the attitude.
+        """
+        name = "attitude" if quantity == UNIT_QUATERNION else quantity
+        return dict(self.each).get(name, self.every)
+
+
+NO_TOLERANCES: Final = Tolerances()
+
+
+def tolerances(
+    asked: Tolerances | Tolerance, scenes: Iterable[Scene], place: str = "tolerance"
+) -> Tolerances:
+    """Return the tolerances that are ``asked`` for in some scenes; Tolerances stay as they are.
+
+    Raises ValueError, with every fault and its ``place``, for a name that is no quantity of these scenes
+    and for a tolerance that is no positive number below 1.
+    """
+    if isinstance(asked, Tolerances):
+        return asked
+    if asked is None:
+        return NO_TOLERANCES
+    if not isinstance(asked, Mapping):
+        return Tolerances(every=_tolerance(asked, place))
+    known, faults = _quantities(scenes), []
+    unknown = [str(name) for name in asked if name not in known]
+    if unknown or not asked:
+        got = ", ".join(unknown) or "nothing"
+        faults.append(f"expected some of {', '.join(known)}, got {got} @ {place}")
+    each: dict[str, float] = {}
+    for name, value in asked.items():
+        try:
+            each[str(name)] = _tolerance(value, f"{place} {name}")
+        except ValueError as error:
+            faults.append(str(error))
+    if faults:
+        raise ValueError("\n".join(faults))
+    return Tolerances(each=tuple(sorted(each.items())))
+
+
+def _tolerance(value: Any, place: str) -> float:
+    number = positive(value, place, _EXPECTED)
+    if not number < 1:
+        raise ValueError(f"expected {_EXPECTED}, got {brief(value)} @ {place}")
+    return number
+
+
+def _quantities(scenes: Iterable[Scene]) -> list[str]:
+    """Return the quantities that are compared in some of these scenes, states first."""
+    from taylor_verify.exact.invariants import invariants
+
+    asked = list(scenes)
+    # A file may have the angular velocity of a solid in a fluid too.
+    states = {name for scene in asked for name in ("omega", *_main(scene), *scene.track)}
+    conserved = dict.fromkeys(each.name for scene in asked for each in invariants(scene))
+    return [*(name for name in STATES if name in states), *conserved]
+
+
+def _main(scene: Scene) -> tuple[str, ...]:
+    return ("impulse",) if scene.model == "kirchhoff" else ()
