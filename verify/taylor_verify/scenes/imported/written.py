@@ -21,7 +21,7 @@ _LONGEST_NAME: Final = 200
 # A start off every axis and off the identity attitude: what is wrong shows in the first rows. The
 # quaternion has unit length exactly.
 _TURNING: Final = "[0.3, 1, 0.2]"
-_ATTITUDE: Final = "[0.4, 0.2, -0.4, 0.8]"
+_ATTITUDE: Final = "[0.68, 0.32, -0.64, 0.16]"
 _PLACEHOLDER: Final = "A placeholder, and nothing of the file: put your own start here."
 _PLACEHOLDER_TIME: Final = "A placeholder as well."
 
@@ -61,13 +61,13 @@ def scene_text(link: Link, form: str, file: str) -> str:
 
 
 _RIGID_START: Final = (
-    f"omega = {_TURNING}                     # body axes, radians per second",
-    f"attitude = {_ATTITUDE}         # quaternion, scalar first, body to space",
+    f"omega = {_TURNING}                       # body axes, radians per second",
+    f"attitude = {_ATTITUDE}  # quaternion, scalar first, body to space",
 )
 _VEHICLE_START: Final = (
-    "linear_velocity = [1, 0.1, -0.2]       # of the origin of the link, in its axes",
-    "angular_velocity = [0.1, 0.2, 0.3]     # radians per second",
-    f"attitude = {_ATTITUDE}       # quaternion, scalar first, body to space",
+    "linear_velocity = [1, 0.1, -0.2]         # of the origin of the link, in its axes",
+    "angular_velocity = [0.1, 0.2, 0.3]       # radians per second",
+    f"attitude = {_ATTITUDE}  # quaternion, scalar first, body to space",
 )
 
 
