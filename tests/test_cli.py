@@ -27,6 +27,7 @@ from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.guide import GUIDE
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.solvers import registry
 
@@ -67,10 +68,29 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "extremes": list(library.names("extremes")),
         "solvers": list(registry.NAMES),
         "rungs": list(LADDER),
+        "guide": dict(GUIDE),
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out
     assert all(name in text for names in found.values() for name in names)
+
+
+def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) -> None:
+    """`list` begins with at most ten lines on which scene tells what, each shipped."""
+    assert len(GUIDE) <= 10
+    assert all(
+        set(library.named(name))
+        <= {
+            *library.names(),
+            *library.named(library.EXTREMES),
+        }
+        for name in GUIDE
+    )
+    assert main(["list"]) == 0
+    first, *rest = capsys.readouterr().out.splitlines()
+    assert first == "which scene tells what"
+    for line, (name, purpose) in zip(rest, GUIDE.items(), strict=False):
+        assert line.split(maxsplit=1) == [name, purpose]
 
 
 @pytest.mark.parametrize("verb", [[], ["list"], ["run"], ["exact"], ["explain"], ["publish"]])

@@ -211,7 +211,7 @@ def test_a_command_can_be_typed(command: str) -> None:
     assert [scene for scene in scenes if scene not in names()] == []
 
 
-VERBS = ("list", "run", "exact", "check", "explain", "tradeoff", "claims", "publish")
+VERBS = ("list", "scene", "run", "exact", "check", "explain", "tradeoff", "claims", "publish")
 
 
 @pytest.mark.parametrize("verb", VERBS)

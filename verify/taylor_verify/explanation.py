@@ -26,7 +26,7 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reader import as_scene
@@ -69,7 +69,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "bits": rung_named(rung).bits,
         "track": sorted({MAIN[scene.model]} | scene.track),
         "warnings": [*scene.warnings, *lacking],
-        "body": ellipsoid.told(scene.body) if isinstance(scene.body, ImmersedBody) else [],
+        "body": [*_shape(scene.body), *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
         "cost": {
             **_cost(scene, rung),
@@ -81,6 +81,11 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in found.verdicts],
     }
+
+
+def _shape(body: Body) -> list[str]:
+    """Return what body was read, in sentences, where it was given as an ellipsoid."""
+    return ellipsoid.told(body) if isinstance(body, ImmersedBody) else []
 
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:

@@ -7,7 +7,17 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from taylor_verify.cli import check, ci, claims, publishing, question, tolerance, tradeoff, verbs
+from taylor_verify.cli import (
+    check,
+    ci,
+    claims,
+    publishing,
+    question,
+    scene,
+    tolerance,
+    tradeoff,
+    verbs,
+)
 from taylor_verify.cli.answer import Answer
 from taylor_verify.scenes.names import escaped
 from taylor_verify.version import __version__
@@ -78,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
     found = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     _add_list(found)
+    _add_scene(found)
     _add_question(found)
     _add_run(found)
     _add_exact(found)
@@ -108,6 +119,11 @@ def _add_list(found: Any) -> None:
     _verb(
         found, "list", "list the shipped scenes, solvers and rungs", "list --json", verbs.list_all
     )
+
+
+def _add_scene(found: Any) -> None:
+    what = "write a scene from a URDF, SDF or MJCF file"
+    scene.add_options(_verb(found, "scene", what, "scene from robot.urdf --link base", scene.scene))
 
 
 def _add_question(found: Any) -> None:

@@ -31,8 +31,15 @@ _UNITS = {
 }
 
 
-def names_text(found: Mapping[str, Sequence[str]], titles: Mapping[str, str]) -> str:
+def names_text(
+    found: Mapping[str, Sequence[str]], titles: Mapping[str, str], guide: Mapping[str, str]
+) -> str:
+    """Return everything that has a name, and first which scene tells what."""
     console = new_console()
+    print_line(console, Text("which scene tells what", "bold"))
+    guide_width = max(map(len, guide), default=0)
+    for name, purpose in guide.items():
+        print_line(console, f"  {name:{guide_width}}  {purpose}")
     width = max(map(len, titles), default=0)
     for heading, entries in found.items():
         print_line(console, Text(heading, "bold"))

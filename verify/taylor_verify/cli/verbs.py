@@ -24,6 +24,7 @@ def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
     from taylor_verify.cli.terminal import names_text
     from taylor_verify.records.quantities import LADDER
+    from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reader import load
     from taylor_verify.solvers.registry import NAMES
@@ -32,7 +33,7 @@ def list_all(options: argparse.Namespace) -> Answer:
     scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
     titles = {name: load(name).title for group in scenes.values() for name in group}
     found = {**scenes, "solvers": list(NAMES), "rungs": list(LADDER)}
-    return Answer(PASS, found, partial(names_text, found, titles))
+    return Answer(PASS, {**found, "guide": dict(GUIDE)}, partial(names_text, found, titles, GUIDE))
 
 
 def run(options: argparse.Namespace) -> Answer:

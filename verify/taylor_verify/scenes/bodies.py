@@ -68,6 +68,30 @@ class ImmersedBody:
         return tensors.blocks(self.linear, self.coupling, self.angular)
 
     @cached_property
+    def mass_matrix(self) -> Matrix:
+        """The 6x6 matrix M of (x, y) = M (U, Omega): body and added mass together, exactly."""
+        return tensors.inverse(self.energy_matrix)
+
+    @classmethod
+    def of_mass_matrix(cls, matrix: Matrix) -> ImmersedBody:
+        """Return the free body of a symmetric positive definite M: [[A, B], [B^T, C]] is its inverse."""
+        inverse = tensors.inverse(matrix)
+        upper, lower = inverse[:3], inverse[3:]
+        return cls(
+            linear=tuple(row[:3] for row in upper),
+            coupling=tuple(row[3:] for row in upper),
+            angular=tuple(row[3:] for row in lower),
+        )
+
+    def impulses(self, velocity: Vector, angular_velocity: Vector) -> tuple[Vector, Vector]:
+        """Return x and y of the velocity U of the origin and the angular velocity Omega, exactly.
+
+        All four are in body axes. U = A x + B y and Omega = B^T x + C y give the velocities back.
+        """
+        momenta = tensors.apply(self.mass_matrix, velocity + angular_velocity)
+        return momenta[:3], momenta[3:]
+
+    @cached_property
     def axis_of_symmetry(self) -> int | None:
         """The body axis about which every turn leaves T as it is; 3 where there is a choice.
 

@@ -2,7 +2,8 @@
 
 Legend: ``inertia`` I, ``moment`` M; ``clebsch`` has p, p', q, q', r, r' (``p_prime`` and so on);
 ``energy`` has A, B, C of T = x.A x/2 + x.B y + y.C y/2 as ``linear``, ``coupling``, ``angular``;
-``ellipsoid`` has ``semi_axes`` along body axes 1, 2, 3, ``density`` and ``fluid_density``.
+``ellipsoid`` has ``semi_axes`` along body axes 1, 2, 3, ``density`` and ``fluid_density``;
+``mass_matrix`` is M of (x, y) = M (U, Omega), whose inverse is [[A, B], [B^T, C]].
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Final
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.faults import shown
+from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.table import Table
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
@@ -51,13 +53,15 @@ def _has_positive_moments(table: Table, tensor: Matrix, cells: tuple[str, ...]) 
     return not wrong
 
 
-def _is_positive(table: Table, expected: str, matrix: Matrix, key: str = "") -> bool:
+def _is_positive(
+    table: Table, expected: str, matrix: Matrix, key: str = "", mend: str = ""
+) -> bool:
     """Sylvester: a symmetric matrix is positive definite if all its leading minors are positive."""
     for size in range(1, len(matrix) + 1):
         leading = tuple(row[:size] for row in matrix[:size])
         if not tensors.is_positive_definite(leading):
             got = f"one whose leading {size}x{size} minor is not positive"
-            table.fault(expected, got, key)
+            table.fault(expected, got, key, mend)
             return False
     return True
 
@@ -109,6 +113,23 @@ def _energy(table: Table) -> ImmersedBody | None:
 def _positive(form: Table, body: ImmersedBody) -> ImmersedBody | None:
     expected = "a positive definite energy [[A, B], [B^T, C]]"
     return body if _is_positive(form, expected, body.energy_matrix) else None
+
+
+def _mass_matrix(table: Table) -> ImmersedBody | None:
+    """The inertia of body and fluid, inverted exactly."""
+    matrix = table.symmetric("mass_matrix", size=6)
+    expected = "a positive definite mass matrix"
+    mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
+    if matrix is None or not _is_positive(table, expected, matrix, "mass_matrix", mend):
+        return None
+    body = ImmersedBody.of_mass_matrix(matrix)
+    table.note(
+        "T is given by the mass matrix M of (x, y) = M (U, Omega). The equations hold its inverse "
+        "[[A, B], [B^T, C]], which is formed exactly, in rationals."
+    )
+    for number, row in enumerate(body.energy_matrix, 1):
+        table.note(f"Row {number} of the inverse: {', '.join(map(float_text, row))}.")
+    return body
 
 
 def _ellipsoid(table: Table) -> ImmersedBody | None:
@@ -184,4 +205,5 @@ FORMS: Final[dict[str, Callable[[Table], ImmersedBody | None]]] = {
     "clebsch": _clebsch,
     "energy": _energy,
     "ellipsoid": _ellipsoid,
+    "mass_matrix": _mass_matrix,
 }

@@ -32,10 +32,14 @@ class Refused(Exception):  # noqa: N818 (it names what happened to the scene)
 
 
 class Faults:
-    """The faults of one scene or file in the order of the reading, no more than a hundred."""
+    """The faults of one scene or file in the order of the reading, no more than a hundred.
+
+    ``notes`` are sentences on numbers that were formed from what is written, which is no fault.
+    """
 
     def __init__(self) -> None:
         self.lines: list[str] = []
+        self.notes: list[str] = []
 
     @property
     def is_full(self) -> bool:

@@ -1,7 +1,6 @@
 """A scene file becomes a Scene in exact rationals, or is refused with all its faults at once.
 
-The format is that of cases/README.md. Legend: ``linear_impulse`` x, ``angular_impulse`` y;
-``attitude`` is the quaternion of R, v_space = R v_body; ``centre`` is the body's origin in space.
+The format is that of cases/README.md.
 """
 
 from __future__ import annotations
@@ -20,15 +19,23 @@ from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.body_reader import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.clock_reader import clock
 from taylor_verify.scenes.faults import Faults, Refused, cut, near, shown
+from taylor_verify.scenes.hints import hints
+from taylor_verify.scenes.initial_reader import (
+    IMPULSES,
+    VELOCITIES,
+    impulse,
+    placed,
+    spin,
+    turned,
+)
 from taylor_verify.scenes.limit import Limit
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.manufactured_reader import manufactured
-from taylor_verify.scenes.motion import IDENTITY, Impulse, Quaternion, Spin, State
+from taylor_verify.scenes.motion import Spin, State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.regular_file import read_bytes
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.table import Table
-from taylor_verify.scenes.tensors import ZERO_VECTOR
 
 T = TypeVar("T")
 
@@ -46,16 +53,17 @@ class Model(NamedTuple):
     """How the parts of a scene that differ from model to model are read.
 
     ``always`` is what every motion holds, tracked or not; ``extras`` may be tracked besides. ``moving``
-    are the vectors of a manufactured motion, ``loads`` those that it determines, and ``placed`` reads
-    what of the initial state it leaves open.
+    are the vectors of a manufactured motion, ``velocities`` other keys for its start, ``loads`` the
+    vectors that it determines, and ``placed`` reads what of the initial state it leaves open.
     """
 
     name: str
     body: Callable[[Table], Body | None]
-    initial: Callable[[Table], State | None]
+    initial: Callable[[Table, Body | None], State | None]
     always: str
     extras: frozenset[str]
     moving: tuple[str, ...]
+    velocities: tuple[str, ...]
     loads: tuple[str, ...]
     placed: Callable[[Table], State | None]
 
@@ -88,13 +96,13 @@ def read(text: str, name: str) -> Scene:
     title, source = top.text("title"), top.text("source", default="")
     model = _model(top)
     track = _track(top, model)
-    body = _part(top, "body", model.body if model else _unread)
+    body = _part(top, "body", model.body if model else _unread, model)
     if top.has("manufactured"):
         body, initial = _manufactured(top, model, body)
     else:
-        initial = _part(top, "initial", model.initial if model else _unread)
+        initial = _part(top, "initial", _initial(model, body) if model else _unread, model)
     time = _part(top, "time", clock)
-    top.close()
+    top.close(hints(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
     if faults.lines or body is None or initial is None or time is None:
@@ -110,6 +118,7 @@ def read(text: str, name: str) -> Scene:
         source=source,
         digest=hashlib.sha256(text.encode()).hexdigest(),
         warnings=warnings(body),
+        notes=tuple(faults.notes),
     )
 
 
@@ -135,14 +144,21 @@ def _decimal(literal: str) -> Decimal | str:
         return literal
 
 
-def _part(top: Table, key: str, reader: Callable[[Table], T]) -> T | None:
+def _part(
+    top: Table, key: str, reader: Callable[[Table], T], model: Model | None = None
+) -> T | None:
     """A table of the scene, read and closed."""
     table = top.table(key)
     if table is None:
         return None
     part = reader(table)
-    table.close()
+    table.close(hints(key, model.name if model else ""))
     return part
+
+
+def _initial(model: Model, body: Body | None) -> Callable[[Table], State | None]:
+    """The reader of the initial state of this body."""
+    return lambda table: model.initial(table, body)
 
 
 def _unread(table: Table) -> None:
@@ -183,13 +199,13 @@ def _manufactured(
     if table is not None:
         table.close()
     start = (top.table("initial") if top.has("initial") else None) or top.empty("initial")
-    for name in model.moving:
+    for name in model.moving + model.velocities:
         if start.has(name):
             start.take(name, "nothing")
             got = "another one beside a manufactured motion"
             start.fault("the start that the motion has", got, name, f"remove `{name}`")
     initial = model.placed(start)
-    start.close()
+    start.close(hints("initial", model.name))
     for load in model.loads:
         given = getattr(body, load, ())
         if any(given):
@@ -207,66 +223,30 @@ def _begun(initial: State, motion: Manufactured) -> State:
     return replace(initial, linear=motion.start[:3], angular=motion.start[3:])
 
 
-def _turned(table: Table) -> Spin | None:
-    attitude = _attitude(table)
-    return Spin(ZERO_VECTOR, attitude) if attitude else None
-
-
-def _placed(table: Table) -> Impulse | None:
-    attitude = _attitude(table)
-    centre = table.vector("centre", default=ZERO_VECTOR)
-    return Impulse(ZERO_VECTOR, ZERO_VECTOR, attitude, centre) if attitude and centre else None
-
-
-def _spin(table: Table) -> Spin | None:
-    omega = table.vector("omega")
-    attitude = _attitude(table)
-    return Spin(omega, attitude) if omega and attitude else None
-
-
-def _impulse(table: Table) -> Impulse | None:
-    linear, angular = table.vector("linear_impulse"), table.vector("angular_impulse")
-    attitude = _attitude(table)
-    centre = table.vector("centre", default=ZERO_VECTOR)
-    if linear and angular and attitude and centre:
-        return Impulse(linear, angular, attitude, centre)
-    return None
-
-
-def _attitude(table: Table) -> Quaternion | None:
-    """A quaternion of any norm but zero, scalar first."""
-    entries = table.vector("attitude", default=IDENTITY, length=4)
-    if entries is None:
-        return None
-    if not any(entries):
-        table.fault("a quaternion that is not zero", shown(list(entries)), "attitude")
-        return None
-    q0, q1, q2, q3 = entries
-    return (q0, q1, q2, q3)
-
-
 MODELS: Final = {
     model.name: model
     for model in (
         Model(
             name="euler",
             body=rigid_body,
-            initial=_spin,
+            initial=spin,
             always="omega",
             extras=frozenset({"attitude"}),
             moving=("omega",),
+            velocities=(),
             loads=("moment",),
-            placed=_turned,
+            placed=turned,
         ),
         Model(
             name="kirchhoff",
             body=immersed_body,
-            initial=_impulse,
+            initial=impulse,
             always="impulse",
             extras=frozenset({"attitude", "centre"}),
-            moving=("linear_impulse", "angular_impulse"),
+            moving=IMPULSES,
+            velocities=VELOCITIES,
             loads=("force", "couple"),
-            placed=_placed,
+            placed=placed,
         ),
     )
 }

@@ -15,7 +15,8 @@ class Scene:
     ``name`` is the name of a shipped scene (``euler/generic``) or the path given; ``model`` is
     ``euler`` (RigidBody, Spin) or ``kirchhoff`` (ImmersedBody, Impulse); ``track`` holds what the
     scene requires besides omega or impulse: ``attitude``, ``centre``; ``digest`` is the SHA-256 of
-    the text; ``warnings`` are sentences about a body that no real solid could have.
+    the text; ``warnings`` are sentences about a body that no real solid could have; ``notes`` say how
+    numbers were formed that the file does not write as they are (an inverse, a rate in degrees).
     """
 
     name: str
@@ -28,3 +29,4 @@ class Scene:
     source: str = ""
     digest: str = ""
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()

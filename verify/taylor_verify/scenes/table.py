@@ -6,9 +6,11 @@ A reader method returns None where it recorded a fault, so that reading goes on 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from itertools import combinations
+from types import MappingProxyType
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.faults import Faults, cut, near, shown
@@ -20,8 +22,16 @@ _MOST_BITS = 16_600  # 10^5000 has 16610 bits
 _LONGEST_SENTENCE = 1000  # it stands in a cell of a table
 
 _NUMBER = "a finite number"
+_WITHOUT_UNIT = (
+    "a number without a unit (units are any consistent set; `omega` and `angular_velocity` alone "
+    'take text such as "2 deg/s")'
+)
 _FRACTION = re.compile(r"([+-]?[0-9]+)/([0-9]+)")
 _DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE]([+-]?[0-9]+))?")
+_QUANTITY = re.compile(r"([+-]?[0-9.][0-9./eE+-]*)\s*([^\W\d_\s].*|[°%].*)")
+
+Number = Callable[[object], Fraction]
+"""Reads one entry of an array, or raises ValueError with what it expects."""
 
 
 class Table:
@@ -51,12 +61,13 @@ class Table:
             return None
         return self._left.pop(key)
 
-    def close(self) -> None:
-        """Every key that nobody took is unknown."""
+    def close(self, hints: Mapping[str, str] = MappingProxyType({})) -> None:
+        """Every key that nobody took is unknown; ``hints`` says of some what to write instead."""
         for key in self._left:
             if self.faults.is_full:
                 break
-            self.fault("a known key", f"`{cut(key)}`", cut(key), near(cut(key), self._known))
+            mend = hints.get(key.lower()) or near(cut(key), self._known)
+            self.fault("a known key", f"`{cut(key)}`", cut(key), mend)
 
     def drain(self) -> None:
         """Leave the rest unread, without a fault."""
@@ -145,24 +156,40 @@ class Table:
         value = self.take(key, f"{length} numbers")
         return None if value is None else self._row(value, key, length)
 
-    def matrix(self, key: str) -> Matrix | None:
-        """Three rows of three exact numbers."""
-        value = self.take(key, "a 3x3 matrix")
+    def converted(self, key: str, number: Number) -> Vector | None:
+        """Three numbers as ``number`` reads them; it raises ValueError with what it expects."""
+        value = self.take(key, "3 numbers")
+        return None if value is None else self._row(value, key, 3, number)
+
+    def units(self, key: str) -> list[str]:
+        """The units in an array, each once, in the order written; the key is left to be taken."""
+        value = self._left.get(key)
+        parts = map(quantity, value if isinstance(value, list) else [])
+        return [*dict.fromkeys(unit for _, unit in filter(None, parts))]
+
+    def note(self, sentence: str) -> None:
+        """Add a sentence on how numbers of this table were formed."""
+        self.faults.notes.append(sentence)
+
+    def matrix(self, key: str, size: int = 3) -> Matrix | None:
+        """As many rows as columns, of exact numbers."""
+        value = self.take(key, f"a {size}x{size} matrix")
         if value is None:
             return None
-        if not isinstance(value, list) or len(value) != 3:
-            self.fault("a 3x3 matrix [[..], [..], [..]]", shown(value), key)
+        if not isinstance(value, list) or len(value) != size:
+            form = ", ".join(["[..]"] * size)
+            self.fault(f"a {size}x{size} matrix [{form}]", shown(value), key)
             return None
-        rows = [self._row(row, f"{key}[{i}]", 3) for i, row in enumerate(value)]
+        rows = [self._row(row, f"{key}[{i}]", size) for i, row in enumerate(value)]
         known = tuple(row for row in rows if row is not None)
-        return known if len(known) == 3 else None
+        return known if len(known) == size else None
 
-    def symmetric(self, key: str) -> Matrix | None:
-        """A 3x3 matrix equal to its transpose; every pair that differs is a fault."""
-        matrix = self.matrix(key)
+    def symmetric(self, key: str, size: int = 3) -> Matrix | None:
+        """A square matrix equal to its transpose; every pair that differs is a fault."""
+        matrix = self.matrix(key, size)
         if matrix is None or tensors.is_symmetric(matrix):
             return matrix
-        for i, j in ((0, 1), (0, 2), (1, 2)):
+        for i, j in combinations(range(size), 2):
             if matrix[i][j] != matrix[j][i]:
                 upper, lower = shown(matrix[i][j]), shown(matrix[j][i])
                 got = f"[{i}][{j}] = {upper} but [{j}][{i}] = {lower}"
@@ -174,20 +201,24 @@ class Table:
         value = self._left.get(key)
         return isinstance(value, list) and any(isinstance(entry, list) for entry in value)
 
-    def _row(self, value: object, key: str, length: int) -> Vector | None:
+    def _row(
+        self, value: object, key: str, length: int, number: Number | None = None
+    ) -> Vector | None:
         if not isinstance(value, list) or len(value) != length:
             self.fault(f"{length} numbers", shown(value), key)
             return None
-        return self._entries(value, key)
+        return self._entries(value, key, number)
 
-    def _entries(self, values: list[object], key: str) -> Vector | None:
-        exact = [self._exact(value, f"{key}[{i}]") for i, value in enumerate(values)]
+    def _entries(
+        self, values: list[object], key: str, number: Number | None = None
+    ) -> Vector | None:
+        exact = [self._exact(value, f"{key}[{i}]", number) for i, value in enumerate(values)]
         known = tuple(value for value in exact if value is not None)
         return known if len(known) == len(values) else None
 
-    def _exact(self, value: object, key: str) -> Fraction | None:
+    def _exact(self, value: object, key: str, number: Number | None = None) -> Fraction | None:
         try:
-            return exact_number(value)
+            return (number or exact_number)(value)
         except ValueError as error:
             self.fault(str(error), shown(value), key)
             return None
@@ -236,4 +267,17 @@ def _from_text(text: str) -> Fraction:
         if match[1] and abs(int(match[1])) > 2 * LARGEST_EXPONENT:
             raise ValueError(f"a number with powers of ten up to {LARGEST_EXPONENT}")
         return _from_decimal(Decimal(text))
+    if quantity(text):
+        raise ValueError(_WITHOUT_UNIT)
     raise ValueError('a number (an integer, a decimal or "a/b")')
+
+
+def quantity(value: object) -> tuple[str, str] | None:
+    """Number and unit of text such as ``"2 deg/s"``; None for a bare number and any other text."""
+    if not isinstance(value, str) or len(value) > _MOST_DIGITS:
+        return None
+    text = value.strip()
+    if _FRACTION.fullmatch(text) or _DECIMAL.fullmatch(text):
+        return None
+    parts = _QUANTITY.fullmatch(text)
+    return (parts[1], parts[2].strip()) if parts else None

@@ -1,0 +1,109 @@
+"""Scenes from other people's descriptions of bodies: URDF, SDF and MJCF.
+
+document   XML read without the parts of it that attack a reader
+rotation   rotations in rationals
+reading    numbers of such a file, or faults with their line
+urdf, sdf, mjcf   the links of a file, and the inertia of one
+link       the inertia of a link: mass, centre, tensor, added mass
+written    the text of a scene
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from taylor_verify.scenes.faults import Faults, Refused, cut
+from taylor_verify.scenes.imported import mjcf, sdf, urdf
+from taylor_verify.scenes.imported.document import Node, read_document
+from taylor_verify.scenes.imported.link import Candidate, Format
+from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.written import scene_text
+
+_FORMATS: Final[Mapping[str, Format]] = {
+    form.root: form for form in (urdf.FORMAT, sdf.FORMAT, mjcf.FORMAT)
+}
+_ROOTS: Final = ", ".join(f"{form.name} with <{form.root}>" for form in _FORMATS.values())
+_OTHER_ROOTS: Final = {
+    "mujocoinclude": "it is a part of an MJCF file: name the file that includes it",
+    "gazebo": "it is older than SDF 1.2: `gz sdf -p FILE` converts it",
+    "world": "put it into <sdf version='1.10'>",
+    "model": "a model.config names its SDF file; name that one",
+}
+
+
+class Imported(NamedTuple):
+    """The text of a scene, and which link of what it was made from."""
+
+    text: str
+    link: str
+    form: str
+
+
+def import_scene(path: Path, link: str | None = None) -> Imported:
+    """Write a scene from a URDF, SDF or MJCF file.
+
+    ``link`` names the link or body; it may be left out where one alone has an inertia. The start and
+    the times of the scene are placeholders, and its comments say where each number came from. Raises
+    Refused for a file that cannot be read, for no link or several, and with every fault of the link.
+    """
+    root = read_document(path)
+    form = _format(root, path)
+    reading = Reading(path.name, Faults())
+    chosen = _chosen(form.candidates(root), link, form, path)
+    found = form.link(root, chosen, reading)
+    if found is None or reading.faults.lines:
+        raise Refused(reading.faults.lines)
+    return Imported(scene_text(found, form.name, path.name), found.name, form.name)
+
+
+def _format(root: Node, path: Path) -> Format:
+    """The format of the file by its root element."""
+    if root.name == urdf.FORMAT.root and any(node.name.startswith("xacro:") for node in root.all()):
+        line = f"expected a URDF file, got one that xacro has yet to expand @ {path}"
+        raise Refused([f"{line} (write `xacro {path.name} > robot.urdf`, and name that file)"])
+    form = _FORMATS.get(root.name)
+    if form is None:
+        mend = _OTHER_ROOTS.get(root.name, "")
+        line = f"expected {_ROOTS}, got <{cut(root.name)}> @ {path}"
+        raise Refused([f"{line} ({mend})" if mend else line])
+    return form
+
+
+def _chosen(candidates: list[Candidate], link: str | None, form: Format, path: Path) -> Candidate:
+    """The one link that is meant; Refused, with the names of all, where there is none or several."""
+    with_inertia = [candidate for candidate in candidates if candidate.inertial is not None]
+    if link is not None:
+        return _named(candidates, with_inertia, link, form, path)
+    if len(with_inertia) == 1:
+        return with_inertia[0]
+    if not with_inertia:
+        got = f"{len(candidates)} without" if candidates else "none"
+        line = f"expected a {form.link_word} with <inertial>, got {got} @ {path}"
+        raise Refused([f"{line} ({form.without_inertial})"])
+    expected = f"--link with the name of one {form.link_word}"
+    raise Refused([f"expected {expected}, got none @ {path} ({_names(with_inertia)})"])
+
+
+def _named(
+    candidates: list[Candidate],
+    with_inertia: list[Candidate],
+    link: str,
+    form: Format,
+    path: Path,
+) -> Candidate:
+    alike = [candidate for candidate in candidates if candidate.is_called(link)]
+    if len(alike) == 1 and alike[0].inertial is not None:
+        return alike[0]
+    place = f"@ --link of {path}"
+    if len(alike) == 1:
+        line = f"expected a {form.link_word} with <inertial>, got {cut(link)} without {place}"
+        raise Refused([f"{line} ({form.without_inertial})"])
+    got = f"{cut(link)}, which is the name of {len(alike)}" if alike else cut(link)
+    line = f"expected the name of one {form.link_word}, got {got} {place}"
+    raise Refused([f"{line} (known: {_names(alike or with_inertia)})"])
+
+
+def _names(candidates: list[Candidate]) -> str:
+    return ", ".join(candidate.name for candidate in candidates) or "none has <inertial>"

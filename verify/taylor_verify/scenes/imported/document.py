@@ -1,0 +1,97 @@
+"""An XML document as a tree of nodes, of bounded size and depth.
+
+A document type is refused where it begins: it could name other files, and entities that grow a
+thousandfold. Nothing but the one file is ever opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+from xml.parsers import expat
+
+from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.limit import Limit
+from taylor_verify.scenes.regular_file import read_bytes
+
+MOST_BYTES: Final = Limit(2**24, "bytes", "a description of a robot has its meshes in other files")
+DEEPEST: Final = Limit(200, "elements inside each other", "the longest chain of bodies is shorter")
+
+
+@dataclass
+class Node:
+    """An element: its name with prefix, attributes, text, children, and the line where it begins."""
+
+    name: str
+    attributes: dict[str, str]
+    line: int
+    text: str = ""
+    children: list[Node] = field(default_factory=list)
+
+    def all(self) -> Iterator[Node]:
+        """Yield this node and everything below it, in the order of the file."""
+        yield self
+        for child in self.children:
+            yield from child.all()
+
+    def named(self, *names: str) -> list[Node]:
+        """Return the children of these names, in the order of the file."""
+        return [child for child in self.children if child.name in names]
+
+    def child(self, name: str) -> Node | None:
+        """Return the first child of this name."""
+        return next(iter(self.named(name)), None)
+
+
+def read_document(path: Path) -> Node:
+    """Return the root; Refused for what is no XML, has a document type, or is too large or deep."""
+    content = read_bytes(path, "a readable URDF, SDF or MJCF file", MOST_BYTES)
+    return _Builder(path).built(content)
+
+
+class _Builder:
+    """Makes nodes of what the parser meets."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._open: list[Node] = []
+        self._root: Node | None = None
+        self._parser = expat.ParserCreate()
+        self._parser.buffer_text = True
+        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
+        self._parser.StartElementHandler = self._begin
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._add_text
+
+    def built(self, content: bytes) -> Node:
+        try:
+            self._parser.Parse(content, True)
+        except (expat.ExpatError, LookupError, ValueError) as error:
+            line = f"expected an XML document, got a fault in it: {error} @ {self._path}"
+            raise Refused([line]) from None
+        assert self._root is not None, "expat refuses a document without an element"
+        return self._root
+
+    def _refuse_doctype(self, name: str, *rest: object) -> None:
+        line = self._parser.CurrentLineNumber
+        expected = (
+            "XML without a document type, which could name other files and entities without end"
+        )
+        raise Refused([f"expected {expected}, got <!DOCTYPE {name:.60}> @ {self._path}:{line}"])
+
+    def _begin(self, name: str, attributes: dict[str, str]) -> None:
+        DEEPEST.check(len(self._open) + 1, f"{self._path}:{self._parser.CurrentLineNumber}")
+        node = Node(name, attributes, self._parser.CurrentLineNumber)
+        if self._open:
+            self._open[-1].children.append(node)
+        else:
+            self._root = node
+        self._open.append(node)
+
+    def _end(self, name: str) -> None:
+        self._open.pop()
+
+    def _add_text(self, text: str) -> None:
+        self._open[-1].text += text

@@ -1,0 +1,81 @@
+"""The inertia of one link of a robot or vehicle, in exact rationals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+
+class Candidate(NamedTuple):
+    """A link of a file by its name, with its inertial element if it has one."""
+
+    name: str
+    node: Node
+    inertial: Node | None
+
+    def is_called(self, name: str) -> bool:
+        """Return True for the whole name, and for the part behind the models that the link is in."""
+        return self.name == name or self.name.endswith(f"::{name}")
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid link, about its origin and in its axes.
+
+    ``centre`` is the centre of mass; ``inertia`` the tensor about it, in the axes of the link, products
+    as tensor components; ``added_mass`` the 6x6 matrix of the fluid about the origin of the link, linear
+    rows first; ``remarks`` say how numbers were formed.
+    """
+
+    name: str
+    mass: Fraction
+    centre: Vector
+    inertia: Matrix
+    added_mass: Matrix | None = None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def rigid_matrix(self) -> Matrix:
+        """[[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]], so that (x, y) = it (U, Omega) without a fluid."""
+        m, c = self.mass, cross_matrix(self.centre)
+        offset = tuple(tensors.scaled(-m, row) for row in c)
+        steiner = tensors.product(offset, c)
+        angular = tuple(map(tensors.plus, self.inertia, steiner))
+        return tensors.blocks(tensors.diagonal((m, m, m)), offset, angular)
+
+    @property
+    def mass_matrix(self) -> Matrix:
+        """The inertia of link and fluid together."""
+        added = self.added_mass
+        return (
+            self.rigid_matrix
+            if added is None
+            else tuple(map(tensors.plus, self.rigid_matrix, added))
+        )
+
+
+def cross_matrix(c: Vector) -> Matrix:
+    """Return [c]x, so that [c]x v = c x v."""
+    zero = Fraction(0)
+    return ((zero, -c[2], c[1]), (c[2], zero, -c[0]), (-c[1], c[0], zero))
+
+
+class Format(NamedTuple):
+    """A format of files: its name, its root element, its word for a link, and how to read it.
+
+    ``without_inertial`` says what to do about a link without an inertial element.
+    """
+
+    name: str
+    root: str
+    link_word: str
+    without_inertial: str
+    candidates: Callable[[Node], list[Candidate]]
+    link: Callable[[Node, Candidate, Reading], Link | None]

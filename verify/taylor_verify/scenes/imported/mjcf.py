@@ -1,0 +1,178 @@
+"""MJCF: the inertia of a body from <inertial>.
+
+``fullinertia`` is M(1,1), M(2,2), M(3,3), M(1,2), M(1,3), M(2,3): tensor components about the centre of
+mass, in the axes of the body. ``diaginertia`` is in the axes of the inertial frame, which quat, euler or
+axisangle turns. A quaternion has its scalar first. Angles are in degrees unless <compiler angle> says
+radian. A small letter of ``eulerseq`` turns about a moving axis, a capital about a fixed one. (MuJoCo, XML
+reference.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.scenes.faults import shown
+from taylor_verify.scenes.imported import rotation
+from taylor_verify.scenes.imported.angles import remarks_on
+from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.link import Candidate, Format, Link
+from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+# Elements that hold bodies without being one.
+_AROUND: Final = ("worldbody", "frame", "replicate")
+_TURNS: Final = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
+_AXES: Final = dict(zip("xyz", rotation.AXES, strict=True))
+_ORDER: Final = ("M(1,1)", "M(2,2)", "M(3,3)", "M(1,2)", "M(1,3)", "M(2,3)")
+
+_Turn = tuple[Quaternion, tuple[str, ...]]
+
+
+def candidates(root: Node) -> list[Candidate]:
+    """Return every body, in the order of the file; one without a name is ``#`` and its number."""
+    bodies = [body for part in root.named("worldbody") for body in _below(part)]
+    return [
+        Candidate(body.attributes.get("name", f"#{number}"), body, body.child("inertial"))
+        for number, body in enumerate(bodies, 1)
+    ]
+
+
+def _below(part: Node) -> Iterator[Node]:
+    for node in part.named("body", *_AROUND):
+        if node.name == "body":
+            yield node
+        yield from _below(node)
+
+
+def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
+    """Return the inertia of one body; None beside a fault."""
+    inertial = chosen.inertial
+    assert inertial is not None
+    settings = _settings(root)
+    is_taken = _takes_inertial(root, settings, reading)
+    mass = reading.positive(inertial, inertial.attributes.get("mass"), "mass")
+    centre = reading.vector(inertial, inertial.attributes.get("pos"), "pos")
+    tensor = _tensor(inertial, reading)
+    turn = _turn(inertial, settings, reading)
+    if not is_taken or mass is None or centre is None or tensor is None or turn is None:
+        return None
+    return Link(chosen.name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
+
+
+def _settings(root: Node) -> dict[str, str]:
+    """The attributes of <compiler>; of several the last one counts."""
+    found: dict[str, str] = {}
+    for node in root.named("compiler"):
+        found |= node.attributes
+    return found
+
+
+def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:
+    """Whether MuJoCo takes the element as it is written."""
+    ignored = {
+        "inertiafromgeom": settings.get("inertiafromgeom", "auto") == "true",
+        "settotalmass": not settings.get("settotalmass", "-1").strip().startswith("-"),
+        "coordinate": settings.get("coordinate", "local") == "global",
+    }
+    for key in (key for key, is_set in ignored.items() if is_set):
+        expected = "<inertial> to hold as it is written"
+        got = f'{key}="{settings[key]}", which changes it'
+        reading.fault(expected, got, root.named("compiler")[-1])
+    return not any(ignored.values())
+
+
+def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
+    written = inertial.attributes
+    diagonal, full = written.get("diaginertia"), written.get("fullinertia")
+    if (diagonal is None) == (full is None):
+        got = "none of them" if full is None else "both"
+        reading.fault("one of diaginertia and fullinertia", got, inertial)
+        return None
+    if diagonal is not None:
+        moments = reading.vector(inertial, diagonal, "diaginertia")
+        if moments is None:
+            return None
+        zero = Fraction(0)
+        return reading.tensor(inertial, [moments[0], zero, zero, moments[1], zero, moments[2]])
+    six = reading.vector(inertial, full, f"fullinertia ({' '.join(_ORDER)})", 6)
+    if six is None:
+        return None
+    xx, yy, zz, xy, xz, yz = six
+    return reading.tensor(inertial, [xx, xy, xz, yy, yz, zz])
+
+
+def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn | None:
+    """The turn of the inertial frame, and remarks on it."""
+    written = [key for key in _TURNS if key in inertial.attributes]
+    if not written:
+        return IDENTITY, ()
+    got = " and ".join(written)
+    if "fullinertia" in inertial.attributes:
+        reading.fault("no orientation beside fullinertia, as MuJoCo has it", got, inertial)
+        return None
+    if len(written) > 1:
+        reading.fault("one orientation", got, inertial)
+        return None
+    key, text = written[0], inertial.attributes[written[0]]
+    degrees = settings.get("angle", "degree") == "degree"
+    if key == "quat":
+        return _quaternion(inertial, text, reading)
+    if key == "euler":
+        three = reading.vector(inertial, text, key)
+        sequence = settings.get("eulerseq", "xyz")
+        return _euler(inertial, three, sequence, degrees, reading) if three else None
+    if key == "axisangle":
+        four = reading.vector(inertial, text, key, 4)
+        return _axis_and_angle(inertial, four, degrees, reading) if four else None
+    reading.fault("quat, euler or axisangle", key, inertial, "write the same orientation as quat")
+    return None
+
+
+def _quaternion(inertial: Node, text: str, reading: Reading) -> _Turn | None:
+    four = reading.vector(inertial, text, "quat", 4)
+    if four is None:
+        return None
+    if not any(four):
+        reading.fault("a quaternion that is not zero", shown(text), inertial)
+        return None
+    w, x, y, z = four
+    remark = (
+        "The tensor was turned by quat, exactly: MuJoCo divides it by its length, and so does this."
+    )
+    return (w, x, y, z), (remark,)
+
+
+def _euler(
+    inertial: Node, angles: Vector, sequence: str, degrees: bool, reading: Reading
+) -> _Turn | None:
+    if len(sequence) != 3 or not set(sequence.lower()) <= set(_AXES):
+        reading.fault("three letters of x y z X Y Z for eulerseq", shown(sequence), inertial)
+        return None
+    turns: list[rotation.Turn] = []
+    for letter, angle in zip(sequence, angles, strict=True):
+        turn = rotation.Turn(_AXES[letter.lower()], angle, degrees)
+        turns.insert(len(turns) if letter.islower() else 0, turn)
+    return rotation.combined(turns), remarks_on(f"euler (eulerseq {sequence})", angles, degrees)
+
+
+def _axis_and_angle(inertial: Node, four: Vector, degrees: bool, reading: Reading) -> _Turn | None:
+    axis, angle = four[:3], four[3]
+    if not any(axis):
+        reading.fault("an axis that is not zero", "0 0 0", inertial)
+        return None
+    turn = rotation.Turn(axis, angle, degrees)
+    return rotation.combined([turn]), remarks_on("axisangle, by", (angle,), degrees)
+
+
+FORMAT: Final = Format(
+    name="MJCF",
+    root="mujoco",
+    link_word="body",
+    without_inertial="write <inertial>: geoms are not read, nor files that <include> names; MuJoCo has the "
+    "numbers of the compiled model as body_mass, body_ipos, body_iquat and body_inertia",
+    candidates=candidates,
+    link=link,
+)

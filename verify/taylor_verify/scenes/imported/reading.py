@@ -1,0 +1,94 @@
+"""Numbers of an XML file as exact decimals, or faults with the line they stand in."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.faults import Faults, shown
+from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+_DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
+# These formats hold doubles; beyond these sizes products of a few numbers leave what a scene may hold.
+_LONGEST: Final = 60
+_SMALLEST: Final = Fraction(1, 10**100)
+_LARGEST: Final = Fraction(10**100)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Reads the numbers of one file; a method returns None where it recorded a fault."""
+
+    file: str
+    faults: Faults
+
+    def fault(self, expected: str, got: str, node: Node, mend: str = "") -> None:
+        self.faults.add(expected, got, f"{self.file}:{node.line} <{node.name}>", mend)
+
+    def vector(
+        self,
+        node: Node,
+        text: str | None,
+        what: str,
+        length: int = 3,
+        default: Vector | None = None,
+    ) -> Vector | None:
+        """Return so many numbers with blanks between them; ``what`` names them in a fault."""
+        if text is None and default is not None:
+            return default
+        words = (text or "").split()
+        if len(words) != length:
+            got = shown(text.strip()) if text is not None else "nothing"
+            numbers = "a number" if length == 1 else f"{length} numbers"
+            self.fault(f"{numbers} for {what}", got, node, _mend(text))
+            return None
+        exact = [self._number(node, word, what) for word in words]
+        known = tuple(number for number in exact if number is not None)
+        return known if len(known) == length else None
+
+    def number(
+        self, node: Node, text: str | None, what: str, default: Fraction | None = None
+    ) -> Fraction | None:
+        """Return one number."""
+        vector = self.vector(node, text, what, 1, None if default is None else (default,))
+        return None if vector is None else vector[0]
+
+    def positive(self, node: Node, text: str | None, what: str) -> Fraction | None:
+        """Return one number that is greater than zero."""
+        number = self.number(node, text, what)
+        if number is not None and number <= 0:
+            self.fault(f"a positive {what}", shown(number), node)
+            return None
+        return number
+
+    def tensor(self, node: Node, six: list[Fraction | None]) -> Matrix | None:
+        """Return the positive definite tensor of ixx, ixy, ixz, iyy, iyz, izz; None beside a fault."""
+        known = [entry for entry in six if entry is not None]
+        if len(known) < len(six):
+            return None
+        xx, xy, xz, yy, yz, zz = known
+        tensor = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+        if not tensors.is_positive_definite(tensor):
+            got = f"ixx, iyy, izz = {', '.join(map(shown, (xx, yy, zz)))} with their products"
+            self.fault("a positive definite tensor of inertia", got, node)
+            return None
+        return tensor
+
+    def _number(self, node: Node, word: str, what: str) -> Fraction | None:
+        """The decimal, exactly."""
+        number = None
+        if len(word) <= _LONGEST and _DECIMAL.fullmatch(word):
+            number = Fraction(word)
+        if number is not None and (number == 0 or _SMALLEST <= abs(number) <= _LARGEST):
+            return number
+        expected = f"a decimal of usual size for {what}"
+        self.fault(expected, shown(word), node, _mend(word))
+        return None
+
+
+def _mend(text: str | None) -> str:
+    return "xacro has yet to expand it" if text is not None and "${" in text else ""

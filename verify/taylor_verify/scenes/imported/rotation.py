@@ -1,0 +1,100 @@
+"""Rotations in rationals: quaternions of any length, scalar first, and their exact matrices.
+
+The sine and cosine of a rational angle are irrational. But the matrix of a quaternion of rational
+components is rational, and orthogonal exactly, whatever the length of the quaternion. So the quaternion
+of an angle is formed with 400 bits, its largest component made 1, and the others rounded to 20 decimals;
+everything behind it is exact, and a tensor that is turned by it keeps its principal moments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import reduce
+from typing import Any, Final, NamedTuple
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Quaternion
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+DECIMALS: Final = 20
+_BITS: Final = 400
+AXES: Final = tensors.diagonal((Fraction(1),) * 3)
+
+
+class Turn(NamedTuple):
+    """A turn by an angle about an axis of any length but zero."""
+
+    axis: Vector
+    angle: Fraction
+    degrees: bool = False
+
+
+def combined(turns: Iterable[Turn]) -> Quaternion:
+    """Return the product of the turns, the last one done first: each is about an axis that moves along.
+
+    No turn and whole quarter turns in degrees about body axes are exact.
+    """
+    from mpmath import mp
+
+    with mp.workprec(_BITS):
+        q = reduce(_product, map(_half_angle, turns))
+        largest = max(q, key=abs)
+        scale = mp.mpf(10) ** DECIMALS
+        w, x, y, z = (
+            Fraction(round(exact_value(part / largest * scale)), 10**DECIMALS) for part in q
+        )
+    return (w, x, y, z)
+
+
+def roll_pitch_yaw(angles: Vector, degrees: bool = False) -> Quaternion:
+    """Return the turns about the fixed axes x, y and z, in this order."""
+    pairs = zip(reversed(AXES), reversed(angles), strict=True)
+    return combined(Turn(axis, angle, degrees) for axis, angle in pairs)
+
+
+def matrix(q: Quaternion) -> Matrix:
+    """Return R of v = R v', exactly, for a quaternion of any length but zero."""
+    s, *vector = q
+    v = tuple(vector)
+    square = s * s + tensors.dot(v, v)
+    columns = []
+    for e in AXES:
+        once = tensors.cross(v, e)
+        both = tensors.plus(tensors.scaled(s, once), tensors.cross(v, once))
+        columns.append(tensors.plus(e, tensors.scaled(2 / square, both)))
+    return tensors.transpose(tuple(columns))
+
+
+def turned(tensor: Matrix, q: Quaternion) -> Matrix:
+    """Return R I R^T, the components of a tensor in the axes that the turn leads to."""
+    if not any(q[1:]):
+        return tensor
+    rotation = matrix(q)
+    return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
+
+
+_Parts = tuple[Any, Any, Any, Any]
+
+
+def _half_angle(turn: Turn) -> _Parts:
+    """The quaternion of one turn at the ambient precision of mpmath."""
+    from mpmath import mp
+
+    half = mp.convert(turn.angle) / 2
+    if turn.degrees:
+        half *= mp.degree
+    share = mp.sin(half) / mp.sqrt(mp.convert(tensors.dot(turn.axis, turn.axis)))
+    x, y, z = (share * mp.convert(entry) for entry in turn.axis)
+    return (mp.cos(half), x, y, z)
+
+
+def _product(a: _Parts, b: _Parts) -> _Parts:
+    (s, x, y, z), (t, u, v, w) = a, b
+    return (
+        s * t - x * u - y * v - z * w,
+        s * u + t * x + y * w - z * v,
+        s * v + t * y + z * u - x * w,
+        s * w + t * z + x * v - y * u,
+    )

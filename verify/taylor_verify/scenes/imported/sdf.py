@@ -1,0 +1,153 @@
+"""SDF: the inertia of a link from <mass>, <pose>, <inertia> and <fluid_added_mass>.
+
+The tensor is about the centre of mass, in the axes of <pose>; ``ixy`` is a tensor component, -int xy dm.
+The added mass is about the origin of the link and in its axes, its rows x, y, z, p, q, r: the linear ones
+first (sdformat, sdf/1.10/inertial.sdf).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import combinations_with_replacement
+from typing import Final
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.faults import cut, near, shown
+from taylor_verify.scenes.imported import rotation
+from taylor_verify.scenes.imported.angles import remarks_on
+from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.link import Candidate, Format, Link
+from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.urdf import COMPONENTS
+from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+
+_ROWS: Final = "xyzpqr"
+_ADDED: Final = {
+    f"{_ROWS[i]}{_ROWS[k]}": (i, k) for i, k in combinations_with_replacement(range(6), 2)
+}
+_ZERO: Final = Fraction(0)
+# The products may be left out.
+_DEFAULTS: Final = {"ixy": _ZERO, "ixz": _ZERO, "iyz": _ZERO}
+
+
+def candidates(root: Node) -> list[Candidate]:
+    """Return every link of every model, as ``model::link``."""
+    return [candidate for part in (root, *root.named("world")) for candidate in _below(part, "")]
+
+
+def _below(part: Node, scope: str) -> Iterator[Candidate]:
+    for node in part.named("model", "link"):
+        name = scope + node.attributes.get("name", "")
+        if node.name == "model":
+            yield from _below(node, f"{name}::")
+        else:
+            yield Candidate(name, node, node.child("inertial"))
+
+
+def link(root: Node, chosen: Candidate, reading: Reading) -> Link | None:
+    """Return the inertia of one link; None beside a fault."""
+    del root
+    inertial = chosen.inertial
+    assert inertial is not None
+    if inertial.attributes.get("auto", "").strip().lower() in ("true", "1"):
+        expected = "an inertia that the file writes"
+        mend = "write <mass> and <inertia>: geometry is not read"
+        reading.fault(expected, 'auto="true"', inertial, mend)
+        return None
+    mass_node = inertial.child("mass") or inertial
+    text = mass_node.text if mass_node is not inertial else None
+    mass = reading.positive(mass_node, text, "mass")
+    tensor = _tensor(inertial, reading)
+    placed = _pose(inertial, reading)
+    added_node = inertial.child("fluid_added_mass")
+    added = None if added_node is None else _added_mass(added_node, reading)
+    if mass is None or tensor is None or placed is None or (added_node and added is None):
+        return None
+    centre, turn, remarks = placed
+    found = Link(chosen.name, mass, centre, rotation.turned(tensor, turn), added, remarks)
+    if added_node and not tensors.is_positive_definite(found.mass_matrix):
+        expected = "a positive definite mass matrix of link and added mass"
+        reading.fault(
+            expected, "one that is not", added_node, "an added mass is minus a naval derivative"
+        )
+        return None
+    return found
+
+
+def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
+    node = inertial.child("inertia")
+    if node is None:
+        reading.fault("<inertia>", "nothing", inertial)
+        return None
+    six = []
+    for key in COMPONENTS:
+        child = node.child(key)
+        text = None if child is None else child.text
+        six.append(reading.number(child or node, text, key, _DEFAULTS.get(key)))
+    return reading.tensor(node, six)
+
+
+def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[str, ...]] | None:
+    """The centre of mass, the turn of the axes of the tensor, and remarks on it."""
+    node = inertial.child("pose")
+    if node is None or not node.text.strip():
+        return ZERO_VECTOR, IDENTITY, ()
+    for key in ("relative_to", "frame"):
+        if node.attributes.get(key, "").strip():
+            got = f"{key} = {shown(node.attributes[key])}"
+            reading.fault("a pose relative to the link", got, node, "frames are not resolved")
+            return None
+    form = node.attributes.get("rotation_format", "euler_rpy").strip()
+    if form == "quat_xyzw":
+        seven = reading.vector(node, node.text, "x y z and the quaternion x y z w", 7)
+        return None if seven is None else _by_quaternion(node, seven, reading)
+    if form != "euler_rpy":
+        reading.fault("rotation_format euler_rpy or quat_xyzw", shown(form), node)
+        return None
+    degrees = node.attributes.get("degrees", "").strip().lower() in ("true", "1")
+    six = reading.vector(node, node.text, "x y z roll pitch yaw", 6)
+    if six is None:
+        return None
+    turn = rotation.roll_pitch_yaw(six[3:], degrees)
+    return six[:3], turn, remarks_on("roll, pitch, yaw", six[3:], degrees)
+
+
+def _by_quaternion(
+    node: Node, seven: Vector, reading: Reading
+) -> tuple[Vector, Quaternion, tuple[str, ...]] | None:
+    x, y, z, w = seven[3:]
+    if not any(seven[3:]):
+        reading.fault("a quaternion that is not zero", "0 0 0 0", node)
+        return None
+    return seven[:3], (w, x, y, z), ()
+
+
+def _added_mass(node: Node, reading: Reading) -> Matrix | None:
+    """The 6x6 matrix; what is not written of its 21 elements is zero."""
+    rows = [[_ZERO] * 6 for _ in range(6)]
+    is_sound = True
+    for child in node.children:
+        if child.name not in _ADDED:
+            got = f"<{cut(child.name)}>"
+            reading.fault("an element xx, xy, ... rr", got, child, near(cut(child.name), _ADDED))
+            is_sound = False
+            continue
+        number = reading.number(child, child.text, child.name)
+        if number is None:
+            is_sound = False
+            continue
+        i, k = _ADDED[child.name]
+        rows[i][k] = rows[k][i] = number
+    return tuple(map(tuple, rows)) if is_sound else None
+
+
+FORMAT: Final = Format(
+    name="SDF",
+    root="sdf",
+    link_word="link",
+    without_inertial="write <inertial>; models that <include> names are not opened",
+    candidates=candidates,
+    link=link,
+)
