@@ -42,6 +42,8 @@ def exact(raw: object) -> Value:
             return float(raw)
         numerator, denominator = raw.as_integer_ratio()
         return Fraction(int(numerator), int(denominator))
+    if isinstance(raw, Fraction):
+        return raw
     if isinstance(raw, int | np.integer):
         return Fraction(int(raw))
     if isinstance(raw, Decimal):
