@@ -51,6 +51,7 @@ MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
 """
+SCALAR_FIRST = ("qc", "q1", "q2", "q3")
 Columns = Mapping[str, Sequence[float]]
 _ZEROS = [0.0] * 9
 
@@ -184,7 +185,7 @@ def aem(columns: Columns, **metadata: Any) -> Any:
             quaternion_ephemeris=kind(
                 epoch=epoch(columns["t"][k]),
                 quaternion=ndmxml4.QuaternionType(
-                    **{n: columns[c][k] for n, c in zip(("qc", "q1", "q2", "q3"), QUATERNION)}
+                    **{n: columns[c][k] for n, c in zip(SCALAR_FIRST, QUATERNION, strict=True)}
                 ),
             )
         )
