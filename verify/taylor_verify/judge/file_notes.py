@@ -63,8 +63,6 @@ def tracked(groups: Sequence[str]) -> frozenset[str]:
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
-    """Say how the file was read, and what of it is compared."""
-    yield from file.notes
     for name in file.groups:
         if name not in groups:
             yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {noun(name)}"

@@ -1,8 +1,8 @@
 """An FMU as a program that speaks the protocol: `python fmu_runner.py FMU FOLDER SETTINGS`.
 
-The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, the longest communication step or null for that
-of the FMU; `names`, lists of variables of the FMU in place of those in the table; `fixed`, what is built
-into the FMU and not set. An index counts from 1, that of a quaternion from 0.
+The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, the longest communication
+step or null for that of the FMU; `names`, lists of variables of the FMU in place of those in the table;
+`fixed`, what is built into the FMU and not set. An index counts from 1, that of a quaternion from 0.
 
     set before the run   inertia I11 ... I33       inverse_inertia K11 ... K33     moment M1 M2 M3
                          linear A11 ... A33        coupling B11 ... B33            angular C11 ... C33

@@ -42,10 +42,10 @@ def exact(raw: object) -> Value:
             return float(raw)
         numerator, denominator = raw.as_integer_ratio()
         return Fraction(int(numerator), int(denominator))
-    if isinstance(raw, Fraction):
-        return raw
     if isinstance(raw, int | np.integer):
         return Fraction(int(raw))
+    if isinstance(raw, Fraction):
+        return raw
     if isinstance(raw, Decimal):
         return exact_number(raw) if raw.is_finite() else float(raw)
     raise ValueError("a number")

@@ -22,6 +22,9 @@ from taylor_verify.solvers.formats.arrays import Array, table
 from taylor_verify.solvers.formats.column import BYTES, COLUMNS, Table
 
 _HEADER: Final = 128
+# The last bytes of the header tell the order of all bytes; those before are the version.
+_ORDERS: Final = {b"IM": "<", b"MI": ">"}
+_VERSION, _HDF5 = 0x100, 0x200
 _MATRIX, _COMPRESSED = 14, 15
 _STRUCT, _OPAQUE = 2, 17
 # The types of stored numbers, and the classes of arrays of real numbers, as NumPy writes them.
@@ -66,16 +69,18 @@ class _Element(NamedTuple):
 def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the arrays of a struct, or of the whole file; their sizes are checked first."""
     header = file.read(_HEADER)
-    if header.startswith(b"MATLAB 7.3") or header.startswith(b"\x89HDF"):
+    order = _ORDERS.get(header[126:])
+    version = struct.unpack(f"{order}H", header[124:126])[0] if order else 0
+    if version == _HDF5 or header.startswith(b"\x89HDF"):
         file.seek(0)
         return hdf5.opened(file, path, lambda f: _checked(list(_hdf5_arrays(f, path)), part, path))
-    if not header.startswith(b"MATLAB 5.0") or header[126:128] not in (b"IM", b"MI"):
+    if version != _VERSION:
         got = repr(header[:10].decode("latin-1"))
-        raise Refused(
-            [f"expected a MATLAB file of version 5 to 7.3, got one that begins with {got} @ {path}"]
-        )
+        expected = "a MATLAB file of version 5 to 7.3"
+        raise Refused([f"expected {expected}, got one that begins with {got} @ {path}"])
+    assert order
     try:
-        arrays = list(_Reader("<" if header[126:128] == b"IM" else ">", path).arrays(file.read()))
+        arrays = list(_Reader(order, path).arrays(file.read()))
     except _BROKEN as error:
         raise Refused([f"expected a MATLAB file, got a fault in it: {error} @ {path}"]) from None
     return _checked(arrays, part, path)
