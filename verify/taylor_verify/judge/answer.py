@@ -129,7 +129,7 @@ def judge_file(
     Raises Refused if it has nothing to compare.
     """
     groups = comparable(file, scene)
-    asked, notes = scene, tuple(coverage_notes(file, groups, scene))
+    asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     scene = replace(scene, track=scene.track & tracked(groups))
     found = Conventions((), World(scene), {})

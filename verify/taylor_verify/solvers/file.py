@@ -15,7 +15,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Final, final
 
 import numpy as np
@@ -24,7 +23,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.faults import Faults, Refused, cut, near
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike
-from taylor_verify.solvers.formats.reading import read_columns
+from taylor_verify.solvers.formats.reading import read_table
 from taylor_verify.solvers.rows import Rows, check_numbers, exact_times, packed, written_digits
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -67,12 +66,14 @@ class TrajectoryFile:
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
     (solvers.rows); ``digits`` is the largest number of
     significant decimals that any value is written with, None where one is binary or a fraction.
+    ``notes`` are sentences that say how the format was read.
     """
 
     name: str
     times: tuple[Fraction, ...]
     groups: Mapping[str, Sequence[tuple[Value, ...]]]
     digits: int | None = None
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def rows(self) -> Mapping[str, Rows]:
@@ -94,13 +95,14 @@ class TrajectoryFile:
 
 
 def read(file: str | os.PathLike[str]) -> TrajectoryFile:
-    """The trajectory in a CSV, NPZ, Parquet or JSON file.
+    """Return the trajectory in a file of any format of solvers.formats.reading, or in FILE#PART.
 
     Columns: ``t``; ``w1 w2 w3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3`` (scalar first) or
     ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Raises Refused with every fault of it.
     """
-    path, faults = Path(file), Faults()
-    columns = _named_once(read_columns(path, KNOWN), str(file), faults)
+    faults = Faults()
+    table = read_table(file, KNOWN)
+    columns = _named_once(table.columns, str(file), faults)
     _refuse_unknown(columns, str(file), faults)
     _refuse_incomplete(columns, str(file), faults)
     lengths = _lengths(columns)
@@ -119,7 +121,7 @@ def read(file: str | os.PathLike[str]) -> TrajectoryFile:
         for group, names in COLUMNS.items()
         if names[0] in values
     }
-    return TrajectoryFile(str(file), times, groups, written_digits(wanted))
+    return TrajectoryFile(str(file), times, groups, written_digits(wanted), table.notes)
 
 
 # Which columns there are.

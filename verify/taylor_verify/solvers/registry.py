@@ -18,6 +18,8 @@ MPMATH = "mpmath:"
 CLOSED_FORM = "closed-form:"
 # Of other libraries, each in an environment of its own.
 OUTSIDE = "outside:"
+# A simulator in an FMU: what follows is its file.
+FMU = "fmu:"
 # The names there are, NUMBER standing for what is to be chosen.
 NAMES = (
     TAYLOR,
@@ -84,6 +86,10 @@ def solver_named(name: str) -> Solver:
         from taylor_verify.solvers import entrant
 
         return entrant.named(name)
+    if name.startswith(FMU):
+        from taylor_verify.solvers import fmu
+
+        return fmu.named(name)
     raise ValueError(unknown_solver(name))
 
 
@@ -115,6 +121,7 @@ def unknown_solver(name: str) -> str:
     families = [
         *(TAYLOR, f"{GEOMETRIC}METHOD?step=NUMBER", f"{SCIPY}METHOD", f"{MPMATH}odefun"),
         *(f"{CLOSED_FORM}ellipj", f"{OUTSIDE}LIBRARY-METHOD", f"{PROCESS}COMMAND"),
+        f"{FMU}FILE?step=NUMBER",
     ]
     near = get_close_matches(name, NAMES, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""

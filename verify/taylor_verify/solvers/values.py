@@ -46,6 +46,8 @@ def exact(raw: object) -> Value:
         return Fraction(int(numerator), int(denominator))
     if isinstance(raw, int | np.integer):
         return Fraction(int(raw))
+    if isinstance(raw, Fraction):
+        return raw
     if isinstance(raw, Decimal):
         return exact_number(raw) if raw.is_finite() else float(raw)
     raise ValueError("a number")

@@ -97,6 +97,13 @@ class Texts(Sequence[str]):
         return self._last[1]
 
 
+class Table(NamedTuple):
+    """The columns of a file, and sentences that say how its format was read."""
+
+    columns: list[Column]
+    notes: tuple[str, ...] = ()
+
+
 def check_size(columns: int, rows: int, place: object) -> None:
     """Raise Refused for a file of more columns, rows or values than are read."""
     COLUMNS.check(columns, place)

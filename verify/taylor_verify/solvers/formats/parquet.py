@@ -1,8 +1,8 @@
-"""Columns in a Parquet file, read with pyarrow."""
+"""Columns in a Parquet file, read with pyarrow; those in structs have dotted names."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -13,20 +13,14 @@ from taylor_verify.solvers.formats.column import (
     Column,
     check_size,
 )
+from taylor_verify.solvers.formats.package import needed
 
 
 def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
     """Return the columns; what the footer says of their size is checked before any is read."""
     del known
-    try:
+    with needed("pyarrow", "Parquet", "parquet", path):
         from pyarrow import ArrowException, parquet
-    except ModuleNotFoundError:
-        raise Refused(
-            [
-                f"expected the package pyarrow to read Parquet, got none @ {path} "
-                "(install it with `pip install 'taylor-verify[parquet]'`, or write CSV)"
-            ]
-        ) from None
     try:
         footer = parquet.ParquetFile(file)
         texts = _checked(footer, path)
@@ -36,12 +30,14 @@ def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
     except (ArrowException, OSError, ValueError) as error:
         reason = str(error).splitlines()[0]
         raise Refused([f"expected a Parquet file, got a fault in it: {reason} @ {path}"]) from None
+    for _ in range(_depth(footer.schema_arrow)):
+        table = table.flatten()
     _check_texts(table, texts, path)
     return [Column(name, table.column(i).to_pylist()) for i, name in enumerate(table.column_names)]
 
 
 def _checked(footer: Any, path: Path) -> list[str]:
-    """The names of the columns of text, if the file is not too large and is flat."""
+    """The names of the columns of text, if the file is not too large and holds numbers."""
     import pyarrow as pa
 
     metadata, schema = footer.metadata, footer.schema_arrow
@@ -49,7 +45,7 @@ def _checked(footer: Any, path: Path) -> list[str]:
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
     faults, texts = Faults(), []
-    for field in schema:
+    for field in _fields(schema):
         if pa.types.is_string(field.type) or pa.types.is_large_string(field.type):
             texts.append(field.name)
         elif not _is_number(field.type):
@@ -58,6 +54,26 @@ def _checked(footer: Any, path: Path) -> list[str]:
     if faults.lines:
         raise Refused(faults.lines)
     return texts
+
+
+def _fields(schema: Any) -> Iterator[Any]:
+    """The columns, those in a column of structs by their dotted names."""
+    import pyarrow as pa
+
+    for field in schema:
+        if pa.types.is_struct(field.type):
+            yield from _fields(
+                [inner.with_name(f"{field.name}.{inner.name}") for inner in field.type]
+            )
+        else:
+            yield field
+
+
+def _depth(fields: Any) -> int:
+    """How deep structs are nested."""
+    import pyarrow as pa
+
+    return max((1 + _depth(f.type) for f in fields if pa.types.is_struct(f.type)), default=0)
 
 
 def _is_number(kind: Any) -> bool:

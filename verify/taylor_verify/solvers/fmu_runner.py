@@ -1,0 +1,224 @@
+"""An FMU as a program that speaks the protocol: `python fmu_runner.py FMU FOLDER SETTINGS`.
+
+The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, the longest communication
+step or null for that of the FMU; `names`, lists of variables of the FMU in place of those in the table;
+`fixed`, what is built into the FMU and not set. An index counts from 1, that of a quaternion from 0.
+
+    set before the run   inertia I11 ... I33       inverse_inertia K11 ... K33     moment M1 M2 M3
+                         linear A11 ... A33        coupling B11 ... B33            angular C11 ... C33
+                         force X1 X2 X3            couple L1 L2 L3
+                         omega_start w1_start ...  angular_momentum_start H1_start ...
+                         linear_impulse_start x1_start ...   angular_impulse_start y1_start ...
+                         attitude_start q0_start ...         centre_start c1_start ...
+    read at each time    omega w1 w2 w3            linear_impulse x1 x2 x3         angular_impulse y1 y2 y3
+                         attitude q0 q1 q2 q3      centre c1 c2 c3
+
+Of what says the same, inertia and inverse_inertia, omega_start and angular_momentum_start, one is enough.
+What is zero, or no rotation, may be missing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from time import perf_counter
+from typing import Any
+
+_LETTERS = {
+    **{"inertia": "I", "inverse_inertia": "K", "moment": "M"},
+    **{"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"},
+    **{"omega": "w", "angular_momentum": "H", "linear_impulse": "x", "angular_impulse": "y"},
+    **{"attitude": "q", "centre": "c"},
+}
+_SAME = (("inertia", "inverse_inertia"), ("omega_start", "angular_momentum_start"))
+_START = "_start"
+# Steps that differ by no more are equal, but for the rounding of the times.
+_EQUAL = 1e-9
+
+Names = Mapping[str, Sequence[str]]
+
+
+class Fault(Exception):
+    """What is wrong with the FMU or with its settings, as a sentence."""
+
+
+def floats(number: Any) -> Any:
+    """The doubles of a number, vector or matrix: each is held twice, as `text` and as `hex`."""
+    if isinstance(number, dict):
+        return floats(number["hex"])
+    return [floats(one) for one in number] if isinstance(number, list) else float.fromhex(number)
+
+
+def flat(value: Any, first: int, index: str = "") -> Iterator[tuple[str, float]]:
+    """The entries of a number, vector or matrix with their indices: `12` is row 1, column 2."""
+    if not isinstance(value, list):
+        yield index, value
+        return
+    for i, entry in enumerate(value, start=first):
+        yield from flat(entry, first, f"{index}{i}")
+
+
+def values_to_set(question: Any) -> dict[str, dict[str, float]]:
+    """The numbers of the question by quantity and by default name, none of which is neutral."""
+    found = {}
+    tables = (("", question["body"]), (_START, question["initial"]))
+    for suffix, table in tables:
+        for key, number in table.items():
+            value = floats(number)
+            if key == "attitude":
+                length = math.sqrt(sum(entry * entry for entry in value))
+                value = [entry / length for entry in value]
+            letter, first = _LETTERS.get(key, key), 0 if key == "attitude" else 1
+            found[key + suffix] = {f"{letter}{i}{suffix}": v for i, v in flat(value, first)}
+    return found
+
+
+def neutral(quantity: str, values: Mapping[str, float]) -> bool:
+    """Return True for zeros, and for the quaternion of no rotation."""
+    numbers = list(values.values())
+    return not any(numbers[1:] if quantity == f"attitude{_START}" else numbers)
+
+
+class Variables:
+    """The variables of an FMU by name, each of one real number."""
+
+    def __init__(self, description: Any, names: Names) -> None:
+        kinds = ("Real", "Float64")
+        self.references = {
+            one.name: one.valueReference
+            for one in description.modelVariables
+            if one.type in kinds and not getattr(one, "dimensions", None)
+        }
+        self.names = names
+
+    def of(self, quantity: str, default: Sequence[str]) -> list[str]:
+        """The variables of a quantity, those of the settings first; a name may stand for a vector."""
+        names = list(self.names.get(quantity, default))
+        if len(names) == 1 and names[0] not in self.references and len(default) in (3, 4):
+            names = [f"{names[0]}[{i}]" for i in range(1, len(default) + 1)]
+        missing = [name for name in names if name not in self.references]
+        if quantity in self.names and missing:
+            raise Fault(f"expected a variable of the FMU, got {missing[0]} @ {quantity}")
+        if quantity in self.names and len(names) != len(default):
+            raise Fault(f"expected {len(default)} names, got {len(names)} @ {quantity}")
+        return names
+
+    def settings(self, question: Any, fixed: Sequence[str]) -> Iterator[tuple[int, float]]:
+        """References and values of all that is set; raises Fault for what the FMU cannot be told."""
+        wanted = values_to_set(question)
+        told = {key for key in wanted if key in fixed or neutral(key, wanted[key])}
+        for key, values in wanted.items():
+            names = self.of(key, list(values))
+            pairs = list(zip(names, values.values(), strict=True))
+            known = [(self.references[name], v) for name, v in pairs if name in self.references]
+            unknown = [value for name, value in pairs if name not in self.references]
+            if key not in fixed and known:
+                yield from known
+                told |= {key} if not any(unknown) else set()
+        for group in _SAME:
+            told |= set(group) if told & set(group) else set()
+        if missing := [key for key in wanted if key not in told]:
+            defaults = "; ".join(f"{key}: {' '.join(wanted[key])}" for key in missing)
+            raise Fault(
+                f"expected variables for {', '.join(missing)} ({defaults}), got none or not all @ FMU "
+                f"(name its own by ?{missing[0]}=NAME,NAME,..., or say ?fixed={missing[0]})"
+            )
+
+    def outputs(self, columns: Sequence[str]) -> list[int]:
+        """The references of the columns of the answer."""
+        found: dict[str, str] = {}
+        for key, letter in _LETTERS.items():
+            own = [name for name in columns if name[0] == letter]
+            found |= dict(zip(own, self.of(key, own), strict=True)) if own else {}
+        missing = [name for name in found.values() if name not in self.references]
+        if missing:
+            raise Fault(
+                f"expected outputs {' '.join(found)}, got no {' '.join(missing)} @ FMU "
+                "(name its own by ?omega=NAME,NAME,NAME)"
+            )
+        return [self.references[found[name]] for name in columns]
+
+
+def points(elapsed: Sequence[float], longest: float, varies: bool) -> Iterator[list[float]]:
+    """The communication points up to each sample: whole steps of equal length, the last one at it."""
+    lengths = []
+    for before, instant in pairwise([0.0, *elapsed]):
+        count = math.ceil((instant - before) / longest * (1 - _EQUAL)) if instant > before else 0
+        lengths += [(instant - before) / count] if count else []
+        yield [before + k * (instant - before) / count for k in range(1, count)] + [instant] * (
+            count > 0
+        )
+    if not varies and lengths and max(lengths) - min(lengths) > _EQUAL * max(lengths):
+        raise Fault(
+            f"expected a step that divides every distance of samples, got {longest:g} @ step (this FMU "
+            f"cannot vary its step: it would need {min(lengths):.17g} and {max(lengths):.17g})"
+        )
+
+
+def run(path: str, folder: str, settings: Any, question: Any) -> dict[str, Any]:
+    """Return the answer of the protocol."""
+    import fmpy
+    from fmpy.simulation import instantiate_fmu
+
+    description = fmpy.read_model_description(path)
+    slave = description.coSimulation
+    if slave is None or description.fmiVersion == "1.0":
+        raise Fault(f"expected an FMU for co-simulation of FMI 2 or 3, got none @ {path}")
+    variables = Variables(description, settings["names"])
+    inputs = list(variables.settings(question, settings["fixed"]))
+    columns = question["columns"][1:]
+    outputs = variables.outputs(columns)
+    default = getattr(description.defaultExperiment, "stepSize", None)
+    step = float(settings["step"] or default or 0)
+    if not step > 0:
+        raise Fault("expected ?step=NUMBER, got none, and the FMU has no step of its own @ step")
+    elapsed = floats(question["time"]["elapsed"])
+    ways = list(points(elapsed, step, bool(slave.canHandleVariableCommunicationStepSize)))
+    fmpy.extract(path, unzipdir=folder)
+    fmu = instantiate_fmu(folder, description, "CoSimulation")
+    is_new = description.fmiVersion.startswith("3")
+    write, get = (fmu.setFloat64, fmu.getFloat64) if is_new else (fmu.setReal, fmu.getReal)
+    if not is_new:
+        fmu.setupExperiment(startTime=0.0)
+    write([reference for reference, _ in inputs], [value for _, value in inputs])
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    rows, now, began = [], 0.0, perf_counter()
+    for way in ways:
+        for point in way:
+            fmu.doStep(currentCommunicationPoint=now, communicationStepSize=point - now)
+            now = point
+        rows.append([float(value) for value in get(outputs)])
+    return {
+        "t": question["time"]["times"]["hex"],
+        "steps": sum(map(len, ways)),
+        "seconds": perf_counter() - began,
+        **{
+            name: [value.hex() for value in values]
+            for name, values in zip(columns, zip(*rows, strict=True), strict=True)
+        },
+    }
+
+
+def main() -> None:
+    """Answer the question on standard input; what the FMU prints goes to standard error."""
+    answers = os.dup(1)
+    os.dup2(2, 1)
+    path, folder, settings = sys.argv[1:]
+    try:
+        answer = run(path, folder, json.loads(settings), json.load(sys.stdin))
+    except Exception as error:  # a stranger's file and its code: what they raise is told in a line
+        sys.exit(str(error) or type(error).__name__)
+    with os.fdopen(answers, "w") as out:
+        json.dump(answer, out)
+        out.flush()
+        # The library of an FMU may not survive its unloading.
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
