@@ -24,6 +24,7 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.faults import Faults, Refused, cut, near
+from taylor_verify.solvers.file_step import STEP_COLUMNS, FileStep, step_inside
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike, shown
 from taylor_verify.solvers.formats.reading import read_columns
 from taylor_verify.solvers.solver import Solver
@@ -31,8 +32,8 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, exact
 
 KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
-# Printed by `publish --reference` beside the motion; it is no part of it.
-_IGNORED: Final = ("radius",)
+# Printed by `publish --reference` beside the motion, or a statement of the step: no part of the motion.
+_IGNORED: Final = ("radius", *STEP_COLUMNS)
 # What other programs call the same columns: none of these is near enough in spelling to be guessed.
 _ELSEWHERE: Final = {
     "time": "t",
@@ -68,13 +69,15 @@ class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
     ``groups`` maps the names of COLUMNS to rows of values; ``digits`` is the largest number of
-    significant decimals that any value is written with, None where one is binary or a fraction.
+    significant decimals that any value is written with, None where one is binary or a fraction. ``step``
+    is the integrator's step, where the file states it.
     """
 
     name: str
     times: tuple[Fraction, ...]
     groups: Mapping[str, tuple[tuple[Value, ...], ...]]
     digits: int | None = None
+    step: FileStep | None = None
 
 
 def read(file: str | os.PathLike[str]) -> TrajectoryFile:
@@ -99,7 +102,8 @@ def read(file: str | os.PathLike[str]) -> TrajectoryFile:
         for group, names in COLUMNS.items()
         if names[0] in values
     }
-    return TrajectoryFile(str(file), times, groups, _written_digits(wanted))
+    step = step_inside(path, columns)
+    return TrajectoryFile(str(file), times, groups, _written_digits(wanted), step)
 
 
 # Which columns there are.
