@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -118,7 +117,7 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
     remarked = _unexpected(results) if isinstance(results, Judgements) else []
     if comparison is not None:
-        remarked += _regressions(comparison, [*results.verdicts, *comparison.before])
+        remarked += _regressions(comparison)
     return remarked
 
 
@@ -144,16 +143,12 @@ def _unexpected(results: Judgements) -> list[Remark]:
     ]
 
 
-def _regressions(comparison: Comparison, rows: Sequence[Verdict]) -> list[Remark]:
+def _regressions(comparison: Comparison) -> list[Remark]:
     from taylor_verify.publish.ci.case import Remark
 
-    # A departure names its row by scene, rung and quantity: a command has one solver.
-    owners = {(v.scene, v.rung, v.quantity): (v.solver, v.setting) for v in rows}
-
     def remark(status: Status, prefix: str, departure: Departure) -> Remark:
-        scene, rung, quantity = departure.scene, departure.rung, departure.quantity
-        owner = owners[scene, rung, quantity]
-        return Remark(scene, *owner, rung, quantity, status, f"{prefix}: {departure}")
+        row = departure.scene, departure.solver, departure.setting, departure.rung
+        return Remark(*row, departure.quantity, status, f"{prefix}: {departure}")
 
     return [
         *(remark(Status.FAIL, "regression", each) for each in comparison.failures),

@@ -113,7 +113,11 @@ def _steps(options: argparse.Namespace) -> list[float] | None:
         return None
     if len(options.files) == 1:
         raise WrongCall("expected several files with --steps, got one @ --steps")
-    steps = [read_number(text, "--steps") for text in options.steps.split(",")]
+    steps = []
+    for text in options.steps.split(","):
+        steps.append(read_number(text, "--steps"))
+        if not steps[-1] > 0:
+            raise WrongCall(f"expected a positive step, got {text!r} @ --steps")
     try:
         return checked_steps(steps, len(options.files))
     except ValueError as error:

@@ -7,8 +7,9 @@ the command.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from taylor_verify.publish.cells import figure, instant, ratio, reason
@@ -35,7 +36,8 @@ class Case:
     """One quantity of one run; ``verdict`` is None for a row that only a remark speaks of.
 
     ``status`` is the gravest of the verdict's and the remarks', ``sentences`` say why, none for a
-    pass without a remark.
+    pass without a remark. ``mark`` tells runs of one scene and rung apart: the setting, such as a file;
+    empty where there is one run alone.
     """
 
     scene: str
@@ -46,6 +48,7 @@ class Case:
     status: Status
     sentences: tuple[str, ...]
     verdict: Verdict | None
+    mark: str = ""
 
     @property
     def is_harmless(self) -> bool:
@@ -55,7 +58,8 @@ class Case:
 
     @property
     def title(self) -> str:
-        return f"{self.scene} on {self.rung}: {self.quantity} {self.status}"
+        run = f"{self.scene} on {self.rung}{f', {self.mark}' if self.mark else ''}"
+        return f"{run}: {self.quantity} {self.status}"
 
     @property
     def text(self) -> str:
@@ -68,7 +72,12 @@ def cases(verdicts: Iterable[Verdict], remarks: Iterable[Remark] = ()) -> tuple[
     said: dict[Key, list[Remark]] = {key: [] for key in rows}
     for remark in remarks:
         said.setdefault(_key(remark), []).append(remark)
-    return tuple(_case(key, rows.get(key), told) for key, told in said.items())
+    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in said}
+    alike = Counter((scene, rung) for scene, rung, *_ in runs)
+    return tuple(
+        replace(case, mark=case.setting) if alike[case.scene, case.rung] > 1 else case
+        for case in (_case(key, rows.get(key), told) for key, told in said.items())
+    )
 
 
 def _key(row: Verdict | Remark) -> Key:
