@@ -186,7 +186,9 @@ class Unreachable(Executor):
 @pytest.mark.parametrize("at_once", [True, False])
 def test_an_error_of_the_executor_names_the_work(at_once: bool) -> None:
     """Work that raises Failed alone: an OSError is the executor's, and is told as Failed of its piece."""
-    with pytest.raises(Failed, match=r"3: .* an error of the executor: OSError: .*refused"):
+    with pytest.raises(
+        Failed, match=r"3: .* an error of the executor: ConnectionRefusedError: .*refused"
+    ):
         run_all(square, [3], Unreachable(at_once), raises=Failed)
 
 

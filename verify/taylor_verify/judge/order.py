@@ -238,7 +238,7 @@ def _best_words(order: Order) -> Iterator[str]:
     smallest = order.points[-1].step
     best = f"best h = {order.best_step:g} with {_accuracy(order)}"
     if order.stall is None or order.stalls_at is None:
-        falls = "at the level of roundoff" if _is_at_the_floor(order) else "the error still falls"
+        falls = "near roundoff" if _is_at_the_floor(order) else "the error still falls"
         yield f"{best}, the smallest: {falls}" if order.best_step == smallest else best
         return
     if order.stalls_at == order.best_step:
