@@ -22,6 +22,7 @@ import taylor_verify
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
 from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.records.answers import Order, Stall
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import names
@@ -163,6 +164,14 @@ def test_every_field_of_a_row_is_documented() -> None:
     """Each field of a verdict stands in the list of fields."""
     defined = " ".join(re.findall(r"^`([\w ]+)`\n:", text_of("verdicts.md"), re.MULTILINE))
     assert {*Verdict.__dataclass_fields__, "because"} == set(defined.split())
+
+
+def test_every_field_of_an_order_is_documented() -> None:
+    """Each field of an order of convergence stands in the table of them, and each reason of a stall."""
+    section = text_of("verdicts.md").split("## Several files\n")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (`[^|]*`) \|", section, re.MULTILINE)
+    assert {*Order.__dataclass_fields__} == set(re.findall(r"\w+", " ".join(rows)))
+    assert {stall.value for stall in Stall} <= set(re.findall(r"`([\w ]+)`", section))
 
 
 def test_every_outcome_is_documented() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -16,6 +16,7 @@ from samples import THREE_INSTANTS
 from test_runs import Backwards
 
 import taylor_verify
+from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
@@ -150,6 +151,62 @@ def test_a_call_that_says_two_things_is_refused(wrong: dict[str, Any]) -> None:
     """A number of processes beside an executor, and rungs beside those of a Selection."""
     with pytest.raises(ValueError, match="expected"):
         taylor_verify.run_many(**{"scenes": ["euler/rest"], **wrong})
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        ({"jobs": "2"}, "expected jobs of at least 1, got '2' @ jobs"),
+        ({"jobs": 0}, "expected jobs of at least 1, got 0 @ jobs"),
+        ({"jobs": True}, "expected jobs of at least 1, got True @ jobs"),
+        ({"jobs": 1.5}, "expected jobs of at least 1, got 1.5 @ jobs"),
+        ({"executor": 3}, "expected an executor with a method submit, got 3 @ executor"),
+        ({"out": 3}, "expected the path of a folder, got 3 @ out"),
+        ({"progress": 3}, r"expected a function \(finished, total, job\), got 3 @ progress"),
+        ({"resume": "yes"}, "expected True or False, got 'yes' @ resume"),
+        ({"solver": 3}, "expected the name of a solver, got 3 @ solver"),
+        ({"solver": len}, "a callable is judged by taylor_verify.check"),
+        ({"rungs": 64}, "expected rungs or the name of one, got 64 @ rungs"),
+        ({"scenes": 3}, "expected scenes or the name of one, got 3 @ scenes"),
+        ({"scenes": b"euler/rest"}, "expected scenes or the name of one"),
+        ({"out": 3, "resume": None}, "@ resume\nexpected the path of a folder"),
+    ],
+)
+def test_an_argument_of_a_wrong_kind_is_refused(wrong: dict[str, Any], sentence: str) -> None:
+    """One sentence each, all of them at once, before anything runs."""
+    with pytest.raises(ValueError, match=sentence):
+        taylor_verify.run_many(**{"scenes": ["euler/rest"], **wrong})
+
+
+def test_a_single_name_is_no_row_of_letters(tmp_path: Path) -> None:
+    """A scene, a path, a Scene or a rung may stand for a list of one."""
+    file = tmp_path / "made.toml"
+    file.write_text(THREE_INSTANTS)
+    for one, name in (
+        ("euler/rest", "euler/rest"),
+        (load("euler/rest"), "euler/rest"),
+        (file, str(file)),
+    ):
+        selection = select(one, "f32")
+        assert [scene.name for scene in selection.scenes] == [name]
+        assert selection.rungs == ("f32",)
+    assert len(select("extremes").scenes) > 10
+    assert taylor_verify.run_many("euler/rest", rungs="f64").passed
+
+
+def test_an_error_of_the_executor_is_told_of_its_scene() -> None:
+    """An executor whose future raises what no run raises: Failed, with the scene and the error."""
+
+    class Unreachable(Executor):
+        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+            future: Future[Any] = Future()
+            future.set_exception(OSError(111, "connection refused"))
+            return future
+
+    with pytest.raises(
+        Failed, match=r"^euler/rest on f64: .*ConnectionRefusedError: .*connection refused"
+    ):
+        taylor_verify.run_many(["euler/rest"], executor=Unreachable())
 
 
 # What is selected.

@@ -167,3 +167,36 @@ def test_an_executor_that_breaks_names_the_work(executor: Executor, text: str) -
     """Failed says which piece had no result."""
     with pytest.raises(Failed, match=text):
         run_all(square, [3], executor)
+
+
+class Unreachable(Executor):
+    """An executor whose machine has gone: it says so when work is submitted, or in the future."""
+
+    def __init__(self, at_once: bool) -> None:
+        self.at_once = at_once
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if self.at_once:
+            raise OSError(111, "connection refused")
+        future: Future[Any] = Future()
+        future.set_exception(OSError(111, "connection refused"))
+        return future
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_an_error_of_the_executor_names_the_work(at_once: bool) -> None:
+    """Work that raises Failed alone: an OSError is the executor's, and is told as Failed of its piece."""
+    with pytest.raises(
+        Failed, match=r"3: .* an error of the executor: ConnectionRefusedError: .*refused"
+    ):
+        run_all(square, [3], Unreachable(at_once), raises=Failed)
+
+
+def test_an_error_of_the_work_is_no_error_of_the_executor() -> None:
+    """What the work says it raises is raised as it is."""
+
+    def work(one: int) -> int:
+        raise Failed(f"{one} is broken")
+
+    with ThreadPoolExecutor(1) as executor, pytest.raises(Failed, match=r"^3 is broken$"):
+        run_all(work, [3], executor, raises=Failed)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from taylor_verify.judge.files import FilesJudgement
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
 
 
+@overload
 def check(
     scene: Scene | str | PathLike[str],
     solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
@@ -22,6 +24,27 @@ def check(
     accept_conventions: bool = False,
     partial: bool = False,
     tolerance: Tolerances | Tolerance = None,
+) -> Judgement: ...
+@overload
+def check(
+    scene: Scene | str | PathLike[str],
+    solve_or_file: list[Any] | tuple[Any, ...],
+    rung: Rung | str = "f64",
+    accept_conventions: bool = False,
+    partial: bool = False,
+    tolerance: Tolerances | Tolerance = None,
+    *,
+    steps: Sequence[float] | None = None,
+) -> FilesJudgement: ...
+def check(
+    scene: Scene | str | PathLike[str],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | list[Any] | tuple[Any, ...],
+    rung: Rung | str = "f64",
+    accept_conventions: bool = False,
+    partial: bool = False,
+    tolerance: Tolerances | Tolerance = None,
+    *,
+    steps: Sequence[float] | None = None,
 ) -> Judgement:
     """Judge a solver of one's own, or a trajectory file, on a scene.
 
@@ -30,10 +53,11 @@ def check(
     scene
         A Scene, a path, or the name of a shipped scene.
     solve_or_file
-        A callable ``solve(problem) -> states``, or the path of a trajectory file. States have the shape
-        (samples, n): row k is the state at ``problem.times[k]``. Its columns are omega, q0..q3 or x, y,
-        q0..q3, centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact
-        body, start and instants. A file is CSV, NPZ, Parquet or JSON (solvers.file).
+        A callable ``solve(problem) -> states``, the path of a trajectory file, or a list of such paths:
+        files of one solver at several steps. States have the shape (samples, n): row k is the state at
+        ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3, centre,
+        untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body, start
+        and instants. A file is CSV, NPZ, Parquet or JSON (solvers.file).
     rung
         The precision of the arithmetic that made the answer.
     accept_conventions
@@ -43,25 +67,36 @@ def check(
         and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.
     tolerance
         The error that is allowed, as that of `run`.
+    steps
+        The step that the solver took in each file of a list, in the scene's unit of time. Without it the
+        files say their steps, or their names do (``run_h0.05.csv``).
 
     Returns
     -------
     judge.judgement.Judgement
         The verdicts and their record. That of a file is a judge.answer.FileJudgement, which has the
-        conventions of the file that are not the scene's.
+        conventions of the file that are not the scene's; that of a list a judge.files.FilesJudgement, which
+        has the order of convergence of each quantity.
 
     Raises
     ------
     scenes.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
-        For what is neither a callable nor a file, for a name that is no rung, and for a tolerance as `run`.
+        For what is neither a callable nor a file, for a name that is no rung, for a tolerance as `run`, and
+        for ``steps`` that are no step for each file.
     """
     if callable(solve_or_file):
         from taylor_verify.run import run
         from taylor_verify.solvers.solver import Callback
 
         return run(scene, Callback(solve_or_file), rung, tolerance)
+    if isinstance(solve_or_file, list | tuple):
+        return _check_files(
+            scene, solve_or_file, steps, rung, accept_conventions, partial, tolerance
+        )
+    if steps is not None:
+        raise ValueError("expected a list of files with steps, got one answer @ steps")
     if not isinstance(solve_or_file, str | PathLike):
         kind = type(solve_or_file).__name__
         raise ValueError(
@@ -77,3 +112,23 @@ def check(
     file, scene = read(solve_or_file), as_scene(scene)
     asked = tolerances(tolerance, [scene])
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
+
+
+def _check_files(
+    scene: Scene | str | PathLike[str],
+    files: Sequence[Any],
+    steps: Sequence[float] | None,
+    *options: Any,
+) -> FilesJudgement:
+    """Judge each file of a list by itself with the same options, and all of them together."""
+    from taylor_verify.judge.files import checked_steps, files_judgement, judge_each, repeated
+    from taylor_verify.scenes.reader import as_scene
+
+    scene = as_scene(scene)
+    if not files:
+        raise ValueError("expected at least one trajectory file, got an empty list")
+    if faults := repeated([file for file in files if isinstance(file, str | PathLike)]):
+        raise ValueError("\n".join(faults))
+    steps = None if steps is None else checked_steps(steps, len(files))
+    judged = judge_each(files, lambda file: check(scene, file, *options))
+    return files_judgement(judged, steps)

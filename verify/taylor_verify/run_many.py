@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from concurrent.futures import Executor
     from os import PathLike
 
@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
 
 def run_many(
-    scenes: Selection | Iterable[Scene | str | PathLike[str]] | None = None,
+    scenes: (
+        Selection | Iterable[Scene | str | PathLike[str]] | Scene | str | PathLike[str] | None
+    ) = None,
     solver: str = "taylor",
-    rungs: Iterable[str] | None = None,
+    rungs: Iterable[str] | str | None = None,
     jobs: int | None = None,
     executor: Executor | None = None,
     resume: bool = False,
@@ -32,13 +34,14 @@ def run_many(
     Parameters
     ----------
     scenes
-        Scenes, paths, names of shipped scenes, or folders of these (``extremes``); a scene named twice
-        is run once. None is the standard set. A `batch.selection.Selection` says what will be run, what is
-        left out, and what is doubtful, before anything runs.
+        Scenes, paths, names of shipped scenes, or folders of these (``extremes``), or a single one; a
+        scene named twice is run once. None is the standard set. A `batch.selection.Selection` says what
+        will be run, what is left out, and what is doubtful, before anything runs.
     solver
         The name of a solver, such as ``taylor`` or ``process:./mine``.
     rungs
-        ``f32 f64 f80 f128 mpN``. None is f64, and all five of the ladder for the standard set.
+        ``f32 f64 f80 f128 mpN``, or a single one. None is f64, and all five of the ladder for the standard
+        set.
     jobs
         The number of processes on this machine; as many as cores unless given. A single scene runs in
         this process.
@@ -69,11 +72,13 @@ def run_many(
     scenes.faults.Refused
         For scenes that cannot be read, with every fault of all of them.
     ValueError
-        For what is no solver, no rung, no number of processes or no tolerance.
+        For what is no solver, no rung, no number of processes or no tolerance, and for any other argument
+        of a wrong kind.
     batch.lock.Occupied
         If another run writes to ``out``.
     batch.failure.Failed
-        For a run that broke, or whose process was lost; the text names scene and rung.
+        For a run that broke, whose process was lost, or of which the executor made another error; the text
+        names scene and rung.
     batch.judging.Interrupted
         A KeyboardInterrupt that says how many scenes are stored for ``resume``.
     batch.report.ReportNotWritten
@@ -95,10 +100,8 @@ def run_many(
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.solvers.registry import check_name
 
-    if jobs is not None and not jobs >= 1:
-        raise ValueError(f"expected jobs of at least 1, got {jobs}")
-    if jobs is not None and executor is not None:
-        raise ValueError("expected jobs or an executor, which has its own number, got both")
+    if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
+        raise ValueError("\n".join(faults))
     check_name(solver)
     if isinstance(scenes, Selection) and rungs is not None:
         raise ValueError("expected rungs within the Selection, got others besides @ rungs")
@@ -116,3 +119,37 @@ def run_many(
                 message = f"expected to write the reports, got {error} @ {folder}"
                 raise ReportNotWritten(message, results) from error
     return results
+
+
+def _faults(
+    solver: object, jobs: object, executor: object, resume: object, out: object, progress: object
+) -> Iterator[str]:
+    """Yield a sentence for each argument of a wrong kind."""
+    from os import PathLike
+
+    from taylor_verify.scenes.faults import brief
+
+    if not isinstance(solver, str):
+        mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
+        yield f"expected the name of a solver, got {brief(solver)}{mend} @ solver"
+    if jobs is not None and not (_is_count(jobs) and executor is None):
+        is_count = _is_count(jobs)
+        expected = (
+            "jobs or an executor, which has its own number" if is_count else "jobs of at least 1"
+        )
+        yield f"expected {expected}, got {'both' if is_count else brief(jobs)} @ jobs"
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        yield f"expected an executor with a method submit, got {brief(executor)} @ executor"
+    if not isinstance(resume, bool):
+        yield f"expected True or False, got {brief(resume)} @ resume"
+    if out is not None and not isinstance(out, str | PathLike):
+        yield f"expected the path of a folder, got {brief(out)} @ out"
+    if progress is not None and not callable(progress):
+        yield f"expected a function (finished, total, job), got {brief(progress)} @ progress"
+
+
+def _is_count(jobs: object) -> bool:
+    """Return True for a whole number of at least 1."""
+    from numbers import Integral
+
+    return isinstance(jobs, Integral) and not isinstance(jobs, bool) and int(jobs) >= 1

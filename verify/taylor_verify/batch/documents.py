@@ -29,7 +29,14 @@ def documents(
     nothing.
     """
     work = partial(document, make)
-    return run_all(work, names, executor, expense=expense, ended=lambda name, _: finished(name))
+    return run_all(
+        work,
+        names,
+        executor,
+        expense=expense,
+        ended=lambda name, _: finished(name),
+        raises=Failed,
+    )
 
 
 def document(make: Callable[[Scene], Document], name: str) -> Document:

@@ -80,7 +80,15 @@ def judge_all(
                 report(job)
         try:
             made = iter(
-                run_all(run_job, waiting, executor, workers=workers, expense=_expense, ended=keep)
+                run_all(
+                    run_job,
+                    waiting,
+                    executor,
+                    workers=workers,
+                    expense=_expense,
+                    ended=keep,
+                    raises=Failed,
+                )
             )
         except KeyboardInterrupt as interrupt:
             raise Interrupted(ended if store else 0, len(jobs)) from interrupt

@@ -122,7 +122,7 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
     if isinstance(results, Judgements) and results.unjudged and results.exit_status:
         remarked += _undecided(results.verdicts, "nothing was judged")
     if comparison is not None:
-        remarked += _regressions(comparison, [*results.verdicts, *comparison.before])
+        remarked += _regressions(comparison)
         if not comparison.compared:
             remarked += _undecided(results.verdicts, "no row was compared with the baseline")
     return remarked
@@ -151,16 +151,12 @@ def _undecided(verdicts: Sequence[Verdict], text: str) -> list[Remark]:
     ]
 
 
-def _regressions(comparison: Comparison, rows: Sequence[Verdict]) -> list[Remark]:
+def _regressions(comparison: Comparison) -> list[Remark]:
     from taylor_verify.publish.ci.case import Remark
 
-    # A departure names its row by scene, rung and quantity: a command has one solver.
-    owners = {(v.scene, v.rung, v.quantity): (v.solver, v.setting) for v in rows}
-
     def remark(status: Status, prefix: str, departure: Departure) -> Remark:
-        scene, rung, quantity = departure.scene, departure.rung, departure.quantity
-        owner = owners[scene, rung, quantity]
-        return Remark(scene, *owner, rung, quantity, status, f"{prefix}: {departure}")
+        row = departure.scene, departure.solver, departure.setting, departure.rung
+        return Remark(*row, departure.quantity, status, f"{prefix}: {departure}")
 
     return [
         *(remark(Status.FAIL, "regression", each) for each in comparison.failures),

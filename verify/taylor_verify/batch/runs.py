@@ -27,6 +27,7 @@ def run_all(
     workers: int | None = None,
     expense: Callable[[Asked], Any] | None = None,
     ended: Callable[[Asked, Result], None] | None = None,
+    raises: type[Exception] = Exception,
 ) -> list[Result]:
     """Return ``work(one)`` for each one asked, in the order asked for.
 
@@ -36,15 +37,16 @@ def run_all(
     ``expense``, and ``ended(one, result)`` is called in this thread as each ends. An error, or an
     interrupt, cancels what has not begun.
 
-    Raises Failed where a process was lost, and whatever the work or ``ended`` raises.
+    Raises Failed where a process was lost, and whatever the work or ``ended`` raises. Work that ``raises``
+    errors of one type alone has any other error told as Failed: the executor made it.
     """
     if not asked:
         return []
     if executor is not None:
-        return _gather(executor, work, asked, expense, ended)
+        return _gather(executor, work, asked, expense, ended, raises)
     with LocalPool(min(workers or available_cores(), len(asked))) as pool:
         try:
-            return _gather(pool, work, asked, expense, ended)
+            return _gather(pool, work, asked, expense, ended, raises)
         except BaseException:
             # Nobody waits for the rest, and the pool would.
             pool.terminate()
@@ -57,16 +59,17 @@ def _gather(
     asked: Sequence[Asked],
     expense: Callable[[Asked], Any] | None,
     ended: Callable[[Asked, Result], None] | None,
+    raises: type[Exception],
 ) -> list[Result]:
     places = sorted(range(len(asked)), key=lambda k: expense(asked[k]) if expense else k)
     futures: dict[Future[Result], int] = {}
     results: dict[int, Result] = {}
     try:
         for place in places:
-            futures[executor.submit(partial(_take_turn, work), asked[place])] = place
+            futures[_submitted(executor, work, asked[place])] = place
         for future in as_completed(futures):
             place = futures[future]
-            results[place] = _result(future, asked[place])
+            results[place] = _result(future, asked[place], raises)
             if ended is not None:
                 ended(asked[place], results[place])
     except BaseException:
@@ -81,7 +84,14 @@ def _take_turn(work: Callable[[Asked], Result], one: Asked) -> Result:
         return work(one)
 
 
-def _result(future: Future[Result], one: object) -> Result:
+def _submitted(executor: Executor, work: Callable[[Asked], Result], one: Asked) -> Future[Result]:
+    try:
+        return executor.submit(partial(_take_turn, work), one)
+    except Exception as error:
+        raise Failed(f"{one}: {_of_executor(error)}") from error
+
+
+def _result(future: Future[Result], one: object, raises: type[Exception]) -> Result:
     try:
         return future.result()
     except (WorkerLost, BrokenExecutor) as error:
@@ -90,3 +100,11 @@ def _result(future: Future[Result], one: object) -> Result:
         raise Failed(
             f"{one}: expected a result, got the executor's word that it was cancelled"
         ) from error
+    except raises:
+        raise
+    except Exception as error:
+        raise Failed(f"{one}: {_of_executor(error)}") from error
+
+
+def _of_executor(error: Exception) -> str:
+    return f"expected a result, got an error of the executor: {type(error).__name__}: {error}"

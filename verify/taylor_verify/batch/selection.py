@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike, fspath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
@@ -51,31 +51,34 @@ class Selection:
 
 
 def select(
-    scenes: Iterable[Scene | str | PathLike[str]] | None = None,
-    rungs: Iterable[Rung | str] | None = None,
+    scenes: Iterable[Scene | str | PathLike[str]] | Scene | str | PathLike[str] | None = None,
+    rungs: Iterable[Rung | str] | Rung | str | None = None,
 ) -> Selection:
     """Read the scenes of a run, each once, before anything runs.
 
     Parameters
     ----------
     scenes
-        Scenes, paths, names of shipped scenes, or folders of these (``extremes``). None is the standard
-        set.
+        Scenes, paths, names of shipped scenes, or folders of these (``extremes``); or a single one. None is
+        the standard set.
     rungs
-        ``f32 f64 f80 f128 mpN``. None is f64, and all five of the ladder for the standard set.
+        ``f32 f64 f80 f128 mpN``, or a single one. None is f64, and all five of the ladder for the standard
+        set.
 
     Raises
     ------
     scenes.faults.Refused
         With every fault of every scene that cannot be read.
     ValueError
-        For a name that is no rung.
+        For a name that is no rung, and for what is neither scenes nor rungs.
     """
     from taylor_verify.records.quantities import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
     from taylor_verify.scenes.precision import rung as rung_named
 
+    scenes = None if scenes is None else _several(scenes, "scenes")
+    rungs = None if rungs is None else _several(rungs, "rungs")
     asked = rungs if rungs is not None else LADDER if scenes is None else ("f64",)
     on = tuple(dict.fromkeys(rung_named(rung).name for rung in asked))
     words = [_word(scene) for scene in (names() if scenes is None else scenes)]
@@ -103,6 +106,19 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     if faults:
         raise Refused(faults)
     return tuple(read.values())
+
+
+def _several(asked: Any, what: str) -> Sequence[Any]:
+    """Return what was asked for as a sequence: a text is one name, and no row of letters."""
+    from taylor_verify.scenes.faults import brief
+    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.scenes.scene import Scene
+
+    if isinstance(asked, str | PathLike | Scene | Rung):
+        return [asked]
+    if isinstance(asked, bytes) or not isinstance(asked, Iterable):
+        raise ValueError(f"expected {what} or the name of one, got {brief(asked)} @ {what}")
+    return [*asked]
 
 
 def _word(scene: Scene | str | PathLike[str]) -> Scene | str:

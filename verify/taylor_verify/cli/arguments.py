@@ -33,12 +33,16 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser = _parser()
     options, left = parser.parse_known_args(_with_times_attached(arguments))
     scenes = getattr(options, "scenes", None)
-    if left and (scenes is None or any(word.startswith("-") for word in left)):
+    files = getattr(options, "files", None)
+    if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
         parser.error(f"unrecognized arguments: {' '.join(left)}")
     if scenes is not None:
         # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
         options.rung, taken = _split(options.rung)
         options.scenes = [*scenes, *taken, *left]
+    if files is not None:
+        # Files may stand before and behind the options.
+        options.files = [*files, *left]
     return options
 
 
@@ -191,16 +195,17 @@ def _add_exact(found: Any) -> None:
 
 
 def _add_check(found: Any) -> None:
-    what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON"
+    what = "judge somebody's trajectory: CSV, NPZ, Parquet or JSON; of several files the order too"
     verb = _verb(
         found, "check", what, "check mine.csv --scene euler/generic --rung f64", check.check
     )
     verb.add_argument(
-        "file",
+        "files",
+        nargs="+",
         metavar="FILE",
-        help="columns t and any of w1 w2 w3 (angular velocity, body axes); x1 x2 x3 y1 y2 y3 "
-        "(impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 "
-        "(centre, space axes)",
+        help="several are of one solver at several steps; columns t and any of w1 w2 w3 (angular velocity, "
+        "body axes); x1 x2 x3 y1 y2 y3 (impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or "
+        "r11 ... r33; c1 c2 c3 (centre, space axes)",
     )
     verb.add_argument(
         "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
@@ -224,6 +229,7 @@ def _add_check(found: Any) -> None:
         "it lacks",
     )
     tolerance.add_option(verb)
+    check.add_options(verb)
     ci.add_options(verb)
 
 

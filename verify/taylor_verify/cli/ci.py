@@ -74,7 +74,7 @@ class Told:
 
 def outputs(options: argparse.Namespace) -> Outputs:
     """Return what was asked for. Raises WrongCall for a file that cannot be written, or is no baseline."""
-    junit = None if options.junit is None else _writable_file(options.junit)
+    junit = None if options.junit is None else writable_file(options.junit, "--junit")
     by_baseline = options.gate == BASELINE
     if by_baseline and options.baseline is None:
         raise WrongCall("expected --baseline FILE beside --gate baseline, got none @ --gate")
@@ -221,7 +221,7 @@ def _nothing_shared(before: Iterable[Verdict], now: Iterable[Verdict]) -> str:
     return f"nothing of the baseline was run again, so nothing is shown{why}"
 
 
-def _writable_file(name: str) -> Path:
+def writable_file(name: str, option: str) -> Path:
     """The file, its folder tried out before hours of work end in a refusal to write."""
     import tempfile
 
@@ -235,5 +235,5 @@ def _writable_file(name: str) -> Path:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise WrongCall(
-            f"expected a file that can be written, got {name!r} ({reason}) @ --junit"
+            f"expected a file that can be written, got {name!r} ({reason}) @ {option}"
         ) from error

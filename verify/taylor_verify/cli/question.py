@@ -29,8 +29,11 @@ def question(options: argparse.Namespace) -> Answer:
     except NotRepresentable as reason:
         raise WrongCall(f"expected a scene that {name} can hold, got {reason} @ --rung") from reason
     document = protocol.question(problem)
-    text = partial(_csv, problem) if options.csv else partial(_json, document)
-    return Answer(PASS, document, text)
+    if not options.csv:
+        return Answer(PASS, document, partial(_json, document))
+    how = f"fill in the empty cells, then: taylor-verify check FILE --scene {options.scene}"
+    how += f" --rung {name}" * (name != "f64")
+    return Answer(PASS, document, partial(_csv, problem), [how])
 
 
 def _json(document: dict[str, Any]) -> str:

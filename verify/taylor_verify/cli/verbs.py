@@ -226,9 +226,14 @@ def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
 
 
 def read_time(text: str) -> Fraction:
+    return read_number(text, "--at")
+
+
+def read_number(text: str, option: str) -> Fraction:
+    """Return the decimal or a/b of an option. Raises WrongCall for any other text."""
     from taylor_verify.scenes.table import exact_number
 
     try:
-        return exact_number(text)
+        return exact_number(text.strip())
     except ValueError as error:
-        raise WrongCall(f"expected {error}, got {text!r} @ --at") from error
+        raise WrongCall(f"expected {error}, got {text!r} @ {option}") from error

@@ -40,6 +40,7 @@ from taylor_verify.judge.rounding_class import (
     FACTOR,
     LEVEL,
     Departure,
+    departure,
     departures,
     finite,
     has_grown,
@@ -120,9 +121,9 @@ def decided_alone(held: Held, baseline: Iterable[Verdict], made: Iterable[Verdic
             continue
         if status != 1:
             got = f"{verdict.verdict} ({verdict.because})"
-            unshown.append(_departure(verdict, "", "a row that shows something", got))
+            unshown.append(departure(verdict, "", "a row that shows something", got))
         elif finite(verdict, "max") is None:
-            lost.append(_departure(verdict, "max", "a finite error", told(None)))
+            lost.append(departure(verdict, "max", "a finite error", told(None)))
         elif _name(verdict) not in known:
             unshown.append(_row(verdict, "a row of the baseline", "a new one that fails"))
     regressions, undecided = (*held.regressions, *lost), (*held.undecided, *unshown)
@@ -140,23 +141,23 @@ def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
 
 def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
     if old.provenance.get("scene") != new.provenance.get("scene"):
-        yield _departure(new, "scene", "the text that the baseline was made of", "another")
+        yield departure(new, "scene", "the text that the baseline was made of", "another")
     for name in ("unit", "roundoff"):
         was, now = getattr(old, name), getattr(new, name)
         # A run that came to no comparison has neither.
         if was and now and was != now:
-            yield _departure(new, name, str(was), str(now))
+            yield departure(new, name, str(was), str(now))
 
 
 def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:
     if _grade(new) > _grade(old) and not _have_unlike_tolerances(old, new):
-        yield _departure(new, "verdict", old.verdict.value, new.verdict.value)
+        yield departure(new, "verdict", old.verdict.value, new.verdict.value)
     grown = [(name, *found) for name in ERRORS if (found := _grown(old, new, name)) is not None]
     if grown:
         # They grow together: the first has the figures, the others are named.
         name, limit, got = grown[0]
         others = ", ".join(other for other, *_ in grown[1:])
-        yield _departure(new, f"{name} (and {others})" if others else name, limit, got)
+        yield departure(new, f"{name} (and {others})" if others else name, limit, got)
 
 
 def _have_unlike_tolerances(old: Verdict, new: Verdict) -> bool:
@@ -196,12 +197,8 @@ def _machines(absent: Iterable[Verdict]) -> Iterator[Departure]:
             yield _row(verdict, "the rung on both machines", "it on one: not compared")
 
 
-def _departure(verdict: Verdict, what: str, expected: str, got: str) -> Departure:
-    return Departure(verdict.scene, verdict.rung, verdict.quantity, what, expected, got)
-
-
 def _row(verdict: Verdict, expected: str, got: str) -> Departure:
-    return _departure(verdict, "", expected, got)
+    return departure(verdict, "", expected, got)
 
 
 # Reading.
@@ -215,9 +212,10 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
     """
     content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:
-        rows = parsed(content, _Rows).verdicts
-        for i, verdict in enumerate(rows):
-            _check(verdict, f"verdicts[{i}]")
+        placed = dict(_placed(parsed(content, _Rows)))
+        for place, verdict in placed.items():
+            _check(verdict, place)
+        rows = tuple(placed.values())
         _check_once(rows)
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
@@ -226,9 +224,20 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
 
 @dataclass(frozen=True)
 class _Rows:
-    """The part of a document that a baseline is made of."""
+    """The part of a document that a baseline is made of; that of several files has theirs."""
 
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Verdict, ...] | None = None
+    files: tuple[_Rows, ...] = ()
+
+
+def _placed(document: _Rows, place: str = "") -> Iterator[tuple[str, Verdict]]:
+    """Yield every row of a document with its place in it. Raises ValueError where there is no list."""
+    if document.verdicts is None and not document.files:
+        raise ValueError(f"expected a key verdicts, got none @ {place or 'the document'}")
+    for i, verdict in enumerate(document.verdicts or ()):
+        yield f"{place}verdicts[{i}]", verdict
+    for k, file in enumerate(document.files):
+        yield from _placed(file, f"{place}files[{k}].")
 
 
 def _check(verdict: Verdict, place: str) -> None:

@@ -33,12 +33,12 @@ from taylor_verify.solvers.trajectory import Trajectory
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # An error that is not this much above the floor of rounding has some of it.
-_CLEAR: Final = 10.0
+CLEAR: Final = 10.0
 # And one beyond this multiple of the floor is not made by rounding on this rung.
 _FAR: Final = 100.0
 # Local orders that differ by less are the same one: the integers and halves that orders are, are apart
 # by twice as much.
-_SAME: Final = 0.25
+SAME: Final = 0.25
 # Two local orders can agree by chance, and one cannot disagree.
 _FEWEST: Final = 3
 # Errors that fall more slowly than with this order have stopped falling.
@@ -53,8 +53,9 @@ class Convergence:
 
     ``order`` is the observed one and ``spread`` half of its 95 % interval, from the scatter about a
     straight line in log-log; None where no range of steps has an order. ``steps`` are those used,
-    falling. ``level`` is the error below which smaller steps do not lead, None if they still do.
-    ``reason`` says all this in words, and the order expected if it is another.
+    falling. ``level`` is the error below which smaller steps do not lead, None if they still do;
+    ``stalls_at`` is the step from which on they do not, and ``by_rounding`` is True if rounding explains
+    it. ``reason`` says all this in words, and the order expected if it is another.
     """
 
     order: float | None
@@ -63,6 +64,8 @@ class Convergence:
     level: float | None
     reason: str
     expected: float | None = None
+    stalls_at: float | None = None
+    by_rounding: bool = False
 
     @property
     def is_expected(self) -> bool:
@@ -90,15 +93,30 @@ def convergence(
     stop = _stop(finite)
     usable = [point for point in finite[:stop] if point.is_clear]
     chosen = _straight(usable)
-    level = _level(finite[stop:])
-    remarks = [_broken(points), _rounding(finite, stop)]
+    least = min(finite[stop:], key=lambda point: point.size, default=None)
+    remarks = [_broken(points), _rounding(finite, least)]
+    found = Convergence(
+        None,
+        None,
+        (),
+        least.size if least else None,
+        _joined([f"no order: {_lacking(usable)}", *remarks]),
+        expected,
+        finite[stop].step if least else None,
+        least is not None and least.is_rounding,
+    )
     if chosen is None:
-        why = f"no order: {_lacking(usable)}"
-        return Convergence(None, None, (), level, _joined([why, *remarks]), expected)
+        return found
     order, spread = _slope(chosen)
     words = [_compared(order, spread, expected), _used(chosen, usable), *remarks]
     used = tuple(point.step for point in chosen)
-    return Convergence(order, spread, used, level, _joined(words), expected)
+    return replace(found, order=order, spread=spread, steps=used, reason=_joined(words))
+
+
+def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
+    """Return the order between neighbouring steps, of positive errors; the steps fall."""
+    points = [_Point(step, error, 0.0) for step, error in zip(steps, errors, strict=True)]
+    return tuple(_local(a, b) for a, b in pairwise(points))
 
 
 @dataclass(frozen=True)
@@ -115,7 +133,12 @@ class _Point:
     @property
     def is_clear(self) -> bool:
         """Whether the error is one of the method: zero, and what roundings may make, is not."""
-        return self.size > _CLEAR * self.floor
+        return self.size > CLEAR * self.floor
+
+    @property
+    def is_rounding(self) -> bool:
+        """True if rounding on this rung explains the error, whatever an answer rounds besides."""
+        return self.floor > 0 and self.size <= _FAR * self.floor
 
 
 def _points(
@@ -170,7 +193,7 @@ def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
         for last in range(first + _FEWEST, len(points) + 1):
             run = points[first:last]
             orders = [_local(a, b) for a, b in pairwise(run)]
-            if max(orders) - min(orders) <= _SAME and (best is None or len(run) >= len(best)):
+            if max(orders) - min(orders) <= SAME and (best is None or len(run) >= len(best)):
                 best = run
     return best
 
@@ -185,10 +208,6 @@ def _slope(points: Sequence[_Point]) -> tuple[float, float]:
     scatter = float(np.sum((y - slope * x) ** 2)) / freedom
     student = _STUDENT[min(freedom, len(_STUDENT)) - 1]
     return slope, student * sqrt(scatter / float(x @ x))
-
-
-def _level(tail: Sequence[_Point]) -> float | None:
-    return min((point.size for point in tail), default=None)
 
 
 # The words.
@@ -211,7 +230,7 @@ def _agree(order: float, spread: float, expected: float) -> bool:
 
     Scatter excuses nothing beyond half of the way to the next order.
     """
-    return abs(order - expected) <= min(max(spread, _SAME), 2 * _SAME)
+    return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
 
 
 def _used(chosen: Sequence[_Point], usable: Sequence[_Point]) -> str:
@@ -225,17 +244,15 @@ def _broken(points: Sequence[_Point]) -> str:
     return f"no answer with step {', '.join(f'{step:.3g}' for step in broken)}" if broken else ""
 
 
-def _rounding(points: Sequence[_Point], stop: int) -> str:
-    """Whether errors stop falling, and if it is rounding that stops them."""
-    tail = points[stop:]
-    if not tail:
+def _rounding(points: Sequence[_Point], level: _Point | None) -> str:
+    """Say that errors stop falling, at ``level``, and if it is rounding that stops them."""
+    if level is None:
         near = [point for point in points if not point.is_clear]
         return f"errors reach rounding at {near[0].size:.1g}" if near else ""
-    level = min(tail, key=lambda point: point.size)
     told = f"errors stop falling at {level.size:.1g}"
     if not level.floor > 0:
         return told
-    if level.size <= _FAR * level.floor:
+    if level.is_rounding:
         return f"{told}: rounding"
     return f"{told}: {level.size / level.floor:.1g} times what rounding leaves, so not by rounding"
 
@@ -335,7 +352,7 @@ class _AtStep(Solver):
 def _ordinal(order: float) -> str:
     """4th for 3.97; an order that is no integer is told as it is."""
     nearest = round(order)
-    if not abs(order - nearest) <= _SAME:
+    if not abs(order - nearest) <= SAME:
         return f"{order:.2f}th"
     ending = {1: "st", 2: "nd", 3: "rd"}.get(nearest % 10, "th")
     return f"{nearest}{ending if nearest not in (11, 12, 13) else 'th'}"

@@ -58,7 +58,10 @@ Key = tuple[str, str, str, str]
 
 @dataclass(frozen=True)
 class Departure:
-    """A row or number that is not what was published; ``what`` is empty for a whole row."""
+    """A row or number that is not what was published; ``what`` is empty for a whole row.
+
+    ``solver`` and ``setting`` are those of its run.
+    """
 
     scene: str
     rung: str
@@ -66,10 +69,14 @@ class Departure:
     what: str
     expected: str
     got: str
+    solver: str = ""
+    setting: str = ""
 
     def __str__(self) -> str:
         place = " ".join(part for part in (self.scene, self.rung, self.quantity, self.what) if part)
-        return f"expected {self.expected}, got {self.got} @ {place}"
+        # Several files of one scene have rows that differ in this alone.
+        run = f" ({self.setting})" if self.setting else ""
+        return f"expected {self.expected}, got {self.got} @ {place}{run}"
 
 
 @dataclass(frozen=True)
@@ -124,11 +131,11 @@ def departures(old: Verdict, new: Verdict) -> Iterator[Departure]:
     """Everything by which one row is out of the class of its published one."""
     if old.provenance.get("scene") != new.provenance.get("scene"):
         expected = "the scene as it was published (`make reports` publishes anew)"
-        yield Departure(new.scene, new.rung, new.quantity, "", expected, "another text")
+        yield departure(new, "", expected, "another text")
     for name in _SAME:
         was, now = getattr(old, name), getattr(new, name)
         if was != now:
-            yield Departure(new.scene, new.rung, new.quantity, name, str(was), str(now))
+            yield departure(new, name, str(was), str(now))
     yield from _unlike_costs(old, new)
     if old.at == new.at:
         for name in ("attainable", "bound"):
@@ -160,7 +167,7 @@ def _unlike(
         same = abs(now - was) <= max(few, SLACK * min(abs(now), abs(was)))
     if not same:
         expected = f"{told(was)} within {SLACK:.0%}"
-        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
+        yield departure(new, name, expected, told(now))
 
 
 def _unlike_errors(old: Verdict, new: Verdict, name: str) -> Iterator[Departure]:
@@ -168,7 +175,7 @@ def _unlike_errors(old: Verdict, new: Verdict, name: str) -> Iterator[Departure]
     level = LEVEL * (1.0 if name == "ratio" else _attainable(old, new))
     if has_grown(was, now, level) or has_grown(now, was, level):
         expected = f"{told(was)} within a factor {FACTOR:g} (below {level:.3g} as {level:.3g})"
-        yield Departure(new.scene, new.rung, new.quantity, name, expected, told(now))
+        yield departure(new, name, expected, told(now))
 
 
 def finite(verdict: Verdict, name: str) -> float | None:
@@ -193,8 +200,14 @@ def told(value: float | None) -> str:
     return "no finite number" if value is None else f"{value:.3g}"
 
 
+def departure(verdict: Verdict, what: str, expected: str, got: str) -> Departure:
+    """Return the departure of a row, or of its number ``what``."""
+    row = verdict.scene, verdict.rung, verdict.quantity
+    return Departure(*row, what, expected, got, verdict.solver, verdict.setting)
+
+
 def _row(verdict: Verdict, expected: str, got: str) -> Departure:
-    return Departure(verdict.scene, verdict.rung, verdict.quantity, "", expected, got)
+    return departure(verdict, "", expected, got)
 
 
 def _run(verdict: Verdict) -> Key:

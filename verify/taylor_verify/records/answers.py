@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Annotated
 
 from msgspec import Meta
@@ -106,6 +107,55 @@ class LeftOut:
     why: str
 
 
+class Stall(StrEnum):
+    """The reason why smaller steps do not make an error smaller."""
+
+    ROUNDOFF = "roundoff"
+    DIGITS = "printed digits"
+    OTHER = "other"
+
+
+@dataclass(frozen=True)
+class OrderPoint:
+    """The largest error of one quantity in one file, and what roundoff would leave at its step.
+
+    ``local`` is the order from the next larger step to this one.
+    """
+
+    file: str
+    step: Size
+    error: Size | None
+    attainable: Size | None
+    local: float | None = None
+
+
+@dataclass(frozen=True)
+class Order:
+    """The order of convergence of one quantity over files of several steps, the largest step first.
+
+    ``order`` is the slope of log(error) against log(step) from the step ``largest`` to ``smallest``, and
+    ``low`` to ``high`` its 95 % interval; None where no order fits. Smaller steps than ``stalls_at`` do not
+    make the error smaller, for the reason ``stall``. The step of the file ``suspect`` does not fit the
+    others, whose order its error has at ``suspect_step``.
+    """
+
+    quantity: str
+    unit: str
+    points: tuple[OrderPoint, ...]
+    sentence: str
+    order: float | None = None
+    low: float | None = None
+    high: float | None = None
+    largest: Size | None = None
+    smallest: Size | None = None
+    best_step: Size | None = None
+    best_error: Size | None = None
+    stalls_at: Size | None = None
+    stall: Stall | None = None
+    suspect: str | None = None
+    suspect_step: Size | None = None
+
+
 @dataclass(frozen=True)
 class Answer:
     """The verdicts of `run` or `check`, and what they were compared with."""
@@ -121,3 +171,21 @@ class Answer:
     conventions: tuple[Convention, ...] = ()
     causes: tuple[LikelyCause, ...] = ()
     file: FileRead | None = None
+    step: Annotated[
+        Size | None, Meta(description="The step that the integrator of the file took.")
+    ] = None
+    step_from: Annotated[str, Meta(description="The source that states the step.")] = ""
+
+
+@dataclass(frozen=True)
+class FilesAnswer:
+    """The answer of `check` for several files: a document for each, and the order of convergence.
+
+    Each of ``files`` is the document of that file alone. The worst of them decides the exit status.
+    """
+
+    files: tuple[Answer, ...]
+    order: tuple[Order, ...]
+    summary: dict[Status, Count]
+    notes: Sentences = ()
+    baseline: AgainstBaseline | None = None

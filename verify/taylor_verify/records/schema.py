@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import msgspec
 
-from taylor_verify.records.answers import Answer
+from taylor_verify.records.answers import Answer, FilesAnswer
 from taylor_verify.records.status import Status
 
 _DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -29,8 +29,8 @@ _RUNG: Final = "^(f32|f64|f80|f128|mp[1-9][0-9]*)$"
 
 def schema() -> dict[str, Any]:
     """Return the schema of an answer, with what a type cannot say of a row."""
-    (root,), found = msgspec.json.schema_components((Answer,), ref_template="#/$defs/{name}")
-    answer = found.pop(root["$ref"].rpartition("/")[2])
+    _, found = msgspec.json.schema_components((Answer, FilesAnswer), ref_template="#/$defs/{name}")
+    answer = _with_files(found.pop(Answer.__name__), found.pop(FilesAnswer.__name__))
     verdict = found["Verdict"]
     because = {"description": "The reason in one line.", "type": "string"}
     verdict["properties"] = {"because": because, **verdict["properties"]}
@@ -58,6 +58,22 @@ def schema() -> dict[str, Any]:
     head = {"$schema": _DIALECT, **answer, "title": "Verdicts", "description": _DESCRIPTION}
     made: dict[str, Any] = _tidied({**head, "$defs": found})
     return made
+
+
+def _with_files(answer: dict[str, Any], files: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of an answer for one file, a run, or several files: each has such a document."""
+    of_files = {
+        name: kind for name, kind in files["properties"].items() if name not in answer["properties"]
+    }
+    of_files["files"]["items"] = {"$ref": "#"}
+    return {
+        **answer,
+        "properties": answer["properties"] | of_files,
+        "required": ["summary"],
+        "if": {"required": ["files"]},
+        "then": {"required": files["required"]},
+        "else": {"required": answer["required"]},
+    }
 
 
 def _tidied(schema: Any) -> Any:

@@ -22,16 +22,17 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.faults import Faults, Refused, cut, near
+from taylor_verify.solvers.file_step import STEP_COLUMNS, FileStep, step_inside
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike
-from taylor_verify.solvers.formats.reading import read_table
+from taylor_verify.solvers.formats.reading import parted, read_table
 from taylor_verify.solvers.rows import Rows, check_numbers, exact_times, packed, written_digits
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value
 
 KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
-# Printed by `publish --reference` beside the motion; it is no part of it.
-_IGNORED: Final = ("radius",)
+# Printed by `publish --reference` beside the motion, or a statement of the step: no part of the motion.
+_IGNORED: Final = ("radius", *STEP_COLUMNS)
 # What other programs call the same columns: none of these is near enough in spelling to be guessed.
 _ELSEWHERE: Final = {
     "time": "t",
@@ -64,9 +65,9 @@ class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
-    (solvers.rows); ``digits`` is the largest number of
-    significant decimals that any value is written with, None where one is binary or a fraction.
-    ``notes`` are sentences that say how the format was read.
+    (solvers.rows); ``digits`` is the largest number of significant decimals that any value is written
+    with, None where one is binary or a fraction. ``notes`` are sentences that say how the format was read.
+    ``step`` is the integrator's step, where the file states it.
     """
 
     name: str
@@ -74,6 +75,7 @@ class TrajectoryFile:
     groups: Mapping[str, Sequence[tuple[Value, ...]]]
     digits: int | None = None
     notes: tuple[str, ...] = ()
+    step: FileStep | None = None
 
     @cached_property
     def rows(self) -> Mapping[str, Rows]:
@@ -121,7 +123,8 @@ def read(file: str | os.PathLike[str]) -> TrajectoryFile:
         for group, names in COLUMNS.items()
         if names[0] in values
     }
-    return TrajectoryFile(str(file), times, groups, written_digits(wanted), table.notes)
+    step = step_inside(parted(os.fspath(file))[0], columns)
+    return TrajectoryFile(str(file), times, groups, written_digits(wanted), table.notes, step)
 
 
 # Which columns there are.

@@ -1,7 +1,8 @@
 """What a program of one's own is asked, and what is made of its answer: JSON in, JSON out.
 
-The question is one JSON document on the program's standard input. Every key occurs once in it,
-whatever its table, so that a reader may search the text for ``"elapsed":`` and go on from there.
+The question is one JSON document on the program's standard input. Every key but ``text`` and ``hex``
+occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
+``"elapsed":`` and go on from there. None of them is a key of the answer.
 
     protocol             1; 2 where there is `manufactured`, which a reader of 1 would not look for
     scene, title         the name of the scene and its title
@@ -28,10 +29,10 @@ whatever its table, so that a reader may search the text for ``"elapsed":`` and 
       frequencies          nu, one for each wave
       cosines, sines       a row for each wave: of H* (euler), or of x* and y*, six numbers (kirchhoff)
       constant_part        z* without its waves                  (its hex is rounded)
-    time                 the same instants twice
+    time                 the instants that are asked for, and the time of the initial state
       start                the time of the initial state         (its hex is rounded)
-      elapsed              t - start, monotonic: integrate over these, from 0
-      times                t itself: the column t of the answer  (its hex is rounded)
+      elapsed              the times since then, monotonic: integrate over these, from 0
+      times                start + elapsed: column t of answer   (its hex is rounded)
 
 Every number, vector or matrix is an object of two: ``text``, the exact value (a decimal, or "a/b"
 where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
@@ -41,10 +42,10 @@ and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M ha
 Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
 L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
 
-    z*(t) = constant_part + sum over the waves of cosine cos(nu t) + sine sin(nu t)
-          = start + sum over the waves of cosine (cos(nu t) - 1) + sine sin(nu t),
+    z*(s) = constant_part + sum over the waves of cosine cos(nu s) + sine sin(nu s)
+          = z*(0) + sum over the waves of cosine (cos(nu s) - 1) + sine sin(nu s),
 
-t being the time since the start; H, or x and y, begin there. The second form has exact data alone.
+s being an elapsed time and z*(0) the initial H, or x and y. The second form has exact data alone.
 
 The answer is one JSON object on standard output, and the exit status 0: a list for every name in
 ``columns``, one entry for each instant.

@@ -7,8 +7,9 @@ the command.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from taylor_verify.publish.cells import figure, instant, ratio, reason
@@ -36,7 +37,8 @@ class Case:
 
     ``status`` is the gravest of the verdict's and the remarks', ``sentences`` say why, none for a
     pass without a remark. ``counted`` is the status that colours the row: that of the remarks where they
-    alone decide.
+    alone decide. ``mark`` tells runs of one scene and rung apart: the setting, such as a file; empty where
+    there is one run alone.
     """
 
     scene: str
@@ -48,6 +50,7 @@ class Case:
     counted: Status
     sentences: tuple[str, ...]
     verdict: Verdict | None
+    mark: str = ""
 
     @property
     def is_harmless(self) -> bool:
@@ -57,7 +60,8 @@ class Case:
 
     @property
     def title(self) -> str:
-        return f"{self.scene} on {self.rung}: {self.quantity} {self.counted}"
+        run = f"{self.scene} on {self.rung}{f', {self.mark}' if self.mark else ''}"
+        return f"{run}: {self.quantity} {self.counted}"
 
     @property
     def text(self) -> str:
@@ -75,7 +79,13 @@ def cases(
     said: dict[Key, list[Remark]] = {key: [] for key in rows}
     for remark in remarks:
         said.setdefault(_key(remark), []).append(remark)
-    return tuple(_case(key, rows.get(key), told, by_remarks) for key, told in said.items())
+    runs = {(scene, rung, solver, setting) for scene, solver, setting, rung, _ in said}
+    alike = Counter((scene, rung) for scene, rung, *_ in runs)
+    found = (_case(key, rows.get(key), told, by_remarks) for key, told in said.items())
+    return tuple(
+        replace(case, mark=case.setting) if alike[case.scene, case.rung] > 1 else case
+        for case in found
+    )
 
 
 def _key(row: Verdict | Remark) -> Key:

@@ -74,7 +74,11 @@ def _run(case: Case) -> tuple[str, ...]:
 
 def _suite(group: Sequence[Case]) -> Element:
     some = group[0]
-    suite = Element("testsuite", name=_xml(f"{some.scene} {some.rung}"), tests=str(len(group)))
+    suite = Element(
+        "testsuite",
+        name=_xml(" ".join(filter(None, (some.scene, some.rung, some.mark)))),
+        tests=str(len(group)),
+    )
     found = [_element(case) for case in group]
     for attribute, element in _COUNTED.items():
         suite.set(attribute, str(found.count(element)))
@@ -110,8 +114,8 @@ def _element(case: Case) -> str:
 
 
 def _classname(case: Case) -> str:
-    """Scene and rung as a dotted name, whose parts readers fold into a tree."""
-    parts = (*case.scene.removesuffix(".toml").split("/"), case.rung)
+    """Scene, rung and what tells runs apart as a dotted name, whose parts readers fold into a tree."""
+    parts = (*case.scene.removesuffix(".toml").split("/"), case.rung, *case.mark.split("/"))
     return ".".join(part.replace(".", "_") for part in parts if part.strip("."))
 
 

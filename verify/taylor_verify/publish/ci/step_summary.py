@@ -87,7 +87,8 @@ def _table(heading: str, found: Sequence[Case], reasons: bool = False) -> str:
 
 def _row(case: Case, reasons: bool) -> list[str]:
     because = [prose("; ".join(case.sentences))] if reasons else []
-    head = [code(case.scene), case.rung, code(case.quantity)]
+    run = " ".join(code(word) for word in (case.scene, case.mark) if word)
+    head = [run, case.rung, code(case.quantity)]
     return [*head, *_figures(case.verdict), judged(case.status), *because]
 
 

@@ -18,10 +18,15 @@ if TYPE_CHECKING:
 
 _MAKER: Final = "taylor-verify"
 # A date would make two files of one picture differ.
-_METADATA: Final = {
+_METADATA: Final[dict[str, dict[str, str | None]]] = {
     "svg": {"Creator": _MAKER, "Date": None},
     "pdf": {"Creator": _MAKER, "CreationDate": None},
+    "png": {"Software": _MAKER},
 }
+_PUBLISHED: Final = ("svg", "pdf")
+ENDINGS: Final = tuple(f".{ending}" for ending in _METADATA)
+# Pixels to the inch of a PNG: legible on a screen and in print at the width of a page.
+_RESOLUTION: Final = 200
 
 
 @dataclass(frozen=True)
@@ -38,18 +43,29 @@ class Picture:
 
 
 def save(
-    pictures: Iterable[Picture], folder: Path | str, formats: Collection[str] = tuple(_METADATA)
+    pictures: Iterable[Picture], folder: Path | str, formats: Collection[str] = _PUBLISHED
 ) -> list[Path]:
     """Write each picture as SVG and as PDF, in place of earlier ones; return the paths.
 
-    ``formats`` may name one of the two. All are drawn before the first is written, and each is moved into
-    its place whole. Raises ImportError without matplotlib, OSError for a folder that cannot be written.
+    ``formats`` may name others (svg, pdf, png). All are drawn before the first is written, and each is
+    moved into its place whole. Raises ImportError without matplotlib, OSError for a folder that cannot be
+    written.
     """
     with plotting():
         contents = {
             name: content for picture in pictures for name, content in _files(picture, formats)
         }
     return list(replace_files(Path(folder), contents))
+
+
+def save_as(picture: Picture, file: Path) -> None:
+    """Write one picture to a file, whose ending says the format.
+
+    Raises ImportError without matplotlib, OSError for a file that cannot be written.
+    """
+    with plotting():
+        ((_, content),) = _files(picture, [file.suffix.lower().lstrip(".")])
+    replace_files(file.parent, {file.name: content})
 
 
 @contextmanager
@@ -74,7 +90,8 @@ def _files(picture: Picture, formats: Collection[str]) -> Iterator[tuple[str, by
         if ending == "svg":
             metadata["Description"] = picture.alt
         file = BytesIO()
-        figure.savefig(file, format=ending, metadata=metadata)
+        resolution = _RESOLUTION if ending == "png" else "figure"
+        figure.savefig(file, format=ending, metadata=metadata, dpi=resolution)
         content = file.getvalue()
         if ending == "svg":
             content = compact(content.decode()).encode()

@@ -7,8 +7,8 @@
  * but C's own. The argument is the longest step, in the scene's own time. rk4.py beside it is the same
  * program in Python; the keys are explained in solvers/protocol.py of taylor-verify.
  *
- * No JSON reader is needed. Every key occurs once in the document, no value can look like one (inside a
- * JSON string every quote is escaped), and every number is an object of two lists, "text" and "hex". So
+ * No JSON reader is needed. Every number is an object of two lists, "text" and "hex". Every other key occurs
+ * once in the document, and no value can look like one (inside a JSON string every quote is escaped). So
  * a value is found by searching for  "key":  then for  "hex":  and reading so many numbers in quotes,
  * which strtod understands. The keys read are
  *

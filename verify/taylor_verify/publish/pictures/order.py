@@ -1,0 +1,119 @@
+"""The errors of several files against their steps: a line for each quantity, and its roundoff floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.publish.pictures import panels as at
+from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
+from taylor_verify.publish.pictures.legend import draw_legend, foot_of
+from taylor_verify.publish.pictures.log_axes import number_axes
+from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.palette import QUIET
+from taylor_verify.publish.pictures.panels import Frame, width_of
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
+from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.records.answers import Order
+from taylor_verify.records.quantities import STATES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Points = list[tuple[float, float]]
+
+_TALLER: Final = 1.5
+_DOTTED: Final[dict[str, Any]] = {"linestyle": (0, (1, 2)), "linewidth": 0.7}
+
+
+def has_points(order: Order) -> bool:
+    """Return True if a logarithmic axis can show an error of the quantity."""
+    return bool(_errors(order))
+
+
+def picture(title: str, orders: Sequence[Order]) -> Picture:
+    """Return the picture of all quantities, the state on the left and what is conserved on the right.
+
+    Raises ValueError where no error is above zero.
+    """
+    drawn = [order for order in orders if has_points(order)]
+    if not drawn:
+        raise ValueError("expected an error above zero, got none @ order")
+    said = ". ".join(order.sentence for order in drawn)
+    return Picture(
+        stem_of({"scene": title.partition(" ")[0]}, "order"),
+        f"Error against step: {title}",
+        f"Largest error against the step h on {title}, both logarithmic. {said}.",
+        partial(_figure, drawn),
+    )
+
+
+def _figure(orders: Sequence[Order]) -> Figure:
+    from matplotlib.figure import Figure
+
+    panels = [group for group in _panels(orders) if group[1]]
+    entries = [
+        ({"color": QUIET, "linewidth": 1.8}, "order read here"),
+        ({"color": QUIET, **_DOTTED}, "roundoff floor"),
+    ]
+    low, width = foot_of(entries, "") + at.BELOW, width_of(len(panels))
+    height = at.HEIGHT * _TALLER
+    figure = Figure(figsize=(PAGE_WIDTH, low + height + at.HEADING), dpi=72)
+    for i, (heading, group) in enumerate(panels):
+        left = at.LEFT + i * (width + at.LEFT + at.RIGHT)
+        axes = add_axes(figure, Frame(left, low, width, height))
+        axes.set_title(heading, pad=4)
+        _draw(axes, group)
+    draw_legend(figure, entries, "", None)
+    return figure
+
+
+def _panels(orders: Sequence[Order]) -> list[tuple[str, list[Order]]]:
+    states = [order for order in orders if order.quantity in STATES]
+    others = [order for order in orders if order.quantity not in STATES]
+    return [("state", states), ("conserved quantities", others)]
+
+
+def _draw(axes: Axes, orders: Sequence[Order]) -> None:
+    from taylor_verify.publish.pictures.labels import write_names
+
+    errors = [_errors(order) for order in orders]
+    floors = [_floors(order) for order in orders]
+    everything = [point for points in (*errors, *floors) for point in points]
+    axes.set(xscale="log", yscale="log", xlabel="step h", ylabel="largest error")
+    axes.set(xlim=widened([h for h, _ in everything], 0.08, 0.08))
+    axes.set(ylim=widened([error for _, error in everything], 0.06, 0.06))
+    number_axes(axes)
+    for i, order in enumerate(orders):
+        look = line_of(look_of_line(i))
+        axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
+        read = [p for p in errors[i] if order.order is not None and _is_read(order, p[0])]
+        if read:
+            heavy = {**look, "linewidth": 1.8 * look["linewidth"]}
+            axes.plot(*zip(*read, strict=True), zorder=3, gid="order", **heavy)
+        if floors[i]:
+            axes.plot(*zip(*floors[i], strict=True), color=look["color"], gid="floor", **_DOTTED)
+    names = [
+        Named(_name(order), look_of_line(i).colour, [errors[i]]) for i, order in enumerate(orders)
+    ]
+    write_names(axes, names, [points for points in floors if points])
+
+
+def _name(order: Order) -> str:
+    unit = " (rad)" if order.unit == "rad" else ""
+    return order.quantity + unit + ("" if order.order is None else f", order {order.order:.1f}")
+
+
+def _is_read(order: Order, step: float) -> bool:
+    return (order.smallest or 0.0) <= step <= (order.largest or 0.0)
+
+
+def _errors(order: Order) -> Points:
+    return [(p.step, p.error) for p in order.points if p.error]
+
+
+def _floors(order: Order) -> Points:
+    return [(p.step, p.attainable) for p in order.points if p.attainable]
