@@ -21,6 +21,7 @@ from taylor_verify.judge.baseline import decided_alone, hold
 from taylor_verify.publish.ci.annotations import annotation_lines
 from taylor_verify.publish.ci.case import Remark
 from taylor_verify.publish.ci.junit import junit
+from taylor_verify.publish.ci.step_summary import step_summary
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 
@@ -112,6 +113,13 @@ def test_a_row_beyond_its_bound_is_green_for_a_ci_and_a_regression_is_red() -> N
     (line, _) = annotation_lines(rows, [grew], by_remarks=True)
     assert line.startswith("::error title=euler/generic on f64%3A T fail::")
     assert len(annotation_lines(rows, [], by_remarks=True)) == 1
+
+
+def test_the_summary_says_what_decided_and_keeps_the_verdicts() -> None:
+    """A row that fails its own bound is listed with its verdict, below the line that says what decided."""
+    text = step_summary([ordinary()], [], "decided by the baseline alone: no regression")
+    assert "**decided by the baseline alone: no regression**" in text
+    assert text.index("decided by") < text.index("**fail**")
 
 
 # The command.

@@ -52,9 +52,12 @@ class Graded:
 
 
 def _errors(verdict: Verdict, gate: GateRecord) -> Floats:
-    """The errors at all samples: the record has four digits of them, the verdict all of the largest."""
+    """The errors at all samples, to the four digits of the record.
+
+    A tolerance has no rounding to leave room for: of the largest error all digits count then.
+    """
     errors = np.array(gate.errors)
-    if verdict.max is not None and isfinite(verdict.max):
+    if verdict.tolerance is not None and verdict.max is not None and isfinite(verdict.max):
         errors = np.minimum(errors, verdict.max)
         errors[index_of_largest(errors)] = verdict.max
     return errors
