@@ -24,9 +24,9 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.scenes.precision import rung
 
     (name,) = known_rungs([options.rung])
-    scene, file = _scene_and_file(options.scene, options.file)
     asked = outputs(options)
     with working(f"check {options.file}"):
+        scene, file = _scene_and_file(options.scene, options.file)
         judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
     text = partial(check_text, judged, scene.name, name)
     to_ci = tell(asked, judged, exit_status(judged.verdicts))
