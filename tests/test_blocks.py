@@ -259,7 +259,7 @@ def test_rows_are_formed_as_their_values_are() -> None:
     """Short decimals, which are formed many at once, and all other numbers, one by one, to the last bit."""
     short = ["0.1", "-3", "+2.50", "7.e-3", "1e22", " 0.3 ", "-0", "12345678901234567890.123456789"]
     other = ["0x1.8p-3", "1/3", "1e-400", "0." + "1" * 60, "nan", "-inf", "2", "0.1"]
-    for column in (short, other, np.array([0.1, -2.5, 1e-300]), np.array([3, 4])):
+    for column in (short, other, np.array([0.1, -2.5, 1e-300]), np.array([3, 4, 5])):
         values = [exact(raw) for raw in column]
         rows = Rows([column])
         assert [row[0] for row in rows][:4] == values[:4]
@@ -292,7 +292,7 @@ assert [v.quantity for v in found.verdicts][:2] == ["initial", "omega"]
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024))
 """
 # The rational of a time takes 130 bytes and the text of a row 70; errors, floors and their copies of three
-# gates some 40 doubles. What begins anew as it grows, lists of times and sums of arrays, takes as much again.
+# gates some 40 doubles. What begins anew as it grows, a list or a sum of arrays, takes as much again.
 BYTES_A_ROW = 1000
 
 
