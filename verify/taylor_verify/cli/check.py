@@ -39,12 +39,14 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.check_text import check_text
     from taylor_verify.cli.ci import outputs, tell
     from taylor_verify.cli.files_text import files_text
+    from taylor_verify.cli.progress import working
     from taylor_verify.judge.files import files_judgement, judge_each
     from taylor_verify.records.verdict import exit_status
     from taylor_verify.scenes.faults import Refused
 
     (options.rung,) = known_rungs([options.rung])
-    scene, files, steps = _asked(options)
+    with working(f"check {', '.join(options.files)}"):
+        scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
     asked = outputs(options)
     if len(files) == 1:

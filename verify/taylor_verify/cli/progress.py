@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from taylor_verify.cli.streams import say
 from taylor_verify.scenes.names import escaped
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 # Nobody needs to be told that something takes less than this, in seconds.
 _PATIENCE = 1.0
+# The length of a bar, in characters.
+_BAR: Final = 30
 # To it every room says how far long work has come.
 PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 
@@ -67,7 +69,7 @@ def counting(total: int) -> Callable[[str], None]:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """A spinner with the latest news while one long thing is computed.
+    """Show a spinner with the latest news while one long thing is computed, and a bar of its share.
 
     Where stderr is no terminal, lines with the news, each after twice the time of the one before.
     """
@@ -77,7 +79,8 @@ def working(what: str) -> Iterator[None]:
             from rich.text import Text
 
             def text() -> Text:
-                return Text(escaped(f"{what}: {latest()}"))
+                news = latest()
+                return Text(escaped(f"{what}: {news.bar}{news.words}"))
 
             with (
                 Console(stderr=True).status(text()) as spinner,
@@ -87,19 +90,36 @@ def working(what: str) -> Iterator[None]:
             return
         began = monotonic()
         with _repeated(
-            lambda: max(_PATIENCE, monotonic() - began), lambda: say(f"{what}: {latest()}")
+            lambda: max(_PATIENCE, monotonic() - began), lambda: say(f"{what}: {latest().words}")
         ):
             yield
 
 
+class _News(NamedTuple):
+    """What is computed, and the share of it that is done, from 0 to 1, where that is known."""
+
+    words: str
+    share: float | None = None
+
+    @property
+    def bar(self) -> str:
+        if self.share is None:
+            return ""
+        done = round(_BAR * self.share)
+        return f"[{'#' * done}{'.' * (_BAR - done)}] "
+
+
 @contextmanager
-def _news() -> Iterator[Callable[[], str]]:
-    """The latest message of whatever room computes, or that something is computed."""
-    messages = deque(["computing"], maxlen=1)
+def _news() -> Iterator[Callable[[], _News]]:
+    """Yield a function that returns the latest message of whatever room computes.
+
+    A message says how much is done by an attribute ``share`` of its record.
+    """
+    messages = deque([_News("computing")], maxlen=1)
 
     class Latest(logging.Handler):
         def emit(self, record: logging.LogRecord) -> None:
-            messages.append(record.getMessage())
+            messages.append(_News(record.getMessage(), getattr(record, "share", None)))
 
     handler = Latest(logging.INFO)
     level = PROGRESS.level

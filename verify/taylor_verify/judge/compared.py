@@ -20,8 +20,9 @@ from mpmath import mp
 
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.errors import Errors, largest, norms
+from taylor_verify.judge.errors import Errors, largest
 from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -177,11 +178,13 @@ class Compared:
     @cached_property
     def reach(self) -> float:
         """How far the answer goes from its first sample, in the unit of the error."""
-        parts = [
-            norms((self.run.answer[part] - self.run.answer[part][:1]) / scale)
-            for part, scale in self._scales.items()
-        ]
-        return float(max(largest(part) for part in parts))
+        parts = []
+        for part, scale in self._scales.items():
+            rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
+            with precision():
+                squares = np.sum((rows - rows[:1]) ** 2, axis=1)
+            parts.append(mp.sqrt(largest(to_mpf(squares))) / scale)
+        return float(max(parts))
 
     @cached_property
     def doubt(self) -> float:

@@ -161,8 +161,11 @@ class Arc:
         """Take in further samples, at the instants of the scene, and return the whole length."""
         body = scene.body
         assert isinstance(body, ImmersedBody)
-        A, B = exact_matrix(body.linear), exact_matrix(body.coupling)
-        speeds = norms(truth["linear_impulse"] @ A.T + truth["angular_impulse"] @ B.T)
+        A, B = (to_mpfr(exact_matrix(matrix)) for matrix in (body.linear, body.coupling))
+        x, y = to_mpfr(truth["linear_impulse"]), to_mpfr(truth["angular_impulse"])
+        with precision():
+            U = x @ A.T + y @ B.T
+            speeds = to_mpf(sqrt(np.sum(U * U, axis=1)))
         for elapsed, speed in zip(scene.clock.elapsed, speeds, strict=True):
             time = mp.convert(elapsed)
             # The start is not always sampled; the speed there is close enough to the first sample's.

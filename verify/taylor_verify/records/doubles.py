@@ -70,8 +70,8 @@ def four_digits(values: Iterable[float]) -> Doubles:
         power = np.floor(np.log10(np.abs(exact))) - (_DIGITS - 1)
         counts = exact / 10.0**power
         whole = np.rint(counts)
-    # Elsewhere a rounding of the quotient cannot change the digits.
-    is_clear = (np.abs(power) < 250) & (np.abs(np.abs(counts - whole) - 0.5) > 1e-6)
+        # Elsewhere a rounding of the quotient cannot change the digits.
+        is_clear = (np.abs(power) < 250) & (np.abs(np.abs(counts - whole) - 0.5) > 1e-6)
     codes = whole[is_clear] + 1j * power[is_clear]
     each, places = np.unique(codes, return_inverse=True)
     texts = [float(f"{int(code.real)}e{int(code.imag)}") for code in each]

@@ -13,7 +13,7 @@ a while, such as space axes of a body that starts in line with them, is tried on
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -323,10 +323,10 @@ class _Search:
         return reach <= _MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
 
 
-def is_far(scene: Scene, times: Iterable[Fraction], spans: int = _MOST_SPANS) -> bool:
-    """Return True if the Taylor route would have to go so many spans of the scene."""
+def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) -> bool:
+    """Return True if the Taylor route would have to go so many spans for these times in order."""
     span = max(abs(t) for t in scene.clock.elapsed)
-    reach = max(abs(t - scene.clock.start) for t in times)
+    reach = max(abs(t - scene.clock.start) for t in (times[0], times[-1]))
     return reach > spans * span and solution(scene).route == "taylor"
 
 
