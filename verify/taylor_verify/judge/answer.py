@@ -33,17 +33,18 @@ from taylor_verify.judge.file_notes import (
 )
 from taylor_verify.judge.gyroscopic import gyroscopic_cause
 from taylor_verify.judge.initial import initial_verdict
-from taylor_verify.judge.inputs import input_rounding
+from taylor_verify.judge.inputs import impulses, input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import Recorded, TrajectoryFile
@@ -58,7 +59,8 @@ _MOST_SPANS: Final = 100
 # The columns that the states are read from; what is conserved may need any of them.
 _MADE_OF: Final = {
     "omega": ("omega",),
-    "impulse": ("linear_impulse", "angular_impulse"),
+    "impulse": ("linear_impulse", "angular_impulse", *VELOCITIES),
+    "velocity": ("linear_velocity",),
     "attitude": ("quaternion", "attitude"),
     "centre": ("centre",),
 }
@@ -124,7 +126,7 @@ def judge_file(
     compare.
     """
     groups = comparable(file, scene)
-    asked, notes = scene, tuple(coverage_notes(file, groups, scene))
+    asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     scene = replace(scene, track=scene.track & tracked(groups))
     found = Conventions((), World(scene), {})
@@ -187,11 +189,15 @@ def _alone(
 
 @dataclass(frozen=True)
 class _Answer:
-    """Times and quantities of a run, and the scene it is held against."""
+    """Times and quantities of a run, and the scene it is held against.
+
+    With ``has_velocities`` the impulses were made of velocities.
+    """
 
     scene: Scene
     times: tuple[Fraction, ...]
     quantities: Mapping[str, Array]
+    has_velocities: bool = False
 
     @classmethod
     def of(
@@ -202,7 +208,7 @@ class _Answer:
         if "attitude" in quantities:
             quantities["attitude"] = quantities["attitude"].reshape(-1, 3, 3)
         if accepted is None:
-            return cls(scene, file.times, quantities)
+            return cls(scene, file.times, quantities)._with_impulses(bits)
         world = accepted.world
         scene, times = world.scene, world.times(file.times)
         if accepted.readings:
@@ -210,7 +216,18 @@ class _Answer:
             with mp.workprec(bits):
                 for name, reading in accepted.readings.items():
                     quantities[name] = reading.read(quantities[name], R)
-        return cls(scene, times, quantities)
+        return cls(scene, times, quantities)._with_impulses(bits)
+
+    def _with_impulses(self, bits: int) -> _Answer:
+        """The answer with the impulses that its velocities stand for, if it has no impulse itself."""
+        body, has = self.scene.body, set(self.quantities)
+        if not isinstance(body, ImmersedBody) or not has.issuperset(VELOCITIES):
+            return self
+        if has & set(MOMENTA["kirchhoff"]):
+            return self
+        with mp.workprec(bits):
+            made = impulses(body, self.quantities)
+        return replace(self, quantities={**self.quantities, **made}, has_velocities=True)
 
     def sides(self) -> list[_Answer]:
         """The rows after the start and those before it, each in the order away from the start."""
@@ -227,7 +244,8 @@ class _Answer:
 
     def _rows(self, rows: list[int]) -> _Answer:
         quantities = {name: values[rows] for name, values in self.quantities.items()}
-        return _Answer(self.scene, tuple(self.times[k] for k in rows), quantities)
+        times = tuple(self.times[k] for k in rows)
+        return replace(self, times=times, quantities=quantities)
 
 
 def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
@@ -248,7 +266,8 @@ class _Side:
 
 def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
     problem = adopt(answer.scene, rung, answer.times)
-    judged = partial_judgement(problem, Recorded(answer.quantities, setting=name))
+    solver = Recorded(answer.quantities, setting=name, carries_velocities=answer.has_velocities)
+    judged = partial_judgement(problem, solver)
     if judged.record is None:
         return _Side(judged, [])
     inputs = input_rounding(problem.given, rung, problem.scene)

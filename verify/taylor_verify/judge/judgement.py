@@ -178,7 +178,8 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
     answer = trajectory.motion(working_bits(bits))
     with mp.workprec(working_bits(bits)):
         with costs.of(CONDITION):
-            base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
+            roundoff, by_velocities = problem.rung.unit_roundoff, run.solver.carries_velocities
+            base = floor(given, problem.scene, roundoff, run.steps.counted, by_velocities)
         with costs.of(ERRORS):
             states = state_errors(given, truth, answer)
             shifts = time_shifts(given, exact, truth, answer, digits, states)

@@ -1,4 +1,4 @@
-"""The judgement of an answer that has only some of the quantities, or the angular velocity besides.
+"""The judgement of an answer that has only some of the quantities, or velocities besides.
 
 What is missing is taken from the truth, so that the equations of the judge have all they ask for; no
 row that rests on it is reported.
@@ -20,16 +20,17 @@ from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, floor
 from taylor_verify.judge.errors import Errors, norms, state_errors
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.judge.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION
+from taylor_verify.records.quantities import GATE_FACTOR, UNIT_QUATERNION, VELOCITIES
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.solvers.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -49,11 +50,12 @@ def partial_judgement(problem: Problem, solver: Recorded) -> Judgement:
     own, given = solver.quantities, problem.given
     truth = _truth(problem)
     has = {"attitude" if name == "quaternion" else name for name in own}
-    filled = {n: rows for n, rows in own.items() if n != "omega" or n in truth.quantities}
+    filled = {n: rows for n, rows in own.items() if n not in VELOCITIES or n in truth.quantities}
     filled |= {name: rows for name, rows in truth.quantities.items() if name not in has}
     apart: list[Gated] = []
-    if "omega" not in truth.quantities and "omega" in own:
-        apart.append(_angular_velocity(problem, solver, truth))
+    for group, velocity in _VELOCITIES.items():
+        if group in own and group not in truth.quantities:
+            apart.append(_velocity(problem, solver, truth, velocity))
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
@@ -79,6 +81,8 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
     """The quantities of a verdict all of whose ingredients the answer has."""
     found = has & {"omega", "attitude", "centre"}
     found.add(UNIT_QUATERNION)
+    if "linear_velocity" in has:
+        found.add("velocity")
     if {"linear_impulse", "angular_impulse"} & has:
         found.add("impulse")
     for invariant in invariants(problem.given):
@@ -94,7 +98,8 @@ def _states_apart(
     """Attitude and centre against the truth, and nothing that is conserved."""
     given, rung = problem.given, problem.rung
     with mp.workprec(working_bits(rung.bits)):
-        base = floor(given, problem.scene, rung.unit_roundoff, 0)
+        by_velocities = solver.carries_velocities
+        base = floor(given, problem.scene, rung.unit_roundoff, 0, by_velocities)
         rows = []
         for errors in state_errors(given, truth, Motion(filled, truth.radius)):
             if errors.quantity in ("attitude", "centre"):
@@ -105,27 +110,54 @@ def _states_apart(
     return rows
 
 
-# The angular velocity of a solid in a fluid: Omega = B^T x + C y.
+# The velocities of a solid in a fluid: U = A x + B y, Omega = B^T x + C y.
 
 
 @dataclass(frozen=True)
-class _Omega:
-    """The exact angular velocity, its largest size, and what a rounding of x and y makes of it."""
+class _Kind:
+    """One of the two velocities: its quantity, its unit, and the blocks of the energy it is made with."""
+
+    quantity: str
+    unit: str
+    group: str
+    of: Velocity
+    carried: Carried
+
+    def blocks(self, body: ImmersedBody) -> dict[str, Matrix]:
+        """The matrices of the two impulses."""
+        is_linear = self.group == "linear_velocity"
+        of_x, of_y = (body.linear, body.coupling) if is_linear else (body.coupling, body.angular)
+        return {"linear_impulse": of_x, "angular_impulse": of_y}
+
+
+_VELOCITIES: Final = {
+    kind.group: kind
+    for kind in (
+        _Kind("omega", "max|omega|", "omega", angular_velocity, Carried.VELOCITY),
+        _Kind("velocity", "max|U|", "linear_velocity", linear_velocity, Carried.LINEAR_VELOCITY),
+    )
+}
+
+
+@dataclass(frozen=True)
+class _Exact:
+    """The exact velocity, its largest size, and what a rounding of x and y makes of it."""
 
     rows: Any
     scale: Any
     attainable: Floats
 
 
-def _angular_velocity(problem: Problem, solver: Recorded, truth: Motion) -> Gated:
+def _velocity(problem: Problem, solver: Recorded, truth: Motion, kind: _Kind) -> Gated:
     with mp.workprec(working_bits(problem.rung.bits)):
-        exact = _omega(problem, truth)
-        values = norms(solver.quantities["omega"] - exact.rows) / exact.scale
-        errors = Errors("omega", "max|omega|", values, truth.radius, {"omega": exact.scale})
-        terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
+        exact, own = _exact(problem, solver, truth, kind), solver.quantities[kind.group]
+        values = norms(own - exact.rows) / exact.scale
+        scales = {kind.group: exact.scale}
+        errors = Errors(kind.quantity, kind.unit, values, truth.radius, scales)
+        terms = Reason(floor=RoundoffFloor(kind.carried))
         row, gate = _row(problem, solver, errors, exact.attainable, terms)
         digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
-        shift = angular_shift(problem.given, solver.quantities["omega"], digits)
+        shift = angular_shift(problem.given, own, digits, kind.of)
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(exact.scale)
@@ -170,17 +202,18 @@ def _row(
     return verdict, gate
 
 
-def _omega(problem: Problem, truth: Motion) -> _Omega:
+def _exact(problem: Problem, solver: Recorded, truth: Motion, kind: _Kind) -> _Exact:
     given = problem.given
     body = given.body
     assert isinstance(body, ImmersedBody)
-    rows = angular_velocity(body, truth.quantities)
+    rows = kind.of(body, truth.quantities)
     sizes = norms(rows)
     scale = max(sizes) or mpf(1)
-    base = floor(given, problem.scene, problem.rung.unit_roundoff, 0)
+    roundoff, by_velocities = problem.rung.unit_roundoff, solver.carries_velocities
+    base = floor(given, problem.scene, roundoff, 0, by_velocities)
     squares = (base.unit_roundoff * (sizes / scale).astype(float)) ** 2
-    for part, matrix in (("linear_impulse", body.coupling), ("angular_impulse", body.angular)):
+    for part, matrix in kind.blocks(body).items():
         norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
         alone = Errors(part, "", truth.radius, truth.radius, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2
-    return _Omega(rows, scale, np.sqrt(squares))
+    return _Exact(rows, scale, np.sqrt(squares))

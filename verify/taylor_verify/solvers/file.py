@@ -2,7 +2,11 @@
 
 t                 time                          q0 q1 q2 q3      quaternion of R, scalar first
 w1 w2 w3          angular velocity, body axes   r11 r12 ... r33  R itself, r12 is row 1, column 2
-x1 x2 x3 y1 y2 y3 impulses, body axes           c1 c2 c3         centre, space axes
+u1 u2 u3          velocity of the body's        c1 c2 c3         centre, space axes
+                  origin, body axes
+x1 x2 x3 y1 y2 y3 impulses, body axes
+
+Usual other names and units are taken and said (solvers.columns).
 
 Decimals, ``a/b`` and hexadecimal floats become rationals; binary numbers are taken as they are. None
 of them passes through a double on its way.
@@ -23,24 +27,16 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.faults import Faults, Refused, cut, near
+from taylor_verify.scenes.faults import Faults, Refused, cut
+from taylor_verify.solvers.columns.names import KNOWN
+from taylor_verify.solvers.columns.request import Request
+from taylor_verify.solvers.columns.selection import Taken, select
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike, shown
 from taylor_verify.solvers.formats.reading import read_columns
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, exact
 
-KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
-# Printed by `publish --reference` beside the motion; it is no part of it.
-_IGNORED: Final = ("radius",)
-# What other programs call the same columns: none of these is near enough in spelling to be guessed.
-_ELSEWHERE: Final = {
-    "time": "t",
-    **dict(zip(("wx", "wy", "wz"), COLUMNS["omega"], strict=True)),
-    **dict(zip(("omega1", "omega2", "omega3"), COLUMNS["omega"], strict=True)),
-    **dict(zip(("qw", "qx", "qy", "qz"), COLUMNS["quaternion"], strict=True)),
-    **dict(zip(("cx", "cy", "cz"), COLUMNS["centre"], strict=True)),
-}
 _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 # Errors are told as doubles, and so is whatever is as large as the answer itself.
 _LARGEST: Final = 2**1000
@@ -51,12 +47,14 @@ _LARGEST: Final = 2**1000
 class Recorded(Solver):
     """A solver whose answer is already written down, in ``quantities`` as a Trajectory has them.
 
-    ``setting`` is the file. How many steps it took is not known.
+    ``setting`` is the file. How many steps it took is not known. With ``carries_velocities`` the impulses
+    were made of velocities, which are what was rounded.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
     name: str = "file"
     setting: str = ""
+    carries_velocities: bool = False
 
     def solve(self, problem: Problem) -> Trajectory:
         del problem
@@ -68,41 +66,54 @@ class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
     ``groups`` maps the names of COLUMNS to rows of values; ``digits`` is the largest number of
-    significant decimals that any value is written with, None where one is binary or a fraction.
+    significant decimals that any value is written with, None where one is binary or a fraction. ``notes``
+    say which columns were taken for which, and which were ignored.
     """
 
     name: str
     times: tuple[Fraction, ...]
     groups: Mapping[str, tuple[tuple[Value, ...], ...]]
     digits: int | None = None
+    notes: tuple[str, ...] = ()
 
 
-def read(file: str | os.PathLike[str]) -> TrajectoryFile:
-    """The trajectory in a CSV, NPZ, Parquet or JSON file.
+def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
+    """Read the trajectory in a CSV, NPZ, Parquet or JSON file.
 
-    Columns: ``t``; ``w1 w2 w3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3`` (scalar first) or
-    ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Raises Refused with every fault of it.
+    Columns: ``t``; ``w1 w2 w3``, ``u1 u2 u3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3``
+    (scalar first) or ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Usual other names are
+    taken, and ``columns`` names what has any other name, by pairs of our name and the file's. Raises
+    Refused with every fault of it.
     """
-    path, faults = Path(file), Faults()
-    columns = _named_once(read_columns(path, KNOWN), str(file), faults)
-    _refuse_unknown(columns, str(file), faults)
-    _refuse_incomplete(columns, str(file), faults)
-    lengths = _lengths(columns)
-    _refuse_ragged(columns, lengths, str(file), faults)
-    wanted = [column for column in columns if column.name in KNOWN]
-    values = {c.name: list(_exact_column(c, str(file), faults)) for c in wanted}
-    times = _times(values.get("t", []), str(file), faults)
+    return from_columns(read_columns(Path(file), KNOWN), str(file), columns)
+
+
+def from_columns(
+    columns: Iterable[Column], place: str, wanted: Request = (), notes: Sequence[str] = ()
+) -> TrajectoryFile:
+    """Return the trajectory in columns as they are written; ``place`` names their file in messages.
+
+    ``notes`` are sentences about the columns that their reader has. Raises Refused with every fault.
+    """
+    faults = Faults()
+    selection = select(_named_once(columns, place, faults), wanted, place, faults)
+    taken = selection.columns
+    _refuse_ragged([one.column for one in taken], _length(taken), place, faults)
+    values = {one.name: list(_exact_column(one.column, place, faults)) for one in taken}
+    clock = next((one for one in taken if one.name == "t"), None)
+    times = _times(values["t"], clock.column.name, place, faults) if clock else ()
     if faults.lines:
         raise Refused(faults.lines)
+    scaled = {one.name: _scaled(values[one.name], one.factor) for one in taken}
     groups = {
-        group: tuple(zip(*(values[name] for name in names), strict=True))
+        group: tuple(zip(*(scaled[name] for name in names), strict=True))
         for group, names in COLUMNS.items()
         if names[0] in values
     }
-    return TrajectoryFile(str(file), times, groups, _written_digits(wanted))
-
-
-# Which columns there are.
+    digits = _written_digits(one.column for one in taken if one is not clock)
+    factor = clock.factor if clock else Fraction(1)
+    said = (*notes, *selection.notes)
+    return TrajectoryFile(place, tuple(t * factor for t in times), groups, digits, said)
 
 
 def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Column]:
@@ -114,29 +125,9 @@ def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Co
     return list(found.values())
 
 
-def _refuse_unknown(columns: Sequence[Column], file: str, faults: Faults) -> None:
-    for name, _ in columns:
-        if name not in KNOWN and name not in _IGNORED:
-            meant = _ELSEWHERE.get(name.lower())
-            mend = f"did you mean `{meant}`?" if meant else near(cut(name.lower()), KNOWN)
-            faults.add("a known column", f"`{cut(name)}`", file, mend)
-
-
-def _refuse_incomplete(columns: Sequence[Column], file: str, faults: Faults) -> None:
-    present = {column.name for column in columns}
-    if "t" not in present:
-        faults.add("a column `t` of times", "none", file, "add the column `t`")
-    for names in COLUMNS.values():
-        missing = [name for name in names if name not in present]
-        if 0 < len(missing) < len(names):
-            faults.add(f"all of {' '.join(names)}", f"no {' '.join(missing)}", file)
-    if {"q0", "r11"} <= present:
-        faults.add("the attitude once", "q0 q1 q2 q3 and r11 ... r33", file, "keep one of them")
-
-
-def _lengths(columns: Sequence[Column]) -> int:
+def _length(taken: Sequence[Taken]) -> int:
     """The length that the columns should have: that of t, else the first column's."""
-    by_name = {column.name: len(column.values) for column in columns}
+    by_name = {one.name: len(one.column.values) for one in taken}
     return by_name.get("t", next(iter(by_name.values()), 0))
 
 
@@ -144,7 +135,7 @@ def _refuse_ragged(columns: Sequence[Column], length: int, file: str, faults: Fa
     for name, values in columns:
         if len(values) != length:
             faults.add(f"{length} values as in t", str(len(values)), f"{file}, column {cut(name)}")
-    if not length:
+    if columns and not length:
         faults.add("at least one row", "none", file)
 
 
@@ -168,14 +159,21 @@ def _exact_column(column: Column, file: str, faults: Faults) -> Iterator[Value]:
     add_more_alike(faults, wrong, f"{file}, column {column.name}")
 
 
-def _times(values: Sequence[Value], file: str, faults: Faults) -> tuple[Fraction, ...]:
+def _scaled(values: Sequence[Value], factor: Fraction) -> Sequence[Value]:
+    """The numbers in the scene's unit; NaN and infinity as they are."""
+    if factor == 1:
+        return values
+    return [value * factor if isinstance(value, Fraction) else value for value in values]
+
+
+def _times(values: Sequence[Value], name: str, file: str, faults: Faults) -> tuple[Fraction, ...]:
     """The times, strictly increasing or strictly decreasing; anything else is a fault."""
     if faults.lines:
         return ()
     times = [value for value in values if isinstance(value, Fraction)]
     if len(times) < len(values):
         row = next(i for i, v in enumerate(values, start=1) if not isinstance(v, Fraction))
-        faults.add("a finite time", str(values[row - 1]), f"{file}, row {row}, column t")
+        faults.add("a finite time", str(values[row - 1]), f"{file}, row {row}, column {cut(name)}")
         return ()
     rises = times[-1] >= times[0]
     wrong = [i for i in range(1, len(times)) if (times[i] > times[i - 1]) is not rises]
@@ -184,8 +182,8 @@ def _times(values: Sequence[Value], file: str, faults: Faults) -> tuple[Fraction
         now, before = _time_text(times[i]), _time_text(times[i - 1])
         expected = "no time twice" if now == before else f"times that keep {_word(rises)}"
         got = f"{now} again" if now == before else f"{now} after {before}"
-        faults.add(expected, got, f"{file}, row {i + 1}, column t")
-    add_more_alike(faults, len(wrong), f"{file}, column t")
+        faults.add(expected, got, f"{file}, row {i + 1}, column {cut(name)}")
+    add_more_alike(faults, len(wrong), f"{file}, column {cut(name)}")
     return tuple(times)
 
 
@@ -198,10 +196,10 @@ def _time_text(time: Fraction) -> str:
 
 
 def _written_digits(columns: Iterable[Column]) -> int | None:
-    """The most significant digits of any decimal besides the times; None where they do not tell."""
+    """The most significant digits of any decimal; None where they do not tell."""
     most = 0
-    for name, values in columns:
-        for raw in values if name != "t" else ():
+    for _, values in columns:
+        for raw in values:
             if not isinstance(raw, str) or not _DECIMAL.fullmatch(raw.strip()):
                 return None
             mantissa = raw.lower().split("e")[0]
