@@ -1,4 +1,4 @@
-"""Judge a solver of one's own, or a trajectory that is already in a file."""
+"""Judge a solver of one's own, or a trajectory that is already in a file or in memory."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.models.problem import Problem
@@ -16,22 +16,26 @@ if TYPE_CHECKING:
 
 def check(
     scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
+    columns: Mapping[str, str] | None = None,
 ) -> Judgement:
-    """Judge a solver of one's own, or a trajectory file, on a scene.
+    """Judge a solver of one's own, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
     ----------
     scene
         A Scene, a path, or the name of a shipped scene.
     solve_or_file
-        A callable ``solve(problem) -> states``, or the path of a trajectory file. States have the shape
-        (samples, n): row k is the state at ``problem.times[k]``. Its columns are omega, q0..q3 or x, y,
-        q0..q3, centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact
-        body, start and instants. A file is CSV, NPZ, Parquet or JSON (solvers.file).
+        A callable ``solve(problem) -> states``, the path of a trajectory file, or a trajectory in memory.
+        States have the shape (samples, n): row k is the state at ``problem.times[k]``. Its columns are
+        omega, q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own units;
+        ``problem.given`` holds the exact body, start and instants. A file is CSV, NPZ, Parquet or JSON
+        (solvers.file). In memory it is a pandas or polars DataFrame, an xarray Dataset, a dict of arrays
+        such as ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
+        OdeResult, whose states are in the order above (solvers.objects). Numbers are taken exactly.
     rung
         The precision of the arithmetic that made the answer.
     accept_conventions
@@ -39,6 +43,10 @@ def check(
     partial
         Accept a file that lacks tracked columns or covers a part of the span: its row `complete` is vacuous
         and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.
+    columns
+        The column of the file or object for each of our names that it does not have itself nor by a usual
+        name: ``{"w1": "rate about 1 [deg/s]", "t": "epoch"}``. A group names all of its components:
+        ``{"omega": "gyro"}``.
 
     Returns
     -------
@@ -51,23 +59,20 @@ def check(
     scenes.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
-        For what is neither a callable nor a file, and for a name that is no rung.
+        For what is neither a callable nor a trajectory, and for a name that is no rung.
     """
     if callable(solve_or_file):
         from taylor_verify.run import run
         from taylor_verify.solvers.solver import Callback
 
         return run(scene, Callback(solve_or_file), rung)
-    if not isinstance(solve_or_file, str | PathLike):
-        kind = type(solve_or_file).__name__
-        raise ValueError(
-            f"expected a callable solve(problem) or a trajectory file, got {kind} "
-            "(write it to a file, or return it from a callable)"
-        )
     from taylor_verify.judge.answer import judge_file
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reader import as_scene
     from taylor_verify.solvers.file import read
+    from taylor_verify.solvers.objects import pairs, trajectory
 
-    file = read(solve_or_file)
-    return judge_file(file, as_scene(scene), rung_named(rung), accept_conventions, partial)
+    asked, wanted = as_scene(scene), pairs(columns)
+    is_path = isinstance(solve_or_file, str | PathLike)
+    file = read(solve_or_file, wanted) if is_path else trajectory(solve_or_file, asked, wanted)
+    return judge_file(file, asked, rung_named(rung), accept_conventions, partial)

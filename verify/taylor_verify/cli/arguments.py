@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from taylor_verify.cli import check, ci, claims, publishing, question, tradeoff, verbs
+from taylor_verify.cli import check, ci, claims, columns, publishing, question, tradeoff, verbs
 from taylor_verify.cli.answer import Answer
 from taylor_verify.scenes.names import escaped
 from taylor_verify.version import __version__
@@ -181,10 +181,9 @@ def _add_check(found: Any) -> None:
     verb.add_argument(
         "file",
         metavar="FILE",
-        help="columns t and any of w1 w2 w3 (angular velocity, body axes); x1 x2 x3 y1 y2 y3 "
-        "(impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 "
-        "(centre, space axes)",
+        help=columns.FILE,
     )
+    columns.add_option(verb)
     verb.add_argument(
         "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
     )

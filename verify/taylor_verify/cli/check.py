@@ -10,6 +10,8 @@ from taylor_verify.cli.answer import Answer, WrongCall
 from taylor_verify.cli.verbs import known_rungs, read_scenes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.file import TrajectoryFile
 
@@ -24,7 +26,7 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.scenes.precision import rung
 
     (name,) = known_rungs([options.rung])
-    scene, file = _scene_and_file(options.scene, options.file)
+    scene, file = _scene_and_file(options.scene, options.file, options.columns or ())
     asked = outputs(options)
     with working(f"check {options.file}"):
         judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
@@ -34,9 +36,10 @@ def check(options: argparse.Namespace) -> Answer:
     return Answer(to_ci.status, document, text, to_ci.messages)
 
 
-def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:
-    """Both read; the faults of both are reported at once."""
+def _scene_and_file(scene: str, file: str, columns: Sequence[str]) -> tuple[Scene, TrajectoryFile]:
+    """Read both; the faults of both are reported at once."""
     from taylor_verify.scenes.faults import Refused
+    from taylor_verify.solvers.columns.request import request
     from taylor_verify.solvers.file import read
 
     faults: list[str] = []
@@ -45,7 +48,7 @@ def _scene_and_file(scene: str, file: str) -> tuple[Scene, TrajectoryFile]:
     except WrongCall as error:
         faults.append(str(error))
     try:
-        found = read(file)
+        found = read(file, request(columns))
     except Refused as error:
         faults.append(str(error))
     if faults:

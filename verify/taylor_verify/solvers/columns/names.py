@@ -72,7 +72,10 @@ _ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
 _MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
 # A direction cosine matrix takes space to body as often as body to space.
 _COSINES: Final = "dcm directioncosinematrix c"
-_TIMES: Final = "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed elapsedtime"
+_TIMES: Final = (
+    "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed "
+    "elapsedtime"
+)
 
 _FIRST: Final = "scalar first"
 _TO_SPACE: Final = "body axes to space axes"
