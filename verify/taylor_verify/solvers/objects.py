@@ -31,7 +31,6 @@ _ACCEPTED: Final = (
     "a callable solve(problem), a trajectory file, a DataFrame, an xarray Dataset, a dict of arrays or "
     "SciPy's OdeResult"
 )
-_NUMBERS: Final = "fiuOUSm"
 
 
 def trajectory(found: Any, scene: Scene, wanted: Request = ()) -> TrajectoryFile:
@@ -148,14 +147,11 @@ class _Gathered:
             rows = np.atleast_2d(values.as_quat())[:, [3, 0, 1, 2]]
             self._own("quaternion", rows, f"`{cut(name)}`, a {type(values).__name__},")
             return
-        if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
-            count = int(np.sum(np.ma.getmaskarray(values)))
-            self.faults.add("numbers without a mask", f"{count} masked", self._at(name))
-            return
-        try:
-            array = values if isinstance(values, np.ndarray) else np.asarray(values)
-        except ValueError:
+        array = _array(values)
+        if array is None and name in COLUMNS:
             self.faults.add("an array", "rows of different lengths", self._at(name))
+        if array is None:
+            self.columns.append(Column(name, list(values)))
             return
         if array.ndim == 1:
             self._add(name + unit, array)
@@ -188,17 +184,26 @@ class _Gathered:
             self._add(name + unit, values)
 
     def _add(self, name: str, values: Any) -> None:
-        if values.dtype.kind == "M":
-            mend = "subtract the start, and write seconds"
-            self.faults.add("numbers", "dates", self._at(name), mend)
-        elif values.dtype.kind == "m":
-            counted = values.astype("timedelta64[ns]").astype(np.int64)
-            self.columns.append(Column(f"{name} [ns]", list(counted)))
-        elif values.dtype.kind in _NUMBERS:
-            self.columns.append(Column(name, list(values)))
+        if values.dtype.kind == "m":
+            name, values = f"{name} [ns]", values.astype("timedelta64[ns]").astype(np.int64)
+        self.columns.append(Column(name, list(values)))
 
     def _at(self, name: str) -> str:
         return f"{self.place}, column {cut(name)}"
+
+
+def _array(values: Any) -> Any:
+    """Return the array that a value is; None for rows of different lengths.
+
+    NumPy would make texts of numbers that stand beside a text, and lose the mask of an array.
+    """
+    if isinstance(values, np.ndarray):
+        return values
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        return None
+    return np.asarray(values, dtype=object) if array.dtype.kind in "US" else array
 
 
 def _label(index: int, axis: int, labels: Sequence[Sequence[str]]) -> str:
