@@ -22,7 +22,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.solvers.columns.names import GROUPS, SPELLINGS, Spelling
 from taylor_verify.solvers.columns.request import request
-from taylor_verify.solvers.columns.units import OWN, in_brackets
+from taylor_verify.solvers.columns.units import OWN, in_brackets, known_units
 from taylor_verify.solvers.file import TrajectoryFile, from_columns, read
 from taylor_verify.solvers.formats.column import Column
 
@@ -477,3 +477,40 @@ def test_command_takes_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str
     errors = capsys.readouterr().err
     assert "got `w9` @ columns w9=b" in errors
     assert "got `rate` @ columns w1=rate" in errors
+
+
+# The documentation.
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "columns.md"
+
+
+def _documented(heading: str) -> list[tuple[str, str]]:
+    """The table below a heading: the first cell, and each text in backquotes of the second."""
+    _, _, below = PAGE.read_text(encoding="utf-8").partition(heading)
+    lines = below.split("\n\n## ")[0].splitlines()
+    table = [line.split("|")[1:-1] for line in lines if line.startswith("| ")]
+    return [
+        (first.strip(" `"), text) for first, *rest in table[1:] for text in rest[0].split("`")[1::2]
+    ]
+
+
+def test_names_of_the_page_are_taken() -> None:
+    """Every name that the documentation shows is taken as the group that it says."""
+    shown = _documented("## Other names")
+    assert {group for group, _ in shown} == set(GROUPS)
+    for group, names in shown:
+        company = "t" if group != "time" else "w1 w2 w3"
+        company += " p q r" if names == "u v w" else ""
+        file = made(f"{company} {names}")
+        assert group in file.groups or group == "time", names
+        assert any(" taken as " + NAMES[group] in note for note in file.notes)
+
+
+def test_units_of_the_page_are_known() -> None:
+    """The documentation shows the first name of every unit, and each of them is known."""
+    of = {"a rate": "omega", "a velocity": "linear_velocity", "a length": "centre", "time": "time"}
+    for kind, texts in _documented("## Units"):
+        group = of.get(kind, "angular_impulse" if "m" in texts else "linear_impulse")
+        assert all(in_brackets(text, group) is not None for text in texts.split())
+        if kind in of:
+            assert ", ".join(texts.split()) == known_units(group)

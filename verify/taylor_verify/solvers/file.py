@@ -104,7 +104,7 @@ def from_columns(
     times = _times(values["t"], clock.column.name, place, faults) if clock else ()
     if faults.lines:
         raise Refused(faults.lines)
-    scaled = {one.name: _scaled(values[one.name], one.factor) for one in taken}
+    scaled = {one.name: one.scaled(values[one.name]) for one in taken}
     groups = {
         group: tuple(zip(*(scaled[name] for name in names), strict=True))
         for group, names in COLUMNS.items()
@@ -157,13 +157,6 @@ def _exact_column(column: Column, file: str, faults: Faults) -> Iterator[Value]:
                 faults.add(str(error), shown(raw), f"{file}, row {row}, column {column.name}")
             yield math.nan
     add_more_alike(faults, wrong, f"{file}, column {column.name}")
-
-
-def _scaled(values: Sequence[Value], factor: Fraction) -> Sequence[Value]:
-    """The numbers in the scene's unit; NaN and infinity as they are."""
-    if factor == 1:
-        return values
-    return [value * factor if isinstance(value, Fraction) else value for value in values]
 
 
 def _times(values: Sequence[Value], name: str, file: str, faults: Faults) -> tuple[Fraction, ...]:

@@ -33,44 +33,63 @@ _ACCEPTED: Final = (
 )
 
 
-def trajectory(found: Any, scene: Scene, wanted: Request = ()) -> TrajectoryFile:
-    """Return the trajectory in a Python object; what is wrong with its columns raises Refused.
+def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile:
+    """Return the trajectory that a Python object holds.
 
-    Raises ValueError for an object of another kind.
+    Parameters
+    ----------
+    held
+        A DataFrame, a Dataset, a record array, arrays by name, or SciPy's OdeResult.
+    scene
+        The scene that it answers: it has the order of the states of an OdeResult.
+    columns
+        Pairs of a name of ours and the name that the object has for it.
+
+    Returns
+    -------
+    solvers.file.TrajectoryFile
+        The trajectory. Its name is the type of the object.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For columns that cannot be judged, with every fault.
+    ValueError
+        For an object of another kind.
     """
-    place = f"the {type(found).__name__}"
+    place = f"the {type(held).__name__}"
     gathered = _Gathered(place)
-    if _is_ode_result(found):
-        gathered.take_states(found, scene, in_order=not wanted)
-    elif hasattr(found, "data_vars") and hasattr(found, "dims"):
-        gathered.take_data_set(found)
-    elif hasattr(found, "columns") and hasattr(found, "__getitem__"):
-        gathered.take_table(found)
-    elif getattr(getattr(found, "dtype", None), "names", None):
-        for name in found.dtype.names:
-            gathered.take(name, found[name])
-    elif isinstance(found, Mapping):
-        for name, values in found.items():
+    if _is_ode_result(held):
+        gathered.take_states(held, scene, in_order=not columns)
+    elif hasattr(held, "data_vars") and hasattr(held, "dims"):
+        gathered.take_data_set(held)
+    elif hasattr(held, "columns") and hasattr(held, "__getitem__"):
+        gathered.take_table(held)
+    elif getattr(getattr(held, "dtype", None), "names", None):
+        for name in held.dtype.names:
+            gathered.take(name, held[name])
+    elif isinstance(held, Mapping):
+        for name, values in held.items():
             gathered.take(name, values)
     else:
-        raise ValueError(f"expected {_ACCEPTED}, got {_kind(found)}")
+        raise ValueError(f"expected {_ACCEPTED}, got {_kind(held)}")
     if gathered.faults.lines:
         raise Refused(gathered.faults.lines)
-    columns = gathered.columns
-    check_lengths(columns, place)
-    check_size(len(columns), max((len(c.values) for c in columns), default=0), place)
-    return from_columns(columns, place, wanted, gathered.notes)
+    taken = gathered.columns
+    check_lengths(taken, place)
+    check_size(len(taken), max((len(c.values) for c in taken), default=0), place)
+    return from_columns(taken, place, columns, gathered.notes)
 
 
-def _kind(found: Any) -> str:
-    if hasattr(found, "as_quat"):
-        return f'a {type(found).__name__} alone (write {{"t": times, "attitude": rotations}})'
-    return f"{type(found).__name__}: {brief(found)}"
+def _kind(held: Any) -> str:
+    if hasattr(held, "as_quat"):
+        return f'a {type(held).__name__} alone (write {{"t": times, "attitude": rotations}})'
+    return f"{type(held).__name__}: {brief(held)}"
 
 
-def _is_ode_result(found: Any) -> bool:
+def _is_ode_result(held: Any) -> bool:
     """Return True for what has t, (samples), and y, (states, samples), as attributes."""
-    return getattr(getattr(found, "y", None), "ndim", 0) == 2 and hasattr(found, "t")
+    return getattr(getattr(held, "y", None), "ndim", 0) == 2 and hasattr(held, "t")
 
 
 @dataclass

@@ -21,8 +21,10 @@ from taylor_verify.scenes.faults import Faults, cut
 from taylor_verify.solvers.columns.names import GROUP_OF, GROUPS, SPELLINGS, Spelling
 from taylor_verify.solvers.columns.readings import Name, is_ours
 from taylor_verify.solvers.columns.request import Request, asked_columns
+from taylor_verify.solvers.columns.scaled import Scaled
 from taylor_verify.solvers.columns.units import OWN, Unit, known_units
 from taylor_verify.solvers.formats.column import Column
+from taylor_verify.solvers.values import Value
 
 # Printed by `publish --reference` beside the motion; it is no part of it.
 _SILENT: Final = ("radius",)
@@ -46,6 +48,10 @@ class Taken:
     name: str
     column: Column
     factor: Fraction = Fraction(1)
+
+    def scaled(self, values: Sequence[Value]) -> Sequence[Value]:
+        """Return the column's numbers in the scene's unit."""
+        return values if self.factor == 1 else Scaled(values, self.factor)
 
 
 @dataclass(frozen=True)
