@@ -90,7 +90,8 @@ def test_a_spelling_in_doubt_is_refused_with_what_to_write(spelling: Spelling) -
     """Four numbered components of a quaternion do not say where the scalar is."""
     said = refusal(["t", *spelling.keys])
     assert "the scalar is the first of them or the last" in said
-    assert "say which: --columns q0=NAME" in said
+    first = ",".join(f"{a}={b}" for a, b in zip(COLUMNS["quaternion"], spelling.keys, strict=True))
+    assert f"say which: --columns {first} for the first, q0={spelling.keys[3]}," in said
     wanted = dict(zip(COLUMNS["quaternion"], spelling.keys, strict=True))
     assert set(made(["t", *spelling.keys], wanted).groups) == {"quaternion"}
 
@@ -335,6 +336,8 @@ def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
     assert "got `omega_3` @ columns omega_3=c" in said
     assert "expected every column once, got `a`, which is w1" in said
     assert "got `bb` @ columns w3=bb (near it: `b`" in said
+    # What follows from them is none of its own.
+    assert "expected all of" not in said
     with pytest.raises(Refused, match="expected every name once, got w1 again"):
         from_columns([Column(n, ["1"]) for n in "tab"], "mine", (("w1", "a"), ("w1", "b")))
 

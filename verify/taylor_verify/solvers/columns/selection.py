@@ -92,8 +92,12 @@ class _Choice:
 
 def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
     """Return the columns that are ours, and record what is wrong with them as faults."""
+    before = len(faults.lines)
     asked = asked_columns(wanted, columns, place, faults)
     chooser = _Chooser(columns, asked, place, faults)
+    if len(faults.lines) > before:
+        # The rest of a group that was asked for in vain is no second fault.
+        chooser.doubted |= {GROUP_OF.get(name, name) for name, _ in wanted}
     chosen = chooser.choices()
     # Numbers of a group that is not whole are read too, so that all faults are said at once.
     taken = [Taken(c.name.strip(), c) for c in chooser.half if faults.lines]
@@ -165,14 +169,17 @@ class _Chooser:
             got = " and ".join(choice.shown for choice in clear[:3])
             self._doubt(group, f"{' '.join(GROUPS[group])} once", got)
         elif every:
-            self._doubt(group, f"{' '.join(GROUPS[group])}", f"{every[0].shown}: {every[0].doubt}")
+            doubted = every[0]
+            got = f"{doubted.shown}: {doubted.doubt}"
+            self._doubt(group, " ".join(GROUPS[group]), got, _either(doubted))
         return None
 
-    def _doubt(self, group: str, expected: str, got: str) -> None:
+    def _doubt(self, group: str, expected: str, got: str, request: str = "") -> None:
         self.doubted.add(group)
         ours = GROUPS[group]
         names = f"{ours[0]}=NAME" if len(ours) == 1 else f"{ours[0]}=NAME,{ours[1]}=NAME,..."
-        self.faults.add(expected, got, self.place, f"say which: --columns {names}")
+        mend = f"say which: --columns {request or names}"
+        self.faults.add(expected, got, self.place, mend)
 
     def _as_asked(self, group: str) -> _Choice:
         columns = tuple(self.asked[name] for name in GROUPS[group])
@@ -365,6 +372,20 @@ class _Chooser:
         if ignored:
             named, more = _shown(ignored[:_MOST_NAMED]), len(ignored) - _MOST_NAMED
             yield f"ignored: {named}{f' and {more} more' if more > 0 else ''}"
+
+
+def _either(choice: _Choice) -> str:
+    """The requests for a scalar that is the first of four columns, and for one that is the last."""
+    names = [column.name.strip() for column in choice.columns]
+    if choice.group != "quaternion":
+        return ""
+    first, last = (
+        ",".join(
+            f"{ours}={cut(name)}" for ours, name in zip(GROUPS[choice.group], order, strict=True)
+        )
+        for order in (names, [names[-1], *names[:-1]])
+    )
+    return f"{first} for the first, {last} for the last"
 
 
 def _shown(columns: Sequence[Column]) -> str:
