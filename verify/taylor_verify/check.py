@@ -1,4 +1,4 @@
-"""Judge a solver of one's own, or a trajectory that is already in a file."""
+"""Judge a solver of one's own, or a trajectory that is already in a file or in memory."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from taylor_verify.judge.files import FilesJudgement
     from taylor_verify.judge.judgement import Judgement
@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 @overload
 def check(
     scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
     tolerance: Tolerances | Tolerance = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Judgement: ...
 @overload
 def check(
@@ -33,31 +34,36 @@ def check(
     accept_conventions: bool = False,
     partial: bool = False,
     tolerance: Tolerances | Tolerance = None,
+    columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
 ) -> FilesJudgement: ...
 def check(
     scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
     tolerance: Tolerances | Tolerance = None,
+    columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
 ) -> Judgement:
-    """Judge a solver of one's own, or a trajectory file, on a scene.
+    """Judge a solver of one's own, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
     ----------
     scene
         A Scene, a path, or the name of a shipped scene.
     solve_or_file
-        A callable ``solve(problem) -> states``, the path of a trajectory file, or a list of such paths:
-        files of one solver at several steps. States have the shape (samples, n): row k is the state at
-        ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3, centre,
-        untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body, start
-        and instants. A file is CSV, NPZ, Parquet or JSON (solvers.file).
+        A callable ``solve(problem) -> states``, the path of a trajectory file, a trajectory in memory, or a
+        list of these: answers of one solver at several steps. States have the shape (samples, n): row k is
+        the state at ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3,
+        centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body,
+        start and instants. A file is CSV, NPZ, Parquet, JSON or another of solvers.formats.reading. In
+        memory it is a pandas or polars DataFrame, an xarray Dataset, a dict of arrays such as
+        ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
+        OdeResult, whose states are in the order above (solvers.objects). Numbers are taken exactly.
     rung
         The precision of the arithmetic that made the answer.
     accept_conventions
@@ -67,8 +73,12 @@ def check(
         and counts for nothing. Without it this row is undecided. An answer of a callable is always whole.
     tolerance
         The error that is allowed, as that of `run`.
+    columns
+        The column of the file or object for each of our names that it does not have itself nor by a usual
+        name: ``{"w1": "rate about 1 [deg/s]", "t": "epoch"}``. A group names all of its components:
+        ``{"omega": "gyro"}``.
     steps
-        The step that the solver took in each file of a list, in the scene's unit of time. Without it the
+        The step that the solver took in each answer of a list, in the scene's unit of time. Without it the
         files say their steps, or their names do (``run_h0.05.csv``).
 
     Returns
@@ -83,8 +93,8 @@ def check(
     scenes.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
-        For what is neither a callable nor a file, for a name that is no rung, for a tolerance as `run`, and
-        for ``steps`` that are no step for each file.
+        For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
+        `run`, and for ``steps`` that are no step for each answer of a list.
     """
     if callable(solve_or_file):
         from taylor_verify.run import run
@@ -92,25 +102,21 @@ def check(
 
         return run(scene, Callback(solve_or_file), rung, tolerance)
     if isinstance(solve_or_file, list | tuple):
-        return _check_files(
-            scene, solve_or_file, steps, rung, accept_conventions, partial, tolerance
-        )
+        options = (rung, accept_conventions, partial, tolerance, columns)
+        return _check_files(scene, solve_or_file, steps, *options)
     if steps is not None:
         raise ValueError("expected a list of files with steps, got one answer @ steps")
-    if not isinstance(solve_or_file, str | PathLike):
-        kind = type(solve_or_file).__name__
-        raise ValueError(
-            f"expected a callable solve(problem) or a trajectory file, got {kind} "
-            "(write it to a file, or return it from a callable)"
-        )
     from taylor_verify.judge.answer import judge_file
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reader import as_scene
     from taylor_verify.solvers.file import read
+    from taylor_verify.solvers.objects import pairs, trajectory
 
-    file, scene = read(solve_or_file), as_scene(scene)
+    scene, wanted = as_scene(scene), pairs(columns)
     asked = tolerances(tolerance, [scene])
+    is_path = isinstance(solve_or_file, str | PathLike)
+    file = read(solve_or_file, wanted) if is_path else trajectory(solve_or_file, scene, wanted)
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
 
 

@@ -11,6 +11,7 @@ from taylor_verify.cli import (
     check,
     ci,
     claims,
+    columns,
     publishing,
     question,
     scene,
@@ -203,10 +204,9 @@ def _add_check(found: Any) -> None:
         "files",
         nargs="+",
         metavar="FILE",
-        help="several are of one solver at several steps; columns t and any of w1 w2 w3 (angular velocity, "
-        "body axes); x1 x2 x3 y1 y2 y3 (impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or "
-        "r11 ... r33; c1 c2 c3 (centre, space axes)",
+        help=f"{columns.FILE}; several are of one solver at several steps",
     )
+    columns.add_option(verb)
     verb.add_argument(
         "--scene", required=True, metavar="SCENE", help="what the file is an answer to"
     )

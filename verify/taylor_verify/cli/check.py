@@ -11,6 +11,7 @@ from taylor_verify.cli.answer import Answer, WrongCall
 from taylor_verify.cli.verbs import known_rungs, read_number, read_scenes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from taylor_verify.judge.answer import FileJudgement
@@ -92,6 +93,7 @@ def _asked(
     """Read scene, files and steps; the faults of all are reported at once."""
     from taylor_verify.judge.files import repeated
     from taylor_verify.scenes.faults import Refused
+    from taylor_verify.solvers.columns.request import request
     from taylor_verify.solvers.file import read
 
     faults = repeated(options.files)
@@ -107,7 +109,7 @@ def _asked(
     files = []
     for file in dict.fromkeys(options.files):
         try:
-            files.append(read(file))
+            files.append(read(file, request(options.columns or ())))
         except Refused as error:
             faults.append(str(error))
     if faults:

@@ -1,4 +1,4 @@
-"""The shift of time behind the error of Omega = B^T x + C y, which is no state of its own.
+"""The shift of time behind the error of U = A x + B y or Omega = B^T x + C y, which are no states.
 
 For states judge.shift says more; here it is one constant c with answer(t) ~ Omega(t - c), by least
 squares over the samples that share it. The velocity of Omega is a difference of the exact motion.
@@ -17,7 +17,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import largest, norms
-from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.judge.inputs import Velocity, angular_velocity
 from taylor_verify.judge.shift import LEAVES, strays_from
 from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -85,14 +85,16 @@ class _Fit:
         return strays_from(np.full(len(shifts), np.median(shifts)), shifts, speed, across)
 
 
-def angular_shift(given: Scene, answer: Array, digits: int) -> AngularShift | None:
-    """The constant shift, at the ambient precision; None where the answer is not finite.
+def angular_shift(
+    given: Scene, answer: Array, digits: int, of: Velocity = angular_velocity
+) -> AngularShift | None:
+    """Return the constant shift, at the ambient precision; None where the answer is not finite.
 
-    ``answer`` holds Omega at the instants of ``given``.
+    ``answer`` holds Omega, or whatever velocity ``of`` makes of the impulses, at the instants of ``given``.
     """
     if not all(mp.isfinite(value) for value in answer.flat):
         return None
-    compared, every = _Compared(given, solution(given), answer, digits), range(len(answer))
+    compared, every = _Compared(given, solution(given), answer, digits, of), range(len(answer))
     best = compared.best(every)
     whole = compared.shift(every, best)
     if whole.kind is Kind.NONE and (strays := best.strays()):
@@ -108,6 +110,7 @@ class _Compared:
     exact: Solution
     answer: Array
     digits: int
+    of: Velocity
 
     def shift(self, rows: Sequence[int], best: _Fit) -> AngularShift:
         first = self.fit(Fraction(0), rows)
@@ -135,7 +138,7 @@ class _Compared:
         h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
         later = [t + h for t in elapsed]
         both = self.exact.evaluate([*elapsed, *later], self.digits + _MORE_DIGITS)
-        rows = angular_velocity(body, both)
+        rows = self.of(body, both)
         here, ahead = rows[: len(elapsed)], rows[len(elapsed) :]
         own = self.answer[list(samples)]
         return _Fit(shift, own, own - here, (ahead - here) / mp.convert(h))

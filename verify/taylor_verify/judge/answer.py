@@ -36,7 +36,7 @@ from taylor_verify.judge.file_notes import (
 )
 from taylor_verify.judge.gyroscopic import gyroscopic_cause
 from taylor_verify.judge.initial import initial_verdict
-from taylor_verify.judge.inputs import input_rounding
+from taylor_verify.judge.inputs import impulses, input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
@@ -44,10 +44,11 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import Recorded, TrajectoryFile
@@ -62,7 +63,8 @@ _MOST_SPANS: Final = 100
 # The columns that the states are read from; what is conserved may need any of them.
 _MADE_OF: Final = {
     "omega": ("omega",),
-    "impulse": ("linear_impulse", "angular_impulse"),
+    "impulse": ("linear_impulse", "angular_impulse", *VELOCITIES),
+    "velocity": ("linear_velocity",),
     "attitude": ("quaternion", "attitude"),
     "centre": ("centre",),
 }
@@ -226,7 +228,8 @@ class _Answer(ByRows):
         return tuple(self.times[k] for k in self.places)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.file.groups)
+        made = MOMENTA["kirchhoff"] if self.has_velocities else ()
+        return iter((*self.file.groups, *made))
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
         asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
@@ -238,7 +241,18 @@ class _Answer(ByRows):
             with mp.workprec(bits):
                 for name, reading in self.readings.items():
                     found[name] = reading.read(found[name], R)
+        if self.has_velocities:
+            assert isinstance(self.scene.body, ImmersedBody)
+            with mp.workprec(bits):
+                found |= impulses(self.scene.body, found)
         return found
+
+    @property
+    def has_velocities(self) -> bool:
+        """True if the impulses are made of the velocities, since the file has none of its own."""
+        has = set(self.file.groups)
+        is_immersed = isinstance(self.scene.body, ImmersedBody)
+        return is_immersed and has.issuperset(VELOCITIES) and not has & set(MOMENTA["kirchhoff"])
 
     def sides(self) -> list[_Answer]:
         """The rows after the start and those before it, each in the order away from the start."""
@@ -283,7 +297,8 @@ class _Side:
 
 def _side(answer: _Answer, rung: Rung, name: str, tolerances: Tolerances) -> _Side:
     problem = adopt(answer.scene, rung, answer.instants)
-    judged = partial_judgement(problem, Recorded(answer, setting=name), tolerances)
+    solver = Recorded(answer, setting=name, carries_velocities=answer.has_velocities)
+    judged = partial_judgement(problem, solver, tolerances)
     if judged.record is None:
         return _Side(judged, [])
     inputs = input_rounding(problem.given, rung, problem.scene)

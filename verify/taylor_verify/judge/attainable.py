@@ -51,7 +51,8 @@ class Floor:
 
     The roundings of the steps between two times of the path count at the later one: ``steps_at[k]`` of
     size u ``rounded[k]``, component by component, in the path's units. ``carried`` is what they have
-    become, by quantity, without the factor u. ``times`` are those of the samples.
+    become, by quantity, without the factor u. ``times`` are those of the samples. With ``velocities`` the
+    roundings are those of U and Omega.
     """
 
     unit_roundoff: float
@@ -60,6 +61,7 @@ class Floor:
     steps_at: Floats
     rounded: Floats
     carried: Mapping[str, Floats]
+    velocities: bool = False
 
     def of_state(self, errors: Errors) -> Floats:
         """The attainable error at every sample, in the unit of the errors; the larger part counts."""
@@ -104,7 +106,9 @@ class Floor:
         floor_there = float(attainable[sample])
         growth = floor_there / (self.unit_roundoff * steps**0.5)
         bits = round(-log2(self.unit_roundoff))
-        return RoundoffFloor(carried, shown(floor_there), bits, steps, shown(growth))
+        growth = shown(growth)
+        value, by_velocities = shown(floor_there), self.velocities
+        return RoundoffFloor(carried, value, bits, steps, growth, velocities=by_velocities)
 
     def worst(self) -> float:
         """The largest attainable error of a momentum, relative to its own size."""
@@ -135,22 +139,31 @@ class Floor:
         return found
 
 
-def floor(given: Scene, asked: Scene, unit_roundoff: Fraction, steps: int) -> Floor:
-    """The floor for a run of ``steps`` steps on the rounded scene ``given``.
+def floor(
+    given: Scene, asked: Scene, unit_roundoff: Fraction, steps: int, velocities: bool = False
+) -> Floor:
+    """Return the floor for a run of ``steps`` steps on the rounded scene ``given``.
+
+    With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
 
     The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
     rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
     """
-    shared = _floor(given, asked, unit_roundoff, steps)
-    return shared if shared.worst() <= _SAME_ORBIT else _floor(given, given, unit_roundoff, steps)
+    shared = _floor(given, asked, unit_roundoff, steps, velocities)
+    if shared.worst() <= _SAME_ORBIT:
+        return shared
+    return _floor(given, given, unit_roundoff, steps, velocities)
 
 
-def _floor(given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int) -> Floor:
+def _floor(
+    given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int, velocities: bool
+) -> Floor:
     orbit = _orbit(conditioned)
     # A row is at least one rounding.
     count = max(steps, len(given.clock.instants))
     steps_at = _steps_at(orbit.elapsed, count)
-    rounded = roundings(given, orbit, unit_roundoff.denominator.bit_length() - 1, count)
+    bits = unit_roundoff.denominator.bit_length() - 1
+    rounded = roundings(given, orbit, bits, count, velocities)
     return Floor(
         unit_roundoff=float(unit_roundoff),
         times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
@@ -158,6 +171,7 @@ def _floor(given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int
         steps_at=steps_at,
         rounded=rounded,
         carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
+        velocities=velocities,
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent
-from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -26,22 +26,31 @@ _MODELS: Final = {
 
 
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
-    """The groups that the scene's motion has; what its model does not have is refused."""
-    foreign = [name for name in file.groups if name not in _MODELS[scene.model]]
+    """Return the groups that the scene's motion has. A file without any is refused."""
+    foreign = _foreign(file, scene)
+    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
+    if groups:
+        return groups
     known = " ".join(" ".join(COLUMNS[name]) for name in _MODELS[scene.model])
     faults = [
         f"expected columns of a scene of model {scene.model} ({known}), got "
         f"{' '.join(COLUMNS[name])} @ {file.name}"
         for name in foreign
     ]
-    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
-    if not groups and not faults:
+    if not faults:
         wanted = " or ".join(" ".join(COLUMNS[name]) for name in _wanted(scene))
         got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
-        faults.append(f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name}")
-    if faults:
-        raise Refused(faults)
-    return groups
+        first = COLUMNS[_wanted(scene)[0]][0]
+        notes = "; ".join((*file.notes, f"name other columns: --columns {first}=NAME,..."))
+        faults = [
+            f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"
+        ]
+    raise Refused(faults)
+
+
+def _foreign(file: TrajectoryFile, scene: Scene) -> list[str]:
+    """The groups of a file that no scene of this model has."""
+    return [name for name in file.groups if name not in _MODELS[scene.model]]
 
 
 def _is_known(group: str, scene: Scene) -> bool:
@@ -63,8 +72,14 @@ def tracked(groups: Sequence[str]) -> frozenset[str]:
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
+    foreign = _foreign(file, scene)
+    for name in foreign:
+        yield (
+            f"{' '.join(COLUMNS[name])} not compared: {scene.name} is of model {scene.model}, whose "
+            f"motion has no {noun(name)}"
+        )
     for name in file.groups:
-        if name not in groups:
+        if name not in groups and name not in foreign:
             yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {noun(name)}"
     for name in missing_groups(groups, scene):
         other = " or r11 ... r33" if name == "quaternion" else ""
@@ -75,6 +90,9 @@ def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) ->
 def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
     """The groups that the scene asks for and the file lacks."""
     has = {"quaternion" if name == "attitude" else name for name in groups}
+    if has.issuperset(VELOCITIES) and scene.model == "kirchhoff":
+        # Together they stand for the impulses.
+        has |= set(MOMENTA["kirchhoff"])
     return [name for name in _wanted(scene) if name not in has]
 
 

@@ -17,7 +17,7 @@ the motion moved is that from the moved start, under the loads of the moved moti
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -31,7 +31,9 @@ from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import looked_at
-from taylor_verify.judge.errors import norms, state_errors
+from taylor_verify.judge.errors import exact_matrix, norms, state_errors
+from taylor_verify.records.quantities import VELOCITIES
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin, State
@@ -99,24 +101,46 @@ class _Response:
             sizes = norms(change) if change.ndim > 1 else abs(change)
             found[invariant.name] = sizes / invariant.scale(here)
         if isinstance(scene.body, ImmersedBody):
-            found["omega"] = _of_angular_velocity(scene.body, here, there)
+            found["omega"] = _of_velocity(angular_velocity, scene.body, here, there)
+            found["velocity"] = _of_velocity(linear_velocity, scene.body, here, there)
         return cls({name: values.astype(float) ** 2 for name, values in found.items()})
 
 
-def _of_angular_velocity(body: ImmersedBody, here: Motion, there: Motion) -> Any:
-    """|change of Omega| / max |Omega|."""
-    one, other = (angular_velocity(body, m.quantities) for m in (here, there))
+def _of_velocity(of: Velocity, body: ImmersedBody, here: Motion, there: Motion) -> Any:
+    """|change of Omega| / max |Omega|, or of U likewise."""
+    one, other = (of(body, m.quantities) for m in (here, there))
     largest = max(norms(one))
     return norms(other - one) / (largest or 1)
 
 
+# U or Omega of a body at every sample.
+Velocity = Callable[[ImmersedBody, Quantities], Any]
+
+
 def angular_velocity(body: ImmersedBody, quantities: Quantities) -> Any:
-    """Omega = B^T x + C y at every sample, from the exact coefficients."""
-    B, C = (
-        np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
-        for matrix in (body.coupling, body.angular)
-    )
+    """Return Omega = B^T x + C y at every sample, from the exact coefficients."""
+    B, C = exact_matrix(body.coupling), exact_matrix(body.angular)
     return quantities["linear_impulse"] @ B + quantities["angular_impulse"] @ C.T
+
+
+def linear_velocity(body: ImmersedBody, quantities: Quantities) -> Any:
+    """Return U = A x + B y at every sample, from the exact coefficients."""
+    A, B = exact_matrix(body.linear), exact_matrix(body.coupling)
+    return quantities["linear_impulse"] @ A.T + quantities["angular_impulse"] @ B.T
+
+
+def velocities(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
+    """Return U and Omega at every sample, by the names of their columns."""
+    of = {"linear_velocity": linear_velocity, "omega": angular_velocity}
+    return {group: velocity(body, quantities) for group, velocity in of.items()}
+
+
+def impulses(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
+    """Return (x, y) = M (U, Omega) at every sample, M the exact inverse of [[A, B], [B^T, C]]."""
+    M = exact_matrix(tensors.inverse(body.energy_matrix))
+    velocities = np.concatenate([quantities[name] for name in VELOCITIES], axis=1)
+    both = velocities @ M.T
+    return {"linear_impulse": both[:, :3], "angular_impulse": both[:, 3:]}
 
 
 def _mean_square(moved: Sequence[_Response], inputs: int) -> dict[str, Floats]:

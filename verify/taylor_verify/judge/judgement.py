@@ -180,8 +180,9 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
     problem, trajectory = run.problem, run.trajectory
     given, bits = problem.given, problem.rung.bits
     digits, costs = truth_digits(bits), Costs()
+    roundoff, by_velocities = problem.rung.unit_roundoff, run.solver.carries_velocities
     with mp.workprec(working_bits(bits)), costs.of(CONDITION):
-        base = floor(given, problem.scene, problem.rung.unit_roundoff, run.steps.counted)
+        base = floor(given, problem.scene, roundoff, run.steps.counted, by_velocities)
     compared = Comparison(given, exact, trajectory.quantities, digits, working_bits(bits))
     measured = compared.measured(base.nodes, costs)
     with mp.workprec(working_bits(bits)):

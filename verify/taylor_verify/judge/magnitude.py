@@ -7,6 +7,13 @@ arithmetic that rounds each operation to within u errs by some u S_i in the rate
 it. The equations are those of models, with numbers of a kind whose difference is a sum. What is
 formed of the body's data alone is a number like any other: it is known, and cancels.
 
+Who carries the velocities (U, Omega) of a solid in a fluid rounds those. By (x, y) = M (U, Omega) this
+moves x_i by u m_i, with
+
+    m_i = [ sum over j of (M_ij V_j)^2 ]^(1/2),  V = (U, Omega),
+
+which is |x_i| where M is diagonal, and more where terms of M V cancel.
+
 H, x, y  momenta    q  quaternion    c  centre    h  length of a step
 """
 
@@ -23,6 +30,8 @@ from taylor_verify.exact.gathering import Path
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -72,12 +81,12 @@ def _size(term: Any) -> Any:
     return term.size if isinstance(term, Magnitude) else abs(term)
 
 
-def roundings(given: Scene, path: Path, bits: int, steps: int) -> Floats:
+def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool = False) -> Floats:
     """r at every time of the path, shape (n, components), in the path's units.
 
     A step is the span over their number, but no longer than the terms of the rates take to add up
     to the state: who steps further does as much inside a step. A rounding of a quaternion turns
-    the frame about any axis alike.
+    the frame about any axis alike. With ``velocities`` m_i takes the place of |x_i| where it is more.
     """
     problem = _posed(given, bits)
     sizes = _sizes(problem, path)
@@ -94,7 +103,23 @@ def roundings(given: Scene, path: Path, bits: int, steps: int) -> Floats:
         else:
             unit = float(_unit(problem, block) / path.units[block])
             columns += [rounded[name] * unit for name in _COMPONENTS[block]]
-    return np.column_stack(columns)
+    found: Floats = np.column_stack(columns)
+    if velocities and isinstance(given.body, ImmersedBody):
+        by_inertia = _through_velocities(given.body, path)
+        found[:, :6] = np.maximum(found[:, :6], by_inertia)
+    return found
+
+
+def _through_velocities(body: ImmersedBody, path: Path) -> Floats:
+    """m at every time, shape (n, 6), in the path's units."""
+    units = [path.units[block] for block in path.blocks[:2] for _ in range(3)]
+    energy, M = body.energy_matrix, tensors.inverse(body.energy_matrix)
+    to_velocity = [[float(e * d) for e, d in zip(row, units, strict=True)] for row in energy]
+    to_impulse = [[float(m / d) for m in row] for row, d in zip(M, units, strict=True)]
+    velocity = path.momentum @ np.array(to_velocity).T
+    terms = velocity[:, None, :] * np.array(to_impulse)[None, :, :]
+    found: Floats = np.sqrt(np.sum(terms**2, axis=2))
+    return found
 
 
 def _posed(given: Scene, bits: int) -> Problem:

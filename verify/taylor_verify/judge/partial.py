@@ -1,4 +1,4 @@
-"""The judgement of an answer that has only some of the quantities, or the angular velocity besides.
+"""The judgement of an answer that has only some of the quantities, or velocities besides.
 
 What is missing is taken from the truth, so that the equations of the judge have all they ask for; no
 row that rests on it is reported.
@@ -23,7 +23,7 @@ from taylor_verify.judge.attainable import Floats, floor
 from taylor_verify.judge.costs import Costs
 from taylor_verify.judge.errors import Distances, Errors, largest, norms
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.judge.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.judgement import Judgement, judgement, mean
 from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.provenance import provenance
@@ -31,12 +31,13 @@ from taylor_verify.judge.series import Series, States
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
-from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.quantities import UNIT_QUATERNION, VELOCITIES
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.solvers.file import Recorded
 from taylor_verify.solvers.trajectory import ByRows, Outcome, rows_at
 
@@ -62,14 +63,15 @@ def partial_judgement(
     has = {"attitude" if name == "quaternion" else name for name in own}
     filled = Filled(
         own,
-        tuple(name for name in own if name != "omega" or name in one_row.quantities),
+        tuple(name for name in own if name not in VELOCITIES or name in one_row.quantities),
         tuple(name for name in one_row.quantities if name not in has),
         lambda places: exact.motion([given.clock.elapsed[k] for k in places], digits),
         len(given.clock.instants),
     )
     apart: list[Gated] = []
-    if "omega" not in one_row.quantities and "omega" in own:
-        apart.append(_angular_velocity(problem, solver, exact, tolerances))
+    for group, kind in _VELOCITIES.items():
+        if group in own and group not in one_row.quantities:
+            apart.append(_velocity(problem, solver, exact, kind, tolerances))
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
         # matrix that is no rotation to the last digit will not do. States alone are compared.
@@ -122,6 +124,8 @@ def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]
     """The quantities of a verdict all of whose ingredients the answer has."""
     found = has & {"omega", "attitude", "centre"}
     found.add(UNIT_QUATERNION)
+    if "linear_velocity" in has:
+        found.add("velocity")
     if {"linear_impulse", "angular_impulse"} & has:
         found.add("impulse")
     for invariant in invariants(problem.given):
@@ -138,7 +142,7 @@ def _states_apart(
     given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
     states = Comparison(given, exact, filled, truth_digits(rung.bits, _GUARD_DIGITS), bits).states()
     with mp.workprec(bits):
-        base = floor(given, problem.scene, rung.unit_roundoff, 0)
+        base = floor(given, problem.scene, rung.unit_roundoff, 0, solver.carries_velocities)
         rows = []
         for errors in states:
             if errors.quantity in ("attitude", "centre"):
@@ -149,24 +153,51 @@ def _states_apart(
     return rows
 
 
-# The angular velocity of a solid in a fluid: Omega = B^T x + C y.
+# The velocities of a solid in a fluid: U = A x + B y, Omega = B^T x + C y.
 
 
-def _angular_velocity(
-    problem: Problem, solver: Recorded, exact: Solution, tolerances: Tolerances
+@dataclass(frozen=True)
+class _Kind:
+    """One of the two velocities: its quantity, its unit, and the blocks of the energy it is made with."""
+
+    quantity: str
+    unit: str
+    group: str
+    of: Velocity
+    carried: Carried
+
+    def blocks(self, body: ImmersedBody) -> dict[str, Matrix]:
+        """The matrices of the two impulses."""
+        is_linear = self.group == "linear_velocity"
+        of_x, of_y = (body.linear, body.coupling) if is_linear else (body.coupling, body.angular)
+        return {"linear_impulse": of_x, "angular_impulse": of_y}
+
+
+_VELOCITIES: Final = {
+    kind.group: kind
+    for kind in (
+        _Kind("omega", "max|omega|", "omega", angular_velocity, Carried.VELOCITY),
+        _Kind("velocity", "max|U|", "linear_velocity", linear_velocity, Carried.LINEAR_VELOCITY),
+    )
+}
+
+
+def _velocity(
+    problem: Problem, solver: Recorded, exact: Solution, kind: _Kind, tolerances: Tolerances
 ) -> Gated:
     given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
     digits = truth_digits(rung.bits, _GUARD_DIGITS)
-    errors, sizes = _omega_errors(Comparison(given, exact, solver.quantities, digits, bits))
+    compared = Comparison(given, exact, solver.quantities, digits, bits)
+    errors, sizes = _velocity_errors(compared, kind)
     with mp.workprec(bits):
-        scale = errors.parts["omega"]
-        attainable = _omega_attainable(problem, sizes, scale)
-        terms = Reason(floor=RoundoffFloor(Carried.VELOCITY))
+        scale = errors.parts[kind.group]
+        attainable = _velocity_attainable(problem, solver, kind, sizes, scale)
+        terms = Reason(floor=RoundoffFloor(kind.carried))
         row, gate = _row(problem, solver, errors, attainable, terms, tolerances)
         places = evenly(len(sizes), MOST_SHIFTED)
         clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
-        own = rows_at(solver.quantities, places)["omega"]
-        shift = angular_shift(replace(given, clock=clock), own, digits)
+        own = rows_at(solver.quantities, places)[kind.group]
+        shift = angular_shift(replace(given, clock=clock), own, digits, kind.of)
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(scale)
@@ -175,21 +206,18 @@ def _angular_velocity(
         return replace(row, remains=remains), gate
 
 
-def _omega_errors(compared: Comparison) -> tuple[Errors, Floats]:
-    """The errors of Omega, and its own size at every sample over the largest."""
+def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]:
+    """The errors of a velocity, and its own size at every sample over the largest."""
     body = compared.scene.body
     assert isinstance(body, ImmersedBody)
     states, sizes, radii = States(), Series(), Series()
     for block in compared.blocks(Costs()):
         with mp.workprec(compared.bits):
-            rows = angular_velocity(body, block.truth.quantities)
-            size, distances = norms(rows), norms(block.own["omega"] - rows)
-            zeros = {"omega": 0 * block.truth.radius}
-            scale = states.add(
-                Distances(
-                    "omega", "max|omega|", {"omega": distances}, zeros, {"omega": largest(size)}
-                )
-            )["omega"]
+            rows = kind.of(body, block.truth.quantities)
+            size, distances = norms(rows), norms(block.own[kind.group] - rows)
+            zeros, most = {kind.group: 0 * block.truth.radius}, {kind.group: largest(size)}
+            found = Distances(kind.quantity, kind.unit, {kind.group: distances}, zeros, most)
+            scale = states.add(found)[kind.group]
             sizes.add(size, scale)
             radii.add(block.truth.radius, mpf(1))
     (errors,) = states.errors()
@@ -197,13 +225,16 @@ def _omega_errors(compared: Comparison) -> tuple[Errors, Floats]:
     return errors, sizes.joined()[0]
 
 
-def _omega_attainable(problem: Problem, sizes: Floats, scale: Any) -> Floats:
-    """What a rounding of x and y, and of Omega itself, leaves."""
+def _velocity_attainable(
+    problem: Problem, solver: Recorded, kind: _Kind, sizes: Floats, scale: Any
+) -> Floats:
+    """What a rounding of x and y, and of the velocity itself, leaves."""
     body = problem.given.body
     assert isinstance(body, ImmersedBody)
-    base = floor(problem.given, problem.scene, problem.rung.unit_roundoff, 0)
+    roundoff, by_velocities = problem.rung.unit_roundoff, solver.carries_velocities
+    base = floor(problem.given, problem.scene, roundoff, 0, by_velocities)
     squares = (base.unit_roundoff * sizes) ** 2
-    for part, matrix in (("linear_impulse", body.coupling), ("angular_impulse", body.angular)):
+    for part, matrix in kind.blocks(body).items():
         norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
         alone = Errors(part, "", sizes, sizes, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Final
 
 # The quantities that say where the body is, in reading order; all others compared are conserved.
-STATES: Final = ("omega", "impulse", "attitude", "centre")
+STATES: Final = ("omega", "impulse", "attitude", "centre", "velocity")
 # The quantity of each model that every run has, and those that a scene may track besides.
 MAIN: Final[Mapping[str, str]] = {"euler": "omega", "kirchhoff": "impulse"}
 TRACKED: Final[Mapping[str, tuple[str, ...]]] = {
@@ -32,6 +32,7 @@ GATE_FACTOR: Final = 10
 # The columns of a trajectory file, group by group. r12 is row 1, column 2; q0 is the scalar.
 COLUMNS: Final[Mapping[str, tuple[str, ...]]] = {
     "omega": ("w1", "w2", "w3"),
+    "linear_velocity": ("u1", "u2", "u3"),
     "linear_impulse": ("x1", "x2", "x3"),
     "angular_impulse": ("y1", "y2", "y3"),
     "quaternion": ("q0", "q1", "q2", "q3"),
@@ -43,6 +44,8 @@ MOMENTA: Final[Mapping[str, tuple[str, ...]]] = {
     "euler": ("omega",),
     "kirchhoff": ("linear_impulse", "angular_impulse"),
 }
+# The groups of velocities that stand for the impulses of a solid in a fluid.
+VELOCITIES: Final = ("linear_velocity", "omega")
 IMPULSES: Final = COLUMNS["linear_impulse"] + COLUMNS["angular_impulse"]
 
 # Number formats of hardware or of compilers, with the bits of their significand; mpN has N bits.

@@ -44,6 +44,7 @@ class Carried(StrEnum):
     ORBIT = "transition matrix"
     GRADIENT = "gradient"
     VELOCITY = "velocity of x and y"
+    LINEAR_VELOCITY = "linear velocity of x and y"
     LENGTH = "length of the quaternion"
     START = "start"
     ROW = "row"
@@ -72,7 +73,8 @@ class RoundoffFloor:
 
     It is u x ``steps``^1/2 x ``growth`` where an orbit or a gradient carries the roundings, and u x
     ``steps`` for the length of a quaternion, of which ``lengths`` says what was met; u = 2^-``bits``. With
-    ``clock_work`` the roundings of the clock of a manufactured load are in it too.
+    ``clock_work`` the roundings of the clock of a manufactured load are in it too. With ``velocities`` a
+    solid's U and Omega were rounded, of which its impulses were made.
     """
 
     carried: Carried
@@ -81,6 +83,7 @@ class RoundoffFloor:
     steps: int = 0
     growth: float | None = None
     clock_work: bool = False
+    velocities: bool = False
     lengths: str = ""
 
     def sentence(self) -> str:
@@ -100,6 +103,11 @@ class RoundoffFloor:
                 "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "
                 "and one rounding of Omega itself"
             )
+        if self.carried is Carried.LINEAR_VELOCITY:
+            return "", (
+                "U = A x + B y, so that attainable = (|A|^2 x-floor^2 + |B|^2 y-floor^2)^(1/2), "
+                "and one rounding of U itself"
+            )
         if self.carried is Carried.LENGTH:
             return f"attainable = u N = {u} x {self.steps:.4g} = {value}", (
                 "in each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
@@ -113,10 +121,14 @@ class RoundoffFloor:
         ), (
             "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
             "of its rate in magnitude, carried by "
-            f"{matrix}{_CLOCK_WORK if self.clock_work else ''}"
+            f"{matrix}{_CLOCK_WORK if self.clock_work else ''}{_INERTIA if self.velocities else ''}"
         )
 
 
+_INERTIA: Final = (
+    "; where one rounding of each component of U and Omega moves (x, y) = M (U, Omega) by more than "
+    "u |x_i|, that takes its place, because the file has velocities"
+)
 _CLOCK_WORK: Final = (
     ", and as many roundings of the clock of the loads, each of which does work ever after"
 )

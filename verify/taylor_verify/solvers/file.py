@@ -2,7 +2,11 @@
 
 t                 time                          q0 q1 q2 q3      quaternion of R, scalar first
 w1 w2 w3          angular velocity, body axes   r11 r12 ... r33  R itself, r12 is row 1, column 2
-x1 x2 x3 y1 y2 y3 impulses, body axes           c1 c2 c3         centre, space axes
+u1 u2 u3          velocity of the body's        c1 c2 c3         centre, space axes
+                  origin, body axes
+x1 x2 x3 y1 y2 y3 impulses, body axes
+
+Usual other names and units are taken and said (solvers.columns).
 
 Decimals, ``a/b`` and hexadecimal floats become rationals; binary numbers are taken as they are. None
 of them passes through a double on its way.
@@ -15,14 +19,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final, final
+from typing import Any, final
 
 import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.faults import Faults, Refused, cut, near
-from taylor_verify.solvers.file_step import STEP_COLUMNS, FileStep, step_inside
+from taylor_verify.scenes.faults import Faults, Refused, cut
+from taylor_verify.solvers.columns.names import KNOWN
+from taylor_verify.solvers.columns.request import Request
+from taylor_verify.solvers.columns.selection import Taken, select
+from taylor_verify.solvers.file_step import FileStep, step_inside
 from taylor_verify.solvers.formats.column import MOST_ALIKE, Column, add_more_alike
 from taylor_verify.solvers.formats.reading import parted, read_table
 from taylor_verify.solvers.rows import Rows, check_numbers, exact_times, packed, written_digits
@@ -30,30 +37,20 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value
 
-KNOWN: Final = ("t", *(name for names in COLUMNS.values() for name in names))
-# Printed by `publish --reference` beside the motion, or a statement of the step: no part of the motion.
-_IGNORED: Final = ("radius", *STEP_COLUMNS)
-# What other programs call the same columns: none of these is near enough in spelling to be guessed.
-_ELSEWHERE: Final = {
-    "time": "t",
-    **dict(zip(("wx", "wy", "wz"), COLUMNS["omega"], strict=True)),
-    **dict(zip(("omega1", "omega2", "omega3"), COLUMNS["omega"], strict=True)),
-    **dict(zip(("qw", "qx", "qy", "qz"), COLUMNS["quaternion"], strict=True)),
-    **dict(zip(("cx", "cy", "cz"), COLUMNS["centre"], strict=True)),
-}
-
 
 @final
 @dataclass(frozen=True)
 class Recorded(Solver):
     """A solver whose answer is already written down, in ``quantities`` as a Trajectory has them.
 
-    ``setting`` is the file. How many steps it took is not known.
+    ``setting`` is the file. How many steps it took is not known. With ``carries_velocities`` the impulses
+    were made of velocities, which are what was rounded.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
     name: str = "file"
     setting: str = ""
+    carries_velocities: bool = False
 
     def solve(self, problem: Problem) -> Trajectory:
         del problem
@@ -66,7 +63,8 @@ class TrajectoryFile:
 
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
     (solvers.rows); ``digits`` is the largest number of significant decimals that any value is written
-    with, None where one is binary or a fraction. ``notes`` are sentences that say how the format was read.
+    with, None where one is binary or a fraction. ``notes`` say how the
+    format was read, which columns were taken for which, and which were ignored.
     ``step`` is the integrator's step, where the file states it.
     """
 
@@ -96,38 +94,52 @@ class TrajectoryFile:
         return replace(self, times=tuple(self.times[k] for k in places), groups=groups)
 
 
-def read(file: str | os.PathLike[str]) -> TrajectoryFile:
+def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
     """Return the trajectory in a file of any format of solvers.formats.reading, or in FILE#PART.
 
-    Columns: ``t``; ``w1 w2 w3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3`` (scalar first) or
-    ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Raises Refused with every fault of it.
+    Columns: ``t``; ``w1 w2 w3``, ``u1 u2 u3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3``
+    (scalar first) or ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Usual other names are
+    taken, and ``columns`` names what has any other name, by pairs of our name and the file's. Raises
+    Refused with every fault of it.
+    """
+    table = read_table(file, KNOWN)
+    found = from_columns(table.columns, str(file), columns, table.notes)
+    return replace(found, step=step_inside(parted(os.fspath(file))[0], table.columns))
+
+
+def from_columns(
+    columns: Iterable[Column], place: str, wanted: Request = (), notes: Sequence[str] = ()
+) -> TrajectoryFile:
+    """Return the trajectory in columns as they are written; ``place`` names their file in messages.
+
+    ``notes`` are sentences about the columns that their reader has. Raises Refused with every fault.
     """
     faults = Faults()
-    table = read_table(file, KNOWN)
-    columns = _named_once(table.columns, str(file), faults)
-    _refuse_unknown(columns, str(file), faults)
-    _refuse_incomplete(columns, str(file), faults)
-    lengths = _lengths(columns)
-    _refuse_ragged(columns, lengths, str(file), faults)
-    wanted = [Column(c.name, packed(c.values)) for c in columns if c.name in KNOWN]
-    finite = {column.name: check_numbers(column, str(file), faults) for column in wanted}
-    values = dict(wanted)
-    times = _times(values.get("t", []), str(file), faults)
+    selection = select(_named_once(columns, place, faults), wanted, place, faults)
+    taken = [replace(one, column=_packed(one.column)) for one in selection.columns]
+    _refuse_ragged([one.column for one in taken], _length(taken), place, faults)
+    finite = {one.name: check_numbers(one.column, place, faults) for one in taken}
+    clock = next((one for one in taken if one.name == "t"), None)
+    times = _times(clock.column.values, clock.column.name, place, faults) if clock else ()
     if faults.lines:
         raise Refused(faults.lines)
+    scaled = {one.name: one.scaled(one.column.values) for one in taken}
     groups = {
         group: Rows(
-            [values[name] for name in names],
+            [scaled[name] for name in names],
             np.logical_and.reduce([finite[name] for name in names]),
         )
         for group, names in COLUMNS.items()
-        if names[0] in values
+        if names[0] in scaled
     }
-    step = step_inside(parted(os.fspath(file))[0], columns)
-    return TrajectoryFile(str(file), times, groups, written_digits(wanted), table.notes, step)
+    digits = written_digits(one.column for one in taken if one is not clock)
+    if clock and clock.factor != 1:
+        times = tuple(t * clock.factor for t in times)
+    return TrajectoryFile(place, times, groups, digits, (*notes, *selection.notes))
 
 
-# Which columns there are.
+def _packed(column: Column) -> Column:
+    return column._replace(values=packed(column.values))
 
 
 def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Column]:
@@ -139,29 +151,9 @@ def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Co
     return list(found.values())
 
 
-def _refuse_unknown(columns: Sequence[Column], file: str, faults: Faults) -> None:
-    for name, _ in columns:
-        if name not in KNOWN and name not in _IGNORED:
-            meant = _ELSEWHERE.get(name.lower())
-            mend = f"did you mean `{meant}`?" if meant else near(cut(name.lower()), KNOWN)
-            faults.add("a known column", f"`{cut(name)}`", file, mend)
-
-
-def _refuse_incomplete(columns: Sequence[Column], file: str, faults: Faults) -> None:
-    present = {column.name for column in columns}
-    if "t" not in present:
-        faults.add("a column `t` of times", "none", file, "add the column `t`")
-    for names in COLUMNS.values():
-        missing = [name for name in names if name not in present]
-        if 0 < len(missing) < len(names):
-            faults.add(f"all of {' '.join(names)}", f"no {' '.join(missing)}", file)
-    if {"q0", "r11"} <= present:
-        faults.add("the attitude once", "q0 q1 q2 q3 and r11 ... r33", file, "keep one of them")
-
-
-def _lengths(columns: Sequence[Column]) -> int:
+def _length(taken: Sequence[Taken]) -> int:
     """The length that the columns should have: that of t, else the first column's."""
-    by_name = {column.name: len(column.values) for column in columns}
+    by_name = {one.name: len(one.column.values) for one in taken}
     return by_name.get("t", next(iter(by_name.values()), 0))
 
 
@@ -169,14 +161,14 @@ def _refuse_ragged(columns: Sequence[Column], length: int, file: str, faults: Fa
     for name, values in columns:
         if len(values) != length:
             faults.add(f"{length} values as in t", str(len(values)), f"{file}, column {cut(name)}")
-    if not length:
+    if columns and not length:
         faults.add("at least one row", "none", file)
 
 
 # Numbers.
 
 
-def _times(column: Sequence[Any], file: str, faults: Faults) -> tuple[Fraction, ...]:
+def _times(column: Sequence[Any], name: str, file: str, faults: Faults) -> tuple[Fraction, ...]:
     """The times, strictly increasing or strictly decreasing; anything else is a fault."""
     if faults.lines:
         return ()
@@ -184,7 +176,7 @@ def _times(column: Sequence[Any], file: str, faults: Faults) -> tuple[Fraction, 
     times = [value for value in values if isinstance(value, Fraction)]
     if len(times) < len(values):
         row = next(i for i, v in enumerate(values, start=1) if not isinstance(v, Fraction))
-        faults.add("a finite time", str(values[row - 1]), f"{file}, row {row}, column t")
+        faults.add("a finite time", str(values[row - 1]), f"{file}, row {row}, column {cut(name)}")
         return ()
     rises = times[-1] >= times[0]
     wrong = [i for i in range(1, len(times)) if (times[i] > times[i - 1]) is not rises]
@@ -193,8 +185,8 @@ def _times(column: Sequence[Any], file: str, faults: Faults) -> tuple[Fraction, 
         now, before = _time_text(times[i]), _time_text(times[i - 1])
         expected = "no time twice" if now == before else f"times that keep {_word(rises)}"
         got = f"{now} again" if now == before else f"{now} after {before}"
-        faults.add(expected, got, f"{file}, row {i + 1}, column t")
-    add_more_alike(faults, len(wrong), f"{file}, column t")
+        faults.add(expected, got, f"{file}, row {i + 1}, column {cut(name)}")
+    add_more_alike(faults, len(wrong), f"{file}, column {cut(name)}")
     return tuple(times)
 
 

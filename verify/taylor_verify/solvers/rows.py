@@ -196,11 +196,9 @@ def exact_times(values: Raw) -> list[Value]:
 
 
 def written_digits(columns: Iterable[Column]) -> int | None:
-    """The most significant digits of any decimal besides the times; None where they do not tell."""
+    """Return the most significant digits of any decimal; None where they do not tell."""
     most = 0
-    for name, values in columns:
-        if name == "t":
-            continue
+    for _, values in columns:
         if not isinstance(values, Texts | list):
             return None
         for part in chunks(len(values)):

@@ -39,13 +39,15 @@ class Lack(str):
 class Solver(ABC):
     """Something that answers a problem with a trajectory and never raises for a failed run.
 
-    ``name`` is the word of the command line; ``setting`` tells two uses of one solver apart.
+    ``name`` is the word of the command line; ``setting`` tells two uses of one solver apart. A solver that
+    ``carries_velocities`` rounds U and Omega of a solid in a fluid, and not the impulses.
     ``counts_steps`` tells the solvers whose steps are counted by code of this project. The steps that
     anybody else claims are counted as far as the judge finds them plausible.
     """
 
     name: str
     setting: str = ""
+    carries_velocities: bool = False
     counts_steps: ClassVar[bool] = False
 
     @abstractmethod

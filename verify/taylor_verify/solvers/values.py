@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from datetime import datetime
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
@@ -48,6 +49,8 @@ def exact(raw: object) -> Value:
         return Fraction(int(raw))
     if isinstance(raw, Fraction):
         return raw
+    if isinstance(raw, datetime | np.datetime64):
+        raise ValueError("a number, the time since the start")
     if isinstance(raw, Decimal):
         return exact_number(raw) if raw.is_finite() else float(raw)
     raise ValueError("a number")

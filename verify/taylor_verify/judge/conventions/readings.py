@@ -51,7 +51,13 @@ _UNITS: Final = (
     ("in turns per minute, the unit of time being the second", Fraction(1, 30), 1),
 )
 
-_LETTERS: Final = {"omega": "w", "linear_impulse": "x", "angular_impulse": "y", "centre": "c"}
+_LETTERS: Final = {
+    "omega": "w",
+    "linear_velocity": "u",
+    "linear_impulse": "x",
+    "angular_impulse": "y",
+    "centre": "c",
+}
 
 
 @lru_cache

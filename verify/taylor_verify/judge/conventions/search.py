@@ -28,7 +28,7 @@ from taylor_verify.exact.solution import Quantities, Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
 from taylor_verify.judge.conventions.readings import Reading, readings, rotations, vector_columns
 from taylor_verify.judge.conventions.worlds import World, worlds
-from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.judge.inputs import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
@@ -268,7 +268,7 @@ class _Search:
             truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
         except Unsettled:
             near, truth = [], {}
-        floats = _as_floats(_with_omega(given, truth)) if near else {}
+        floats = _as_floats(_with_velocities(given, truth)) if near else {}
         columns = vector_columns(next(iter(self.values))) if self._is_one_vector else ()
         fits = []
         for renamed in frames or self.frames:
@@ -337,10 +337,10 @@ _QUANTITY: Final = {"quaternion": "attitude"}
 _ATTITUDES: Final = frozenset({"quaternion", "attitude"})
 
 
-def _with_omega(given: Scene, truth: Quantities) -> Quantities:
+def _with_velocities(given: Scene, truth: Quantities) -> Quantities:
     if isinstance(given.body, ImmersedBody):
         with mp.workdps(_DIGITS):
-            return {**truth, "omega": angular_velocity(given.body, truth)}
+            return {**truth, **velocities(given.body, truth)}
     return truth
 
 

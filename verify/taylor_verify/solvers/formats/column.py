@@ -5,11 +5,12 @@ Every format holds a file to these limits before it makes anything of its conten
 
 from __future__ import annotations
 
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final, NamedTuple, final, overload
 
 from taylor_verify.scenes.clock_reader import MOST_SAMPLES
-from taylor_verify.scenes.faults import Faults
+from taylor_verify.scenes.faults import Faults, Refused
 from taylor_verify.scenes.limit import Limit
 
 ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
@@ -109,6 +110,13 @@ def check_size(columns: int, rows: int, place: object) -> None:
     COLUMNS.check(columns, place)
     ROWS.check(rows, place)
     VALUES.check(columns * rows, place)
+
+
+def no_utf8(start: bytes, place: object) -> Refused:
+    """Return the refusal of text in another encoding, told by the first bytes of its file."""
+    is_utf16 = start[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
+    got = "UTF-16 (save it as UTF-8)" if is_utf16 else "other bytes"
+    return Refused([f"expected text in UTF-8, got {got} @ {place}"])
 
 
 def check_lengths(columns: Iterable[Column], place: object) -> None:

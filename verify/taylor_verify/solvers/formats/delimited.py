@@ -17,6 +17,7 @@ from taylor_verify.solvers.formats.column import (
     Texts,
     add_more_alike,
     check_size,
+    no_utf8,
 )
 from taylor_verify.solvers.values import is_number
 
@@ -32,7 +33,8 @@ def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
         text.seek(0)
         return _columns(_Lines(text, path), path)
     except UnicodeDecodeError:
-        raise Refused([f"expected text in UTF-8, got other bytes @ {path}"]) from None
+        file.seek(0)
+        raise no_utf8(file.read(2), path) from None
     except csv.Error as error:
         raise Refused([f"expected a CSV file, got a fault in it: {error} @ {path}"]) from None
     finally:

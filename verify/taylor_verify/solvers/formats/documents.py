@@ -13,6 +13,7 @@ from taylor_verify.solvers.formats.column import (
     ROWS,
     VALUES,
     Column,
+    no_utf8,
     shown,
 )
 
@@ -21,10 +22,11 @@ _BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
 
 def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
     """Return the arrays; their commas are counted before anything is made of the text."""
+    content = file.read()
     try:
-        text = file.read().decode("utf-8-sig")
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise Refused([f"expected text in UTF-8, got other bytes @ {path}"]) from None
+        raise no_utf8(content[:2], path) from None
     _check_count(text, path)
     document = _parsed(text, path)
     if isinstance(document, dict) and isinstance(document.get("columns"), dict):
