@@ -17,6 +17,8 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.arithmetic import truth_digits
+from taylor_verify.judge.causes.answers import of_file
+from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
@@ -31,7 +33,6 @@ from taylor_verify.judge.file_notes import (
     single_precision,
     tracked,
 )
-from taylor_verify.judge.gyroscopic import gyroscopic_cause
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.inputs import input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
@@ -146,8 +147,10 @@ def judge_file(
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
-    causes = gyroscopic_cause(compared, scene, rung, found) if "omega" in failed else ()
+    causes: tuple[LikelyCause, ...] = ()
     if failed:
+        material = of_file(compared, rung, found, judged.verdicts) if judged.record else None
+        causes = likely_causes(material) if material is not None else ()
         notes += (*cut_off(file, rung), *single_precision(file, rung))
     return FileJudgement(
         judged.verdicts, judged.record, file, found.findings, accept_conventions, notes, causes

@@ -1,0 +1,1 @@
+"""Named hypotheses about wrong dynamics, each tried on the steps from every row of an answer to the next."""

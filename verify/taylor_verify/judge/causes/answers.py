@@ -1,0 +1,132 @@
+"""Files and trajectories as the material of hypotheses: body axes, float64, one row for each time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.judge.conventions.search import Conventions
+from taylor_verify.models.problem import Problem, adopt
+from taylor_verify.records.quantities import MOMENTA, STATES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.file import TrajectoryFile
+from taylor_verify.solvers.trajectory import Trajectory
+
+_DIGITS: Final = 20
+_LARGEST: Final = 2**1000
+
+
+def of_file(
+    file: TrajectoryFile, rung: Rung, found: Conventions, verdicts: Iterable[Verdict]
+) -> Material | None:
+    """Return a file as material, read by its conventions; None if its body has no constant loads."""
+    times = found.world.times(file.times)
+    given = adopt(found.world.scene, rung, times).given
+    if given.body.manufactured is not None:
+        return None
+    attitudes = _attitudes(file, given, found)
+    values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
+    return _material(given, values, _quaternions(attitudes), rung, verdicts, file.digits)
+
+
+def of_trajectory(
+    problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
+) -> Material | None:
+    """Return a solver's trajectory as material; None if its body has no constant loads."""
+    given, rows = problem.given, trajectory.quantities
+    if given.body.manufactured is not None or not rows:
+        return None
+    values = {name: _doubles(rows[name]) for name in MOMENTA[given.model]}
+    q = _doubles(rows["quaternion"]) if "quaternion" in rows else None
+    unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
+    return _material(given, values, unit, problem.rung, verdicts)
+
+
+def _material(
+    given: Scene,
+    values: Mapping[str, Floats],
+    quaternions: Floats | None,
+    rung: Rung,
+    verdicts: Iterable[Verdict],
+    digits: int | None = None,
+) -> Material:
+    rows, states = len(given.clock.elapsed), [values[name] for name in MOMENTA[given.model] if name in values]
+    has_all = len(states) == len(MOMENTA[given.model])
+    return Material(
+        Equations.of(given.body),
+        np.array([float(t) for t in given.clock.elapsed]),
+        np.hstack(states) if has_all else np.full((rows, 3 * len(MOMENTA[given.model])), np.nan),
+        quaternions,
+        digits,
+        rung.bits,
+        {v.quantity: v for v in verdicts if v.verdict is Status.FAIL and v.quantity in STATES},
+    )
+
+
+def _momenta(file: TrajectoryFile, given: Scene) -> list[str]:
+    return [name for name in MOMENTA[given.model] if name in file.groups]
+
+
+def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
+    """A group of vectors in body axes; from space axes they are taken by the file's own attitude."""
+    rows, reading = _doubles(file.groups[name]), found.readings.get(name)
+    if reading is None:
+        return rows
+    R = attitudes if attitudes is not None else np.full((len(rows), 3, 3), np.nan)
+    return reading.read(rows, R)
+
+
+def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats | None:
+    """The file's own attitudes; the exact ones where it has none and its omega is in space axes."""
+    for group in ("quaternion", "attitude"):
+        if group in file.groups:
+            reading = found.readings.get(group, readings(group)[0])
+            read = reading.read(_doubles(file.groups[group]), np.empty(0))
+            return rotations(read) if group == "quaternion" else read
+    if not found.readings:
+        return None
+    tracked = replace(given, track=frozenset({"attitude"}))
+    exact = solution(tracked).evaluate(given.clock.elapsed, _DIGITS)["attitude"]
+    matrices: Floats = exact.astype(float)
+    return matrices
+
+
+def _quaternions(matrices: Floats | None) -> Floats | None:
+    """Unit quaternions of rotation matrices (n, 3, 3), from the largest column of 4 q q^T."""
+    if matrices is None:
+        return None
+    trace = np.trace(matrices, axis1=1, axis2=2)
+    squares = np.empty((len(matrices), 4, 4))
+    squares[:, 0, 0] = 1 + trace
+    for i, k, m in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        squares[:, i + 1, i + 1] = 1 - trace + 2 * matrices[:, i, i]
+        squares[:, 0, i + 1] = squares[:, i + 1, 0] = matrices[:, m, k] - matrices[:, k, m]
+        mixed = matrices[:, i, k] + matrices[:, k, i]
+        squares[:, i + 1, k + 1] = squares[:, k + 1, i + 1] = mixed
+    largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
+    columns = squares[np.arange(len(squares)), largest]
+    found: Floats = columns / np.linalg.norm(columns, axis=1, keepdims=True)
+    return found
+
+
+def _doubles(rows: Any) -> Floats:
+    """Numbers as float64, and NaN for those beyond its range."""
+    return np.array([[_double(value) for value in row] for row in rows], dtype=float)
+
+
+def _double(value: Any) -> float:
+    if isinstance(value, Fraction) and abs(value) >= _LARGEST:
+        return float(np.nan)
+    return float(value)
