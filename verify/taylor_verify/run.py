@@ -45,6 +45,7 @@ def run(
     """
     from dataclasses import replace
 
+    from taylor_verify.judge.causes.answers import with_causes
     from taylor_verify.judge.costs import SOLVING, Costs, total
     from taylor_verify.judge.initial import with_initial
     from taylor_verify.judge.judgement import judgement, unjudged
@@ -69,6 +70,7 @@ def run(
     seconds = perf_counter() - began
     found = judgement(problem, solver, trajectory, seconds)
     found = with_initial(found, float(problem.given.clock.start))
+    found = with_causes(found, problem, trajectory)
     return replace(found, costs=total([costs.seconds, found.costs]))
 
 

@@ -17,8 +17,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.arithmetic import truth_digits
-from taylor_verify.judge.causes.answers import of_file
-from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.causes.answers import causes_of_file
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
@@ -70,14 +69,13 @@ class FileJudgement(Judgement):
     """The verdicts on a file, and what was found out about it.
 
     ``conventions`` are those that are not the scene's, ``accepted`` says whether they were corrected,
-    ``notes`` are sentences about what was not compared and why, ``causes`` explain wrong dynamics.
+    ``notes`` are sentences about what was not compared and why.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
     notes: tuple[str, ...] = ()
-    causes: tuple[LikelyCause, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
@@ -149,11 +147,16 @@ def judge_file(
     failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
     causes: tuple[LikelyCause, ...] = ()
     if failed:
-        material = of_file(compared, rung, found, judged.verdicts) if judged.record else None
-        causes = likely_causes(material) if material is not None else ()
+        causes = causes_of_file(compared, rung, found, judged)
         notes += (*cut_off(file, rung), *single_precision(file, rung))
     return FileJudgement(
-        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes, causes
+        judged.verdicts,
+        judged.record,
+        file,
+        found.findings,
+        accept_conventions,
+        notes,
+        causes=causes,
     )
 
 

@@ -1,1 +1,1 @@
-"""Named hypotheses about wrong dynamics, each tried on the steps from every row of an answer to the next."""
+"""Named hypotheses about wrong dynamics, tried from row to row of an answer."""

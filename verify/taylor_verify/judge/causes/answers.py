@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Final
@@ -13,12 +13,16 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import Conventions
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, adopt
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MOMENTA, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import TrajectoryFile
@@ -28,10 +32,36 @@ _DIGITS: Final = 20
 _LARGEST: Final = 2**1000
 
 
-def of_file(
+def causes_of_file(
+    file: TrajectoryFile, rung: Rung, found: Conventions, judged: Judgement
+) -> tuple[LikelyCause, ...]:
+    """Return the likely causes of what failed in a file, read by its conventions."""
+    return _causes(lambda: _of_file(file, rung, found, judged.verdicts), found.world.scene)
+
+
+def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> Judgement:
+    """Return the judgement of a trajectory with the likely causes of what failed."""
+    if not any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+        return judged
+    scene = problem.scene
+    causes = _causes(lambda: _of_trajectory(problem, trajectory, judged.verdicts), scene)
+    named = (replace(cause, scene=scene.name, rung=problem.rung.name) for cause in causes)
+    return replace(judged, causes=tuple(named))
+
+
+def _causes(material: Callable[[], Material | None], scene: Scene) -> tuple[LikelyCause, ...]:
+    """The causes by float64; none where its range or a decomposition does not suffice."""
+    try:
+        made = material()
+        return () if made is None or not made.failed else likely_causes(made, scene)
+    except (OverflowError, np.linalg.LinAlgError):
+        return ()
+
+
+def _of_file(
     file: TrajectoryFile, rung: Rung, found: Conventions, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """Return a file as material, read by its conventions; None if its body has no constant loads."""
+    """A file as material; None if the loads of its body are not constant."""
     times = found.world.times(file.times)
     given = adopt(found.world.scene, rung, times).given
     if given.body.manufactured is not None:
@@ -41,10 +71,10 @@ def of_file(
     return _material(given, values, _quaternions(attitudes), rung, verdicts, file.digits)
 
 
-def of_trajectory(
+def _of_trajectory(
     problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """Return a solver's trajectory as material; None if its body has no constant loads."""
+    """A solver's trajectory as material; None if the loads of its body are not constant."""
     given, rows = problem.given, trajectory.quantities
     if given.body.manufactured is not None or not rows:
         return None
@@ -62,12 +92,16 @@ def _material(
     verdicts: Iterable[Verdict],
     digits: int | None = None,
 ) -> Material:
-    rows, states = len(given.clock.elapsed), [values[name] for name in MOMENTA[given.model] if name in values]
-    has_all = len(states) == len(MOMENTA[given.model])
+    needed, start = MOMENTA[given.model], given.initial
+    nothing = np.full((len(given.clock.elapsed), 3), np.nan)
+    attitude = np.array([float(value) for value in start.attitude])
+    begin = (start.omega,) if isinstance(start, Spin) else (start.linear, start.angular)
     return Material(
         Equations.of(given.body),
+        np.array([float(value) for vector in begin for value in vector]),
+        attitude / np.linalg.norm(attitude),
         np.array([float(t) for t in given.clock.elapsed]),
-        np.hstack(states) if has_all else np.full((rows, 3 * len(MOMENTA[given.model])), np.nan),
+        np.hstack([values.get(name, nothing) for name in needed]),
         quaternions,
         digits,
         rung.bits,

@@ -17,13 +17,17 @@ _NOTHING: Final = 1e-3
 
 @dataclass(frozen=True)
 class Candidate:
-    """A hypothesis that was tried: the part of the error that it ``leaves``, and its ``fitted`` numbers."""
+    """A hypothesis that was tried: the part of the error that it ``leaves``, and its ``fitted`` numbers.
+
+    Beside one that ``is_sure`` no hypothesis about the dynamics is needed.
+    """
 
     name: str
     quantity: str
     leaves: float
     why: str
     fitted: int = 0
+    is_sure: bool = False
 
     def cause(self) -> LikelyCause:
         """Return the candidate as a likely cause."""

@@ -9,16 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats, bilinear
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.tensors import Matrix, Vector
-
-# The terms of Kirchhoff's equations that may have another weight than one.
-WEIGHTS: Final = {"gyroscopic": 1.0, "munk": 1.0, "turning": 1.0, "damping": 0.0, "drag": 0.0}
 
 
 @dataclass(frozen=True)
@@ -57,8 +54,7 @@ class Equations:
 
     @cached_property
     def inverse(self) -> Floats:
-        found: Floats = np.linalg.inv(self.tensor)
-        return found
+        return np.asarray(np.linalg.inv(self.tensor), dtype=float)
 
     @property
     def is_possible(self) -> bool:
@@ -75,6 +71,11 @@ class Equations:
         return z[:, :3] if self.is_rigid else z[:, :6] @ self.tensor[:, 3:]
 
     @property
+    def free(self) -> Equations:
+        """The same body without its loads."""
+        return replace(self, load=np.zeros_like(self.load))
+
+    @property
     def map(self) -> Floats:
         """Q of the rates."""
         return bilinear(self.rates, self.moving + 1)
@@ -82,8 +83,9 @@ class Equations:
     def _rigid(self, z: Floats) -> Floats:
         omega, one = z[:, :3], z[:, 3:]
         torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
-        found: Floats = (torque - self.drag * one * omega) @ self.inverse
-        return found - self.damping * one * omega
+        driven = (torque - self.drag * one * omega) @ self.inverse
+        found: Floats = driven - self.damping * one * omega
+        return found
 
     def _immersed(self, z: Floats) -> Floats:
         state, one = z[:, :6], z[:, 6:]

@@ -24,7 +24,7 @@ _MOST_STEPS: Final = 400
 
 
 def bilinear(rate: Rate, size: int) -> Floats:
-    """Return the symmetric map Q (size, size, size) of a homogeneous rate: Q[:, j, k] multiplies z_j z_k."""
+    """Return the symmetric map Q (d, d, d) of a homogeneous rate; Q[:, j, k] multiplies z_j z_k."""
     unit = np.eye(size)
     single = rate(unit)
     j, k = np.triu_indices(size, 1)

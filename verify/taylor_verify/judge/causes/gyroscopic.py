@@ -1,4 +1,4 @@
-"""Treatments of the gyroscopic term omega x I omega by an engine: left out, turned round, explicit, implicit.
+"""Treatments of the gyroscopic term omega x I omega: left out, turned round, explicit, implicit.
 
 An explicit step is forward Euler on the term, an implicit one a step of Newton's method for backward
 Euler. Each is a map of one step, and its result is computed from every row to the next one. Rows need

@@ -1,7 +1,8 @@
-"""Wrong kinematics of the attitude: R' = R [omega]x integrated in the wrong axes, backwards, or at another rate.
+"""Wrong kinematics of the attitude: in the wrong axes, backwards, or at another rate.
 
-From each row to the next the answer's own omega is taken: the exact flow from it, plus the defect of
-omega, spread evenly over the time. So a wrong omega is no error of the attitude's kinematics.
+R' = R [omega]x is right. From each row to the next the answer's own omega is taken: the exact flow from
+it, plus the defect of omega, spread evenly over the time. So a wrong omega is no error of the attitude's
+kinematics.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, bilinear, flow
-from taylor_verify.judge.causes.material import FEWEST_PAIRS, Material, Pairs
+from taylor_verify.judge.causes.material import FEWEST_PAIRS, Material
 
 _NOISE: Final = 1e-13
 
@@ -103,40 +104,8 @@ def _times(omega: Floats, q: Floats, sign: int) -> Floats:
 
 
 def _angle(q: Floats, other: Floats) -> float:
-    """The largest angle between attitudes; q and -q are one, and 1.2 radians say 1.2 roughly."""
+    """The largest angle between attitudes; q and -q are one attitude."""
     other = other / np.linalg.norm(other, axis=1, keepdims=True)
-    apart = np.minimum(
-        np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1)
-    )
+    apart = np.minimum(np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1))
     largest = float(np.max(apart))
     return 4 * np.arcsin(min(largest / 2, 1.0)) if np.isfinite(largest) else np.inf
-
-
-# Vectors in space axes.
-
-
-def in_body_axes(material: Material) -> Iterator[tuple[str, Material]]:
-    """Yield the answer with its omega taken from space axes to body axes by its own attitude."""
-    q = material.quaternions
-    if q is None or not material.equations.is_rigid:
-        return
-    yield "", material.with_states(_turned(q, material.states, -1))
-    words = ", its attitude being the transposed one"
-    transposed = q * np.array([1, -1, -1, -1])
-    yield words, material.with_states(_turned(transposed, material.states, -1))
-
-
-def _turned(q: Floats, vectors: Floats, sign: int) -> Floats:
-    """R(q) v for the sign +1 and R(q)^T v for -1."""
-    scalar, axis = q[:, :1], sign * q[:, 1:]
-    twice = 2 * np.cross(axis, vectors)
-    found: Floats = vectors + scalar * twice + np.cross(axis, twice)
-    return found
-
-
-def body_moment(pairs: Pairs, moment: Floats) -> Floats:
-    """Return R^T M for the attitude at the first row of every pair."""
-    assert pairs.turned is not None
-    return _turned(pairs.turned, np.broadcast_to(moment, pairs.begin.shape), -1)
-
-

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from taylor_verify.exact.looks import evenly
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.records.verdict import Verdict
+
+Places = np.ndarray[Any, np.dtype[np.intp]]
 
 # So many pairs of rows, evenly chosen, stand for all; a single pair may agree by chance.
 _MOST_PAIRS: Final = 24
@@ -31,13 +33,16 @@ _NOISE: Final = 64 * 2.0**-53
 class Material:
     """An answer in body axes as float64, with NaN in rows that are no numbers.
 
-    ``elapsed`` are the times since the start. ``states`` (n, d) are omega, or x and y; empty if the answer
-    has them not. ``quaternions`` (n, 4) are of unit length, body to space; None if the answer has no
-    attitude. ``digits`` is the number of decimals that a file is written with, ``bits`` those of the
-    arithmetic, ``failed`` the verdicts of states that failed.
+    ``start`` and ``start_attitude`` are the scene's own initial state, ``elapsed`` the times since then.
+    ``states`` (n, d) are omega, or x and y; NaN if the answer lacks them. ``quaternions`` (n, 4) are of
+    unit length, body to space; None if the answer has no attitude. ``digits`` is the number of decimals
+    that a file is written with, ``bits`` those of the arithmetic, ``failed`` the verdicts of states that
+    failed.
     """
 
     equations: Equations
+    start: Floats
+    start_attitude: Floats
     elapsed: Floats
     states: Floats
     quaternions: Floats | None = None
@@ -51,16 +56,17 @@ class Material:
         return "omega" if self.equations.is_rigid else "impulse"
 
     @cached_property
-    def places(self) -> Floats:
+    def places(self) -> Places:
         """The first rows of the pairs that are looked at."""
-        known = self.states if self.quaternions is None else np.hstack([self.states, self.quaternions])
+        known = (
+            self.states if self.quaternions is None else np.hstack([self.states, self.quaternions])
+        )
         finite = np.flatnonzero(np.all(np.isfinite(known), axis=1))
-        first = finite[:-1][np.diff(finite) == 1]
-        return first[evenly(len(first), _MOST_PAIRS)] if len(first) else first
+        first: Places = finite[:-1][np.diff(finite) == 1]
+        return first[np.array(evenly(len(first), _MOST_PAIRS))] if len(first) else first
 
-    def at(self, places: Sequence[int] | Floats) -> Pairs:
+    def at(self, first: Places) -> Pairs:
         """Return the pairs of rows that begin at these places."""
-        first = np.asarray(places, dtype=int)
         return Pairs(
             self.equations,
             self.states[first],
@@ -83,6 +89,15 @@ class Material:
         printed = 0.0 if self.digits is None else 10.0 ** (1 - self.digits)
         return pairs.largest > _NOISE + printed
 
+    @property
+    def start_error(self) -> float | None:
+        """The error of the row at the start, relative to the scene's state; None without such a row."""
+        rows = np.flatnonzero(self.elapsed == 0)
+        size = float(np.linalg.norm(self.start))
+        if not len(rows) or not size > 0:
+            return None
+        return float(np.linalg.norm(self.states[rows[0]] - self.start)) / size
+
     def with_states(self, states: Floats) -> Material:
         """Return the same answer with other states."""
         return replace(self, states=states)
@@ -104,12 +119,14 @@ class Pairs:
         """The size of every component: the largest |omega|, or |x| and |y| apart."""
         vectors = np.stack([self.begin, self.end]).reshape(-1, len(self.begin[0]) // 3, 3)
         largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
-        return np.repeat(np.where(largest > 0, largest, 1.0), 3)
+        found: Floats = np.repeat(np.where(largest > 0, largest, 1.0), 3)
+        return found
 
     @cached_property
     def flow(self) -> Floats:
         """The exact states at the second row of every pair."""
-        return self.moved([self.equations])[0]
+        found: Floats = self.moved([self.equations])[0]
+        return found
 
     @cached_property
     def defect(self) -> Floats:
@@ -125,7 +142,9 @@ class Pairs:
         """Return the states (m, n, d) after the spans by each of these equations."""
         begin = np.column_stack([self.begin, np.ones(len(self.begin))])
         maps = np.stack([one.map for one in equations])
-        return flow(maps, begin, self.spans, np.append(self.sizes, np.inf))[:, :, :-1]
+        states = flow(maps, begin, self.spans, np.append(self.sizes, np.inf))
+        found: Floats = states[:, :, :-1]
+        return found
 
     def size(self, rows: Floats) -> float:
         """Return the largest vector of rows, relative to its usual size; infinite if it is no number."""

@@ -11,17 +11,21 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.another_scene import another_scene
 from taylor_verify.judge.causes.candidate import Candidate, causes_of
 from taylor_verify.judge.causes.damping import damping
 from taylor_verify.judge.causes.gyroscopic import gyroscopic_step, gyroscopic_term
-from taylor_verify.judge.causes.kinematics import in_body_axes, kinematics
+from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.rows import other_rows
 from taylor_verify.judge.causes.single_precision import single_precision
+from taylor_verify.judge.causes.space import space_loads, space_readings
+from taylor_verify.judge.causes.start import attitude_reading
 from taylor_verify.judge.causes.tensor import another_body, other_tensors
 from taylor_verify.judge.causes.terms import fluid_terms, loads
 from taylor_verify.judge.shift import LEAVES
 from taylor_verify.records.answers import LikelyCause
+from taylor_verify.scenes.scene import Scene
 
 Hypothesis = Callable[[Material], Iterator[Candidate]]
 
@@ -30,6 +34,7 @@ DYNAMICS: Final[tuple[Hypothesis, ...]] = (
     gyroscopic_term,
     other_tensors,
     loads,
+    space_loads,
     fluid_terms,
     gyroscopic_step,
     damping,
@@ -39,37 +44,46 @@ DYNAMICS: Final[tuple[Hypothesis, ...]] = (
 OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precision)
 
 
-def likely_causes(material: Material) -> tuple[LikelyCause, ...]:
+def likely_causes(material: Material, scene: Scene) -> tuple[LikelyCause, ...]:
     """Return the causes that explain nearly all of an error, quantity by quantity; none by chance."""
     with np.errstate(all="ignore"):  # an answer that runs away has no cause here
-        return causes_of(_candidates(material))
+        attitude, turned = attitude_reading(material)
+        omega, read, tried = _read(turned)
+        for hypothesis in OTHERS:
+            tried += [one for one in hypothesis(read) if one.quantity in material.failed]
+        others = list(another_scene(material, scene)) if material.failed else []
+        if any(one.is_sure for one in others):
+            omega, attitude, tried = [], [], []
+        every = ([*omega, *attitude], tried, others)
+        return tuple(cause for candidates in every for cause in causes_of(candidates))
 
 
-def _candidates(material: Material) -> Iterator[Candidate]:
-    tried = list(_dynamics(material)) if material.quantity in material.failed else []
-    if not any(one.leaves <= LEAVES for one in tried):
-        tried += _space_axes(material) if material.quantity in material.failed else []
-    yield from tried
-    for hypothesis in OTHERS:
-        yield from (one for one in hypothesis(material) if one.quantity in material.failed)
+def _read(material: Material) -> tuple[list[Candidate], Material, list[Candidate]]:
+    """Return a reading of omega in space axes, if one is proven, the answer so read, its candidates.
+
+    It is proven by the start alone, or by the motion where that is exact, or has a cause, in body axes and
+    in no other.
+    """
+    plain = _dynamics(material)
+    by_motion = bool(plain) and not _is_explained(plain)
+    for reading in space_readings(material) if "omega" in material.failed else ():
+        tried, left = _dynamics(reading.material), reading.start_leaves(material)
+        if left is not None:
+            return [reading.candidate(left)], reading.material, tried
+        if by_motion:
+            least = reading.material.pairs.largest / material.pairs.largest
+            if least <= LEAVES or _is_explained(tried):
+                leaves = min(least, *(one.leaves for one in tried)) if tried else least
+                return [reading.candidate(leaves)], reading.material, tried
+    return [], material, plain
 
 
-def _dynamics(material: Material) -> Iterator[Candidate]:
-    if material.is_telling:
-        for hypothesis in DYNAMICS:
-            yield from hypothesis(material)
+def _is_explained(tried: list[Candidate]) -> bool:
+    return any(one.leaves <= LEAVES for one in tried)
 
 
-def _space_axes(material: Material) -> Iterator[Candidate]:
-    """Yield omega in space axes where the answer's own attitude makes a motion of it, right or wrong."""
-    if not material.is_telling:
-        return
-    for words, turned in in_body_axes(material):
-        name = "omega in space axes"
-        why = f"taken to body axes by the answer's own attitude it is the exact motion{words}"
-        left = turned.pairs.largest / material.pairs.largest
-        yield Candidate(name, "omega", left, why)
-        if left > LEAVES:
-            for one in _dynamics(turned):
-                why = f"omega is in space axes{words}, and in body axes {one.why}"
-                yield Candidate(f"omega in space axes, {one.name}", "omega", one.leaves, why, one.fitted)
+def _dynamics(material: Material) -> list[Candidate]:
+    """The candidates for the equations of the states, where their defects tell anything."""
+    if material.quantity not in material.failed or not material.is_telling:
+        return []
+    return [one for hypothesis in DYNAMICS for one in hypothesis(material)]

@@ -42,7 +42,8 @@ def single_precision(material: Material) -> Iterator[Candidate]:
     if material.bits <= _BITS or material.quantity not in material.failed:
         return
     verdict = material.failed[material.quantity]
-    if not _are_float32(material.states) or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF:
+    # The start may be the scene's own number.
+    if not _are_float32(material.states[1:]) or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF:
         return
     known = np.flatnonzero(np.all(np.isfinite(material.states), axis=1))
     if len(known) < len(material.states) or len(known) < _FEWEST_PAIRS + 2:

@@ -138,5 +138,5 @@ def _difference(right: Equations, tensor: Floats) -> str:
     if np.min(np.diff(moments)) <= _APART * difference * moments[-1]:
         return words
     signs = np.sign(np.sum(axes * others, axis=0))
-    angle = 2 * np.arcsin(min(np.linalg.norm(axes - others * signs) / 8**0.5, 1.0))
+    angle = 2 * np.arcsin(min(float(np.linalg.norm(axes - others * signs)) / 8**0.5, 1.0))
     return f"{words}, its axes turned by {angle:.2g} rad"
