@@ -68,7 +68,9 @@ def _of_file(
         return None
     attitudes = _attitudes(file, given, found)
     values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
-    return _material(given, values, _quaternions(attitudes), rung, verdicts, file.digits)
+    made = _material(given, values, _quaternions(attitudes), rung, verdicts)
+    columns = [_doubles(file.groups[name]) for name in values]
+    return replace(made, digits=file.digits, columns=np.hstack(columns) if columns else None)
 
 
 def _of_trajectory(
@@ -90,7 +92,6 @@ def _material(
     quaternions: Floats | None,
     rung: Rung,
     verdicts: Iterable[Verdict],
-    digits: int | None = None,
 ) -> Material:
     needed, start = MOMENTA[given.model], given.initial
     nothing = np.full((len(given.clock.elapsed), 3), np.nan)
@@ -103,9 +104,10 @@ def _material(
         np.array([float(t) for t in given.clock.elapsed]),
         np.hstack([values.get(name, nothing) for name in needed]),
         quaternions,
-        digits,
-        rung.bits,
-        {v.quantity: v for v in verdicts if v.verdict is Status.FAIL and v.quantity in STATES},
+        bits=rung.bits,
+        failed={
+            v.quantity: v for v in verdicts if v.verdict is Status.FAIL and v.quantity in STATES
+        },
     )
 
 

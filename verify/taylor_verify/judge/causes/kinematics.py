@@ -42,8 +42,8 @@ _WRONG: Final = (
         _Kinematics(0, -1),
     ),
     (
-        "attitude kinematics in the wrong axes, and backwards",
-        "R' = -[omega]x R is integrated with omega in body axes, where R' = R [omega]x",
+        "transposed attitude",
+        "it turns by R' = -[omega]x R with omega in body axes, as the transposed one does",
         _Kinematics(-1, 0),
     ),
     ("attitude stands still", "R' = 0, though the body turns", _Kinematics(0, 0)),

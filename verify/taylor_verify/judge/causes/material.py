@@ -35,7 +35,8 @@ class Material:
 
     ``start`` and ``start_attitude`` are the scene's own initial state, ``elapsed`` the times since then.
     ``states`` (n, d) are omega, or x and y; NaN if the answer lacks them. ``quaternions`` (n, 4) are of
-    unit length, body to space; None if the answer has no attitude. ``digits`` is the number of decimals
+    unit length, body to space; None if the answer has no attitude. ``columns`` are the states as a file
+    has them, in whatever axes; None if they are the states. ``digits`` is the number of decimals
     that a file is written with, ``bits`` those of the arithmetic, ``failed`` the verdicts of states that
     failed.
     """
@@ -46,6 +47,7 @@ class Material:
     elapsed: Floats
     states: Floats
     quaternions: Floats | None = None
+    columns: Floats | None = None
     digits: int | None = None
     bits: int = 53
     failed: Mapping[str, Verdict] = field(default_factory=dict)

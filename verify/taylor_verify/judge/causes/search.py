@@ -59,27 +59,15 @@ def likely_causes(material: Material, scene: Scene) -> tuple[LikelyCause, ...]:
 
 
 def _read(material: Material) -> tuple[list[Candidate], Material, list[Candidate]]:
-    """Return a reading of omega in space axes, if one is proven, the answer so read, its candidates.
-
-    It is proven by the start alone, or by the motion where that is exact, or has a cause, in body axes and
-    in no other.
-    """
+    """Return a reading of omega in space axes, if one is proven, the answer so read, its candidates."""
     plain = _dynamics(material)
-    by_motion = bool(plain) and not _is_explained(plain)
+    by_motion = bool(plain) and not any(one.leaves <= LEAVES for one in plain)
     for reading in space_readings(material) if "omega" in material.failed else ():
-        tried, left = _dynamics(reading.material), reading.start_leaves(material)
+        tried = _dynamics(reading.material)
+        left = reading.leaves(material, tried, by_motion)
         if left is not None:
             return [reading.candidate(left)], reading.material, tried
-        if by_motion:
-            least = reading.material.pairs.largest / material.pairs.largest
-            if least <= LEAVES or _is_explained(tried):
-                leaves = min(least, *(one.leaves for one in tried)) if tried else least
-                return [reading.candidate(leaves)], reading.material, tried
     return [], material, plain
-
-
-def _is_explained(tried: list[Candidate]) -> bool:
-    return any(one.leaves <= LEAVES for one in tried)
 
 
 def _dynamics(material: Material) -> list[Candidate]:

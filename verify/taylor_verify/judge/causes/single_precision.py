@@ -23,6 +23,8 @@ _BITS: Final = 24
 _ROUNDOFF: Final = 2.0**-_BITS
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING: Final = 2.0**18
+# A sum of a few products in float64 is off by no more than this part of its largest term.
+_FLOAT64: Final = 2.0**-49
 # So many neighbouring pairs are looked at, and fewer than these tell nothing of independence.
 _MOST_PAIRS: Final = 400
 _FEWEST_PAIRS: Final = 40
@@ -42,8 +44,10 @@ def single_precision(material: Material) -> Iterator[Candidate]:
     if material.bits <= _BITS or material.quantity not in material.failed:
         return
     verdict = material.failed[material.quantity]
-    # The start may be the scene's own number.
-    if not _are_float32(material.states[1:]) or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF:
+    if (
+        not any(map(_are_float32, _held(material)))
+        or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF
+    ):
         return
     known = np.flatnonzero(np.all(np.isfinite(material.states), axis=1))
     if len(known) < len(material.states) or len(known) < _FEWEST_PAIRS + 2:
@@ -68,13 +72,23 @@ def single_precision(material: Material) -> Iterator[Candidate]:
     yield Candidate("float32 inside", material.quantity, correlation**2, why, fitted=0)
 
 
-def _are_float32(states: Floats) -> bool:
-    """Return True if every number is one of float32, and some are not so by chance."""
-    with np.errstate(over="ignore"):
-        single = states.astype(np.float32).astype(float)
-    if not np.array_equal(single, states):
+def _held(material: Material) -> Iterator[Floats]:
+    """The numbers that may have been held in float32: the columns as they are, and the momentum I omega.
+
+    The row at the start may be the scene's own.
+    """
+    yield (material.states if material.columns is None else material.columns)[1:]
+    if material.equations.is_rigid:
+        yield material.states[1:] @ material.equations.tensor
+
+
+def _are_float32(numbers: Floats) -> bool:
+    """Return True if every number is one of float32, up to float64's rounding, and not by chance."""
+    single = numbers.astype(np.float32).astype(float)
+    sizes = np.max(np.abs(numbers), axis=1, keepdims=True)
+    if not np.all(np.abs(single - numbers) <= _FLOAT64 * sizes):
         return False
-    mantissas = np.abs(np.frexp(states)[0]) * _TELLING
+    mantissas = np.abs(np.frexp(single)[0]) * _TELLING
     return bool(np.any(mantissas != np.floor(mantissas)))
 
 

@@ -12,6 +12,7 @@ from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, bilinear, flow
 from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.shift import LEAVES
 
 # An omega at the start that is off by more than the one, and by no more than the other in other axes.
 _OFF: Final = 1e-3
@@ -30,12 +31,20 @@ class SpaceReading:
         why = f"by the answer's own attitude it is taken to body axes{self.words}"
         return Candidate("omega in space axes", "omega", leaves, why)
 
-    def start_leaves(self, plain: Material) -> float | None:
-        """Return the part of the error at the start that is left; None if the start does not tell."""
+    def leaves(self, plain: Material, tried: list[Candidate], telling: bool) -> float | None:
+        """Return the part of the error that the reading leaves; None if it is not proven.
+
+        The row at the start proves or refutes it. Where that is right in both axes, as with an attitude
+        of 1, the motion proves it: it must be exact, or have a cause with at most one fitted number.
+        """
         before, after = plain.start_error, self.material.start_error
-        if before is None or after is None or not before > _OFF or not after <= _PRINTED:
+        if before is not None and after is not None and max(before, after) > _OFF:
+            return after / before if before > _OFF and after <= _PRINTED else None
+        if not telling:
             return None
-        return after / before
+        causes = [one.leaves for one in tried if one.fitted <= 1]
+        found = min(1.0, *causes) * self.material.pairs.largest / plain.pairs.largest
+        return found if found <= LEAVES else None
 
 
 def space_readings(material: Material) -> Iterator[SpaceReading]:

@@ -14,6 +14,7 @@ from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
 from taylor_verify.judge.causes.terms import tried_equations
+from taylor_verify.judge.shift import LEAVES
 
 # Two tensors nearer than this are one.
 _SAME: Final = 1e-13
@@ -21,6 +22,8 @@ _SAME: Final = 1e-13
 _EQUATIONS_PER_NUMBER: Final = 6
 # A defect across the orbit that is less than this part of all is no witness of another body.
 _ACROSS: Final = 1e-3
+# So many numbers fit much by themselves: a body that explains an answer leaves a hundredth of the error.
+_LEAVES: Final = LEAVES**2
 # The axes of two tensors are compared where the principal moments are so many differences apart.
 _APART: Final = 10.0
 
@@ -51,6 +54,9 @@ def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
         "the body moves as if the other entries were zero",
         np.diag(diagonal),
     )
+    inverse = np.diag(1 / np.diag(right.inverse))
+    why = "the body moves as if the other entries of the inverse were zero"
+    yield f"{noun} cut to its diagonal", why, inverse
     if not right.is_rigid:
         return
     moments, axes = np.linalg.eigh(tensor)
@@ -72,9 +78,9 @@ def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
                 yield "principal axes turned the wrong way", why, back
     single = tensor.astype(np.float32).astype(float)
     yield "inertia in float32", "the body's moments were rounded to 24 bits", single
-    inverse = right.inverse.astype(np.float32).astype(float)
+    rounded = right.inverse.astype(np.float32).astype(float)
     why = "the inverse of the inertia tensor was rounded to 24 bits"
-    yield "inertia in float32", why, np.linalg.inv(inverse)
+    yield "inertia in float32", why, np.linalg.inv(rounded)
 
 
 # The tensor that explains an answer.
@@ -112,7 +118,9 @@ def another_body(material: Material) -> Iterator[Candidate]:
     left = pairs.size(_across(pairs, pairs.end - states)) / pairs.size(across)
     why = _difference(right, tensor(best))
     name = "another inertia tensor" if right.is_rigid else "other coefficients of the energy"
-    yield Candidate(name, material.quantity, max(left, pairs.left(states)), why, len(best))
+    left = max(left, pairs.left(states))
+    if left <= _LEAVES:
+        yield Candidate(name, material.quantity, left, why, len(best))
 
 
 def _across(pairs: Pairs, defects: Floats) -> Floats:
