@@ -9,6 +9,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from trajectories import QUATERNION, VECTORS, Columns, named
 
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.material import Material
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
@@ -131,3 +136,30 @@ def runge_kutta(scene: Scene, h: float, every: int, single: bool = False) -> Col
             rows.append(z)
     times = n.start + h * every * np.arange(len(rows))
     return columns_of(times, np.array(rows))
+
+
+def material(scene: Scene, columns: Columns) -> Material:
+    """Columns as the material of causes, as if every state had failed: nothing is compared."""
+    n, names = Numbers(scene), VECTORS["omega"]
+    if len(n.state) == 6:
+        names = VECTORS["linear_impulse"] + VECTORS["angular_impulse"]
+    rows = {key: np.array([columns[name] for name in key]).T for key in (names, QUATERNION)}
+    states = ("omega", "impulse", "attitude")
+    return Material(
+        Equations.of(scene.body),
+        n.state,
+        n.q,
+        np.array(columns["t"]) - n.start,
+        rows[names],
+        rows[QUATERNION],
+        failed={name: failure(scene, name) for name in states},
+    )
+
+
+def failure(scene: Scene, quantity: str) -> Verdict:
+    """A verdict that says no more than that a quantity failed."""
+    reason = stated(Cause.NO_TRUTH, "made for a test")
+    status = Status.FAIL
+    return Verdict(
+        scene.name, "test", "f64", "", quantity, status, outcome="", reason=reason, max=1.0
+    )
