@@ -54,6 +54,7 @@ def run(
     """
     from dataclasses import replace
 
+    from taylor_verify.judge.causes.answers import with_causes
     from taylor_verify.judge.costs import SOLVING, Costs, total
     from taylor_verify.judge.initial import with_initial
     from taylor_verify.judge.judgement import judgement, unjudged
@@ -81,6 +82,7 @@ def run(
     seconds = perf_counter() - began
     found = judgement(problem, solver, trajectory, seconds, asked)
     found = with_initial(found, float(problem.given.clock.start))
+    found = with_causes(found, problem, trajectory)
     return replace(found, costs=total([costs.seconds, found.costs]))
 
 

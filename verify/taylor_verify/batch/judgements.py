@@ -12,7 +12,7 @@ from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.costs import total
 from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.judge.showing import counts, dataframe, html_table
-from taylor_verify.records.answers import LeftOut
+from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import Status
@@ -101,6 +101,7 @@ class Judgements(Sequence[Judgement]):
             return
         others = [v for v in self.verdicts if v.verdict is not Status.PASS and not self._is_met(v)]
         lines = [f"{v.scene} {v.rung} {v.quantity}: {v.verdict}: {v.because}" for v in others]
+        lines += [f"{c.scene} {c.rung}: likely cause: {c.sentence}" for c in self.causes]
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
         raise NotPassed("\n".join(lines) or "nothing was judged")
 
@@ -124,7 +125,14 @@ class Judgements(Sequence[Judgement]):
             document["expected"] = complete(self.agreement.document(self.verdicts))
         if self.selection.left_out:
             document["left_out"] = [complete(one) for one in self.left_out]
+        if self.causes:
+            document["causes"] = [complete(cause) for cause in self.causes]
         return document
+
+    @property
+    def causes(self) -> tuple[LikelyCause, ...]:
+        """The likely causes of what failed, each with its scene and rung."""
+        return tuple(cause for judgement in self.judgements for cause in judgement.causes)
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:

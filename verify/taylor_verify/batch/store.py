@@ -26,6 +26,7 @@ from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.batch.lock import Occupied, alone_in
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.record import Record
 from taylor_verify.records.verdict import Verdict
@@ -112,11 +113,12 @@ class _Stored:
     verdicts: tuple[Verdict, ...]
     record: Record | None
     costs: dict[str, float]
+    causes: tuple[LikelyCause, ...] = ()
 
 
 def to_bytes(judgements: Sequence[Judgement]) -> bytes:
     """Return the content of a file: the digest of the rest, then JSON."""
-    rows = [_Stored(j.verdicts, j.record, dict(j.costs)) for j in judgements]
+    rows = [_Stored(j.verdicts, j.record, dict(j.costs), j.causes) for j in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
     text = json.dumps(to_builtins(rows)).encode()
     return _digest(text).encode() + b"\n" + text
@@ -130,7 +132,7 @@ def from_bytes(content: bytes) -> list[Judgement]:
     if digest != _digest(text).encode():
         raise ValueError("expected the digest of the content")
     rows = converted(json.loads(text), tuple[_Stored, ...])
-    return [Judgement(row.verdicts, row.record, costs=row.costs) for row in rows]
+    return [Judgement(r.verdicts, r.record, costs=r.costs, causes=r.causes) for r in rows]
 
 
 # What a judgement depends on.

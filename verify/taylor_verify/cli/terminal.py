@@ -18,6 +18,7 @@ from taylor_verify.records.status import gravest
 
 if TYPE_CHECKING:
     from taylor_verify.batch.expectations import Agreement
+    from taylor_verify.records.answers import LikelyCause
     from taylor_verify.records.verdict import Verdict
 
 _ROOMY = 120
@@ -52,8 +53,10 @@ def names_text(
 # run
 
 
-def verdicts_text(verdicts: Sequence[Verdict], held: Agreement) -> str:
-    """Return a line for each scene and rung, each row that is no pass with its reason, and the counts.
+def verdicts_text(
+    verdicts: Sequence[Verdict], held: Agreement, causes: Sequence[LikelyCause] = ()
+) -> str:
+    """Return a line for each scene and rung, the likely causes, each row that is no pass, and the counts.
 
     Where no row was judged, and all for one reason, the counts and the reason are enough.
     """
@@ -64,6 +67,9 @@ def verdicts_text(verdicts: Sequence[Verdict], held: Agreement) -> str:
     why = held.unjudged(verdicts)
     if not why or len({verdict.because for verdict in verdicts}) > 1:
         _print_rows(console, verdicts, held)
+    for cause in causes:
+        place = f"{cause.scene} {cause.rung}"
+        print_line(console, Text("likely cause", "bold yellow"), f"  {place}: {cause.sentence}")
     counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
     print_line(console, f"{counts}{_as_expected(verdicts, held)}")
     if why:

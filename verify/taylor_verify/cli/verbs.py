@@ -108,7 +108,7 @@ def _run_answer(
     messages += [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
     if len(results.selection.scenes) > 1 and results.costs:
         messages.append(sentence(results.costs))
-    text = partial(verdicts_text, results.verdicts, results.agreement)
+    text = partial(verdicts_text, results.verdicts, results.agreement, results.causes)
     return Answer(to_ci.status, {**document, **to_ci.document}, to_ci.closing(text), messages)
 
 

@@ -19,6 +19,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.arithmetic import truth_digits
+from taylor_verify.judge.causes.answers import causes_of_file
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.readings import Reading
 from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
@@ -34,7 +35,6 @@ from taylor_verify.judge.file_notes import (
     single_precision,
     tracked,
 )
-from taylor_verify.judge.gyroscopic import gyroscopic_cause
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.inputs import impulses, input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
@@ -75,14 +75,13 @@ class FileJudgement(Judgement):
     """The verdicts on a file, and what was found out about it.
 
     ``conventions`` are those that are not the scene's, ``accepted`` says whether they were corrected,
-    ``notes`` are sentences about what was not compared and why, ``causes`` explain wrong dynamics.
+    ``notes`` are sentences about what was not compared and why.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
     notes: tuple[str, ...] = ()
-    causes: tuple[LikelyCause, ...] = ()
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
@@ -153,11 +152,18 @@ def judge_file(
     except Unsettled as doubt:
         judged = _alone(scene, file, rung, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
-    causes = gyroscopic_cause(compared, scene, rung, found) if "omega" in failed else ()
+    causes: tuple[LikelyCause, ...] = ()
     if failed:
+        causes = causes_of_file(compared, rung, found, judged)
         notes += (*cut_off(file, rung), *single_precision(file, rung))
     return FileJudgement(
-        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes, causes
+        judged.verdicts,
+        judged.record,
+        file,
+        found.findings,
+        accept_conventions,
+        notes,
+        causes=causes,
     )
 
 

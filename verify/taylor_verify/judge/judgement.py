@@ -26,6 +26,7 @@ from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import MAIN, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
@@ -50,13 +51,15 @@ class NotPassed(AssertionError):
 class Judgement:
     """The verdicts of one run and the record they rest on (None if the run never came to a truth).
 
-    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ... The
-    truth value of a judgement is ``passed``.
+    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
+    ``causes`` explain nearly all of the error of a quantity that failed. The truth value of a judgement is
+    ``passed``.
     """
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
     costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    causes: tuple[LikelyCause, ...] = field(default=(), kw_only=True)
 
     @property
     def passed(self) -> bool:
@@ -95,6 +98,7 @@ class Judgement:
                 f"{v.scene} {v.rung} {v.quantity}: {v.verdict}{_size(v)}: {v.because}"
                 for v in others
             ]
+            lines += [f"likely cause: {cause.sentence}" for cause in self.causes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 

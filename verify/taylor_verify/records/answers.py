@@ -39,13 +39,15 @@ class LikelyCause:
     """A hypothesis about wrong dynamics that explains nearly all of the error of a quantity.
 
     ``leaves`` is the part of the error that it does not explain. Of two that explain equally well both
-    are given.
+    are given. In the answer of `run`, which may be about many, it names its ``scene`` and ``rung``.
     """
 
     name: Annotated[str, Meta(min_length=1, description="no gyroscopic term, damping, ...")]
     quantity: str
     leaves: Size
     sentence: str
+    scene: str = ""
+    rung: str = ""
 
 
 @dataclass(frozen=True)

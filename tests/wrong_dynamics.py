@@ -1,0 +1,165 @@
+"""Small simulators with one thing wrong in their dynamics, integrated finely, and sound coarse ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from trajectories import QUATERNION, VECTORS, Columns, named
+
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.material import Material
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.scene import Scene
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+# The derivative of the momenta (omega, or x and y) from themselves, the attitude q, and the numbers.
+Rate = Callable[[Array, Array, "Numbers"], Array]
+# The derivative of q from q and the angular velocity in body axes.
+Turn = Callable[[Array, Array], Array]
+
+
+class Numbers:
+    """The numbers of a scene as doubles, to be changed by who gets them wrong."""
+
+    def __init__(self, scene: Scene) -> None:
+        body, start = scene.body, scene.initial
+        self.start = float(scene.clock.start)
+        self.times = np.array([float(t) for t in scene.clock.instants])
+        q = np.array(start.attitude, dtype=float)
+        self.q = q / np.linalg.norm(q)
+        if isinstance(body, RigidBody):
+            assert isinstance(start, Spin)
+            self.tensor = np.array(body.inertia, dtype=float)
+            self.load = np.array(body.moment, dtype=float)
+            self.state = np.array(start.omega, dtype=float)
+        else:
+            assert isinstance(body, ImmersedBody)
+            assert isinstance(start, Impulse)
+            self.tensor = np.array(body.energy_matrix, dtype=float)
+            self.load = np.array([*body.force, *body.couple], dtype=float)
+            self.state = np.array([*start.linear, *start.angular], dtype=float)
+
+
+def euler(w: Array, q: Array, n: Numbers) -> Array:
+    return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w) + n.load)
+
+
+def kirchhoff(z: Array, q: Array, n: Numbers) -> Array:
+    x, y, velocity = z[:3], z[3:], n.tensor @ z
+    U, W = velocity[:3], velocity[3:]
+    return np.concatenate([np.cross(x, W), np.cross(y, W) + np.cross(x, U)]) + n.load
+
+
+def turned(q: Array, w: Array) -> Array:
+    """q w / 2, w in body axes."""
+    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
+
+
+def turned_by_space(q: Array, w: Array) -> Array:
+    """w q / 2, which takes w for a vector of space."""
+    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w - np.cross(q[1:], w))])
+
+
+def simulated(
+    scene: Scene,
+    rate: Rate | None = None,
+    turn: Turn = turned,
+    change: Callable[[Numbers], None] | None = None,
+    times: Array | None = None,
+    method: str = "DOP853",
+    tolerance: float = 3e-14,
+) -> Columns:
+    """The columns of a simulator at the scene's times, or at others."""
+    n = Numbers(scene)
+    if change is not None:
+        change(n)
+    times = n.times if times is None else times
+    count = len(n.state)
+    made = rate or (euler if count == 3 else kirchhoff)
+
+    def derivative(t: float, z: Array) -> Array:
+        state, q = z[:count], z[count:]
+        w = state if count == 3 else (n.tensor @ state)[3:]
+        return np.concatenate([made(state, q, n), turn(q, w)])
+
+    solved = solve_ivp(
+        derivative,
+        (n.start, times[-1]),
+        np.concatenate([n.state, n.q]),
+        method=method,
+        t_eval=times,
+        rtol=tolerance,
+        atol=tolerance * 1e-3,
+    )
+    return columns_of(times, solved.y.T)
+
+
+def columns_of(times: Array, rows: Array) -> Columns:
+    """Columns of times, momenta and unit quaternions."""
+    vectors = ("omega",) if rows.shape[1] == 7 else ("linear_impulse", "angular_impulse")
+    columns = named(("t",), np.array(times)[:, None])
+    for i, name in enumerate(vectors):
+        columns |= named(VECTORS[name], rows[:, 3 * i : 3 * i + 3])
+    q = rows[:, 3 * len(vectors) :]
+    return columns | named(QUATERNION, q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def runge_kutta(scene: Scene, h: float, every: int, single: bool = False) -> Columns:
+    """The classical method at a fixed step; with ``single`` its state is kept in float32."""
+    n = Numbers(scene)
+    count = len(n.state)
+    made = euler if count == 3 else kirchhoff
+
+    def derivative(z: Array) -> Array:
+        state, q = z[:count], z[count:]
+        w = state if count == 3 else (n.tensor @ state)[3:]
+        return np.concatenate([made(state, q, n), turned(q, w)])
+
+    z = np.concatenate([n.state, n.q])
+    steps = round((n.times[-1] - n.start) / h)
+    rows = [z]
+    for step in range(1, steps + 1):
+        k1 = derivative(z)
+        k2 = derivative(z + h / 2 * k1)
+        k3 = derivative(z + h / 2 * k2)
+        z = z + h / 6 * (k1 + 2 * k2 + 2 * k3 + derivative(z + h * k3))
+        if single:
+            z = z.astype(np.float32).astype(float)
+        if step % every == 0:
+            rows.append(z)
+    times = n.start + h * every * np.arange(len(rows))
+    return columns_of(times, np.array(rows))
+
+
+def material(scene: Scene, columns: Columns) -> Material:
+    """Columns as the material of causes, as if every state had failed: nothing is compared."""
+    n, names = Numbers(scene), VECTORS["omega"]
+    if len(n.state) == 6:
+        names = VECTORS["linear_impulse"] + VECTORS["angular_impulse"]
+    rows = {key: np.array([columns[name] for name in key]).T for key in (names, QUATERNION)}
+    states = ("omega", "impulse", "attitude")
+    return Material(
+        Equations.of(scene.body),
+        n.state,
+        n.q,
+        np.array(columns["t"]) - n.start,
+        rows[names],
+        rows[QUATERNION],
+        failed={name: failure(scene, name) for name in states},
+    )
+
+
+def failure(scene: Scene, quantity: str) -> Verdict:
+    """A verdict that says no more than that a quantity failed."""
+    reason = stated(Cause.NO_TRUTH, "made for a test")
+    status = Status.FAIL
+    return Verdict(
+        scene.name, "test", "f64", "", quantity, status, outcome="", reason=reason, max=1.0
+    )

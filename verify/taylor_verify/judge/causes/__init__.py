@@ -1,0 +1,1 @@
+"""Named hypotheses about wrong dynamics, tried from row to row of an answer."""

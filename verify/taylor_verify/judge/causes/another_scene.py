@@ -1,0 +1,73 @@
+"""Shipped scenes that an answer fits, where its row at the start is not the scene's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.material import Material
+from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.scene import Scene
+
+# A start that is off by more than the one is another start, and one within the other is the same.
+_OFF: Final = 1e-3
+_PRINTED: Final = 1e-6
+# The first rows are compared with the exact motion of a scene that has the same start; to so much they fit.
+_FIRST_ROWS: Final = 5
+_FITS: Final = 1e-2
+_DIGITS: Final = 20
+
+
+def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
+    """Yield the shipped scenes of the same model that begin as the answer does."""
+    own = material.start_error
+    if own is None or not own > _OFF:
+        return
+    row = int(np.flatnonzero(material.elapsed == 0)[0])
+    for other in map(load, names(scene.model)):
+        begins = replace(material, start=_state(other))
+        error = begins.start_error
+        if other.clock.start != scene.clock.start or error is None or not error <= _PRINTED:
+            continue
+        within = _error(material, other, row)
+        if within <= _FITS:
+            why = f"the rows fit {other.name} better ({material.quantity} within {within:.2g})"
+        else:
+            why = f"the row at the start is that of {other.name} (within {error:.2g}), those after it not"
+        yield Candidate(
+            "another scene", material.quantity, error / own, why, is_sure=within <= _FITS
+        )
+
+
+def _state(scene: Scene) -> Floats:
+    start = scene.initial
+    vectors = (start.omega,) if isinstance(start, Spin) else (start.linear, start.angular)
+    return np.array([float(value) for vector in vectors for value in vector])
+
+
+def _error(material: Material, scene: Scene, row: int) -> float:
+    """The largest error of the first rows as an answer to a scene, relative to its largest state."""
+    order = np.argsort(np.abs(material.elapsed - material.elapsed[row]))[:_FIRST_ROWS]
+    elapsed = [Fraction(float(material.elapsed[k])) for k in order]
+    try:
+        exact = solution(replace(scene, track=frozenset())).evaluate(elapsed, _DIGITS)
+    except Unsettled:
+        return np.inf
+    errors = []
+    for i, name in enumerate(MOMENTA[scene.model]):
+        right = exact[name].astype(float)
+        got = material.states[order, 3 * i : 3 * i + 3]
+        size = np.max(np.linalg.norm(right, axis=1)) or 1.0
+        errors.append(float(np.max(np.linalg.norm(got - right, axis=1)) / size))
+    return max(errors)

@@ -1,0 +1,109 @@
+"""Equations of motion, right and with one thing wrong, as homogeneous quadratic rates of float64 rows.
+
+Euler:      z = (omega, 1), I omega' = (I omega) x omega + M
+Kirchhoff:  z = (x, y, 1), x' = x x W + X, y' = y x W + x x U + L, U = A x + B y, W = B^T x + C y
+with the attitude: q' = q W / 2 besides, q a quaternion, scalar first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from taylor_verify.judge.causes.flow import Floats, bilinear
+from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A body's equations of motion with weights for their terms.
+
+    ``tensor`` is I, or the 6x6 matrix of the energy. ``load`` is M, or (X, L). ``gyroscopic`` weighs
+    (I omega) x omega, or y x W; ``munk`` weighs x x U and ``turning`` x x W. ``damping`` c adds -c z, and
+    ``drag`` d the moment -d omega (in a fluid: force -d U and couple -d W).
+    """
+
+    tensor: Floats
+    load: Floats
+    gyroscopic: float = 1.0
+    munk: float = 1.0
+    turning: float = 1.0
+    damping: float = 0.0
+    drag: float = 0.0
+
+    @classmethod
+    def of(cls, body: Body) -> Equations:
+        """Return the right equations of a body whose loads are constant."""
+        if isinstance(body, RigidBody):
+            return cls(doubles(body.inertia), doubles(body.moment))
+        assert isinstance(body, ImmersedBody)
+        return cls(doubles(body.energy_matrix), doubles((*body.force, *body.couple)))
+
+    @property
+    def is_rigid(self) -> bool:
+        return len(self.tensor) == 3
+
+    @property
+    def moving(self) -> int:
+        """The number of components that move: 3 or 6."""
+        return len(self.tensor)
+
+    @cached_property
+    def inverse(self) -> Floats:
+        return np.asarray(np.linalg.inv(self.tensor), dtype=float)
+
+    @property
+    def is_possible(self) -> bool:
+        """Return True if the tensor is positive definite."""
+        return bool(np.all(np.linalg.eigvalsh(self.tensor) > 0))
+
+    def rates(self, z: Floats) -> Floats:
+        """Return z' of rows z = (omega, 1) or (x, y, 1)."""
+        made = self._rigid(z) if self.is_rigid else self._immersed(z)
+        return np.column_stack([made, np.zeros(len(z))])
+
+    def omega(self, z: Floats) -> Floats:
+        """Return the angular velocity of every row, body axes."""
+        return z[:, :3] if self.is_rigid else z[:, :6] @ self.tensor[:, 3:]
+
+    @property
+    def free(self) -> Equations:
+        """The same body without its loads."""
+        return replace(self, load=np.zeros_like(self.load))
+
+    @property
+    def map(self) -> Floats:
+        """Q of the rates."""
+        return bilinear(self.rates, self.moving + 1)
+
+    def _rigid(self, z: Floats) -> Floats:
+        omega, one = z[:, :3], z[:, 3:]
+        torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
+        driven = (torque - self.drag * one * omega) @ self.inverse
+        found: Floats = driven - self.damping * one * omega
+        return found
+
+    def _immersed(self, z: Floats) -> Floats:
+        state, one = z[:, :6], z[:, 6:]
+        x, y = state[:, :3], state[:, 3:]
+        velocities = state @ self.tensor
+        U, W = velocities[:, :3], velocities[:, 3:]
+        x_rate = self.turning * np.cross(x, W)
+        y_rate = self.gyroscopic * np.cross(y, W) + self.munk * np.cross(x, U)
+        found: Floats = np.column_stack([x_rate, y_rate]) + one**2 * self.load
+        return found - one * (self.damping * state + self.drag * velocities)
+
+
+def with_tensor(equations: Equations, tensor: Floats) -> Equations:
+    """Return the same equations of another body."""
+    return replace(equations, tensor=tensor)
+
+
+def doubles(numbers: Vector | Matrix) -> Any:
+    """Return exact numbers as an array of float64."""
+    rows = [[float(e) for e in n] if isinstance(n, tuple) else float(n) for n in numbers]
+    return np.array(rows)

@@ -1,0 +1,111 @@
+"""Wrong kinematics of the attitude: in the wrong axes, backwards, or at another rate.
+
+R' = R [omega]x is right. From each row to the next the answer's own omega is taken: the exact flow from
+it, plus the defect of omega, spread evenly over the time. So a wrong omega is no error of the attitude's
+kinematics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats, bilinear, flow
+from taylor_verify.judge.causes.material import FEWEST_PAIRS, Material
+
+_NOISE: Final = 1e-13
+
+
+@dataclass(frozen=True)
+class _Kinematics:
+    """q' = (before W q + after q W) / 2, W the angular velocity in body axes."""
+
+    before: float
+    after: float
+
+
+_RIGHT: Final = _Kinematics(0, 1)
+_WRONG: Final = (
+    (
+        "attitude kinematics in the wrong axes",
+        "R' = [omega]x R is integrated with omega in body axes, where R' = R [omega]x",
+        _Kinematics(1, 0),
+    ),
+    (
+        "attitude turned backwards",
+        "R' = -R [omega]x is integrated, where R' = R [omega]x",
+        _Kinematics(0, -1),
+    ),
+    (
+        "transposed attitude",
+        "it turns by R' = -[omega]x R with omega in body axes, as the transposed one does",
+        _Kinematics(-1, 0),
+    ),
+    ("attitude stands still", "R' = 0, though the body turns", _Kinematics(0, 0)),
+    (
+        "attitude turns twice as fast",
+        "q' = q omega is integrated, where q' = q omega / 2",
+        _Kinematics(0, 2),
+    ),
+    (
+        "attitude turns half as fast",
+        "q' = q omega / 4 is integrated, where q' = q omega / 2",
+        _Kinematics(0, 0.5),
+    ),
+)
+
+
+def kinematics(material: Material) -> Iterator[Candidate]:
+    """Yield each wrong kinematics of the attitude beside what it leaves of the attitude's defects."""
+    if material.quaternions is None or len(material.places) < FEWEST_PAIRS:
+        return
+    pairs = material.pairs
+    assert pairs.turned is not None
+    assert pairs.turned_end is not None
+    maps = [_map(pairs.equations, known) for known in (_RIGHT, *(k for *_, k in _WRONG))]
+    drift = pairs.defect / pairs.spans[:, None]
+    begin = np.column_stack([pairs.begin, drift, np.ones(len(drift)), pairs.turned])
+    sizes = np.concatenate([pairs.sizes, np.full(len(drift[0]) + 1, np.inf), np.ones(4)])
+    turned = flow(np.stack(maps), begin, pairs.spans, sizes)[:, :, -4:]
+    right, *others = (_angle(pairs.turned_end, rows) for rows in turned)
+    if not right > _NOISE:
+        return
+    for (name, why, _), left in zip(_WRONG, others, strict=True):
+        yield Candidate(name, "attitude", left / right, why)
+
+
+def _map(equations: Equations, known: _Kinematics) -> Floats:
+    """Q of z = (states, their constant drift, 1, q)."""
+    count = equations.moving
+
+    def rate(z: Floats) -> Floats:
+        state, drift = z[:, :count], z[:, count : 2 * count]
+        one, q = z[:, 2 * count : 2 * count + 1], z[:, -4:]
+        states = equations.rates(np.column_stack([state, one]))[:, :-1] + one * drift
+        omega = equations.omega(np.column_stack([state, one]))
+        turned = (known.before * _times(omega, q, 1) + known.after * _times(omega, q, -1)) / 2
+        return np.column_stack([states, np.zeros((len(z), count + 1)), turned])
+
+    return bilinear(rate, 2 * count + 5)
+
+
+def _times(omega: Floats, q: Floats, sign: int) -> Floats:
+    """omega q for the sign +1, q omega for -1: products of quaternions."""
+    scalar, vector = q[:, :1], q[:, 1:]
+    found: Floats = np.column_stack(
+        [-np.sum(omega * vector, axis=1), scalar * omega + sign * np.cross(omega, vector)]
+    )
+    return found
+
+
+def _angle(q: Floats, other: Floats) -> float:
+    """The largest angle between attitudes; q and -q are one attitude."""
+    other = other / np.linalg.norm(other, axis=1, keepdims=True)
+    apart = np.minimum(np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1))
+    largest = float(np.max(apart))
+    return 4 * np.arcsin(min(largest / 2, 1.0)) if np.isfinite(largest) else np.inf

@@ -1,0 +1,159 @@
+"""Data that every hypothesis is tried on: rows of an answer, and its defects from each row to the next.
+
+    defect = z_k+1 - flow(z_k)
+
+with flow the exact motion over the same time. A bounded number of pairs of rows, evenly chosen, stands
+for all. All is float64, so that defects near its roundoff have no cause here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.exact.looks import evenly
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.records.verdict import Verdict
+
+Places = np.ndarray[Any, np.dtype[np.intp]]
+
+# So many pairs of rows, evenly chosen, stand for all; a single pair may agree by chance.
+_MOST_PAIRS: Final = 24
+FEWEST_PAIRS: Final = 2
+# Float64 and the series of the flow are off by less than so many roundoffs of the state.
+_NOISE: Final = 64 * 2.0**-53
+
+
+@dataclass(frozen=True)
+class Material:
+    """An answer in body axes as float64, with NaN in rows that are no numbers.
+
+    ``start`` and ``start_attitude`` are the scene's own initial state, ``elapsed`` the times since then.
+    ``states`` (n, d) are omega, or x and y; NaN if the answer lacks them. ``quaternions`` (n, 4) are of
+    unit length, body to space; None if the answer has no attitude. ``columns`` are the states as a file
+    has them, in whatever axes; None if they are the states. ``digits`` is the number of decimals
+    that a file is written with, ``bits`` those of the arithmetic, ``failed`` the verdicts of states that
+    failed.
+    """
+
+    equations: Equations
+    start: Floats
+    start_attitude: Floats
+    elapsed: Floats
+    states: Floats
+    quaternions: Floats | None = None
+    columns: Floats | None = None
+    digits: int | None = None
+    bits: int = 53
+    failed: Mapping[str, Verdict] = field(default_factory=dict)
+
+    @property
+    def quantity(self) -> str:
+        """The name of the states' quantity."""
+        return "omega" if self.equations.is_rigid else "impulse"
+
+    @cached_property
+    def places(self) -> Places:
+        """The first rows of the pairs that are looked at."""
+        known = (
+            self.states if self.quaternions is None else np.hstack([self.states, self.quaternions])
+        )
+        finite = np.flatnonzero(np.all(np.isfinite(known), axis=1))
+        first: Places = finite[:-1][np.diff(finite) == 1]
+        return first[np.array(evenly(len(first), _MOST_PAIRS))] if len(first) else first
+
+    def at(self, first: Places) -> Pairs:
+        """Return the pairs of rows that begin at these places."""
+        return Pairs(
+            self.equations,
+            self.states[first],
+            self.states[first + 1],
+            self.elapsed[first + 1] - self.elapsed[first],
+            None if self.quaternions is None else self.quaternions[first],
+            None if self.quaternions is None else self.quaternions[first + 1],
+        )
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        return self.at(self.places)
+
+    @cached_property
+    def is_telling(self) -> bool:
+        """Return True if the defects of the states are far above what float64 and printing leave."""
+        pairs = self.pairs
+        if len(self.places) < FEWEST_PAIRS or not pairs.largest < np.inf:
+            return False
+        printed = 0.0 if self.digits is None else 10.0 ** (1 - self.digits)
+        return pairs.largest > _NOISE + printed
+
+    @property
+    def start_error(self) -> float | None:
+        """The error of the row at the start, relative to the scene's state; None without such a row."""
+        rows = np.flatnonzero(self.elapsed == 0)
+        size = float(np.linalg.norm(self.start))
+        if not len(rows) or not size > 0:
+            return None
+        return float(np.linalg.norm(self.states[rows[0]] - self.start)) / size
+
+    def with_states(self, states: Floats) -> Material:
+        """Return the same answer with other states."""
+        return replace(self, states=states)
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """States and quaternions of some rows and of the rows after them, and the time between."""
+
+    equations: Equations
+    begin: Floats
+    end: Floats
+    spans: Floats
+    turned: Floats | None = None
+    turned_end: Floats | None = None
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The size of every component: the largest |omega|, or |x| and |y| apart."""
+        vectors = np.stack([self.begin, self.end]).reshape(-1, len(self.begin[0]) // 3, 3)
+        largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
+        found: Floats = np.repeat(np.where(largest > 0, largest, 1.0), 3)
+        return found
+
+    @cached_property
+    def flow(self) -> Floats:
+        """The exact states at the second row of every pair."""
+        found: Floats = self.moved([self.equations])[0]
+        return found
+
+    @cached_property
+    def defect(self) -> Floats:
+        found: Floats = self.end - self.flow
+        return found
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest defect, relative to the size of its vector; infinite if it is no number."""
+        return self.size(self.defect)
+
+    def moved(self, equations: Sequence[Equations]) -> Floats:
+        """Return the states (m, n, d) after the spans by each of these equations."""
+        begin = np.column_stack([self.begin, np.ones(len(self.begin))])
+        maps = np.stack([one.map for one in equations])
+        states = flow(maps, begin, self.spans, np.append(self.sizes, np.inf))
+        found: Floats = states[:, :, :-1]
+        return found
+
+    def size(self, rows: Floats) -> float:
+        """Return the largest vector of rows, relative to its usual size; infinite if it is no number."""
+        vectors = (rows / self.sizes).reshape(len(rows), -1, 3)
+        largest = float(np.max(np.linalg.norm(vectors, axis=2)))
+        return largest if np.isfinite(largest) else np.inf
+
+    def left(self, states: Floats) -> float:
+        """Return the part of the largest defect that is left if the motion leads to these states."""
+        return self.size(self.end - states) / self.largest if self.largest > 0 else np.inf

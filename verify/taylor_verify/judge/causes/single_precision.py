@@ -1,0 +1,97 @@
+"""A state that was kept in float32 in the midst of wider arithmetic.
+
+The numbers of such an answer are float32 numbers. That alone may come of the storing, so that three things
+must come together. The defects from row to row have the size of float32 roundings. They are independent
+of each other, where those of stored roundings are not: what is cut off one row is missing in the next
+defect too, with the other sign. And they add up, beyond what one rounding of a row is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.exact.looks import evenly
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.material import Material, Pairs
+
+_BITS: Final = 24
+_ROUNDOFF: Final = 2.0**-_BITS
+# Numbers as narrow as this are small integers and simple fractions in any precision.
+_TELLING: Final = 2.0**18
+# A sum of a few products in float64 is off by no more than this part of its largest term.
+_FLOAT64: Final = 2.0**-49
+# So many neighbouring pairs are looked at, and fewer than these tell nothing of independence.
+_MOST_PAIRS: Final = 400
+_FEWEST_PAIRS: Final = 40
+# A row is a sum of many roundings, of a few at least, and no more than this.
+_LEAST: Final = 0.25
+_MOST: Final = 32.0
+# The correlation of neighbouring defects: 0 of independent ones, -1/2 of stored roundings, near 1 of a
+# method's truncation. So many standard errors of a correlation of independent numbers are allowed.
+_ERRORS: Final = 3.0
+_STORED: Final = -0.5
+# Stored roundings stay below one roundoff.
+_ADDED_UP: Final = 4.0
+
+
+def single_precision(material: Material) -> Iterator[Candidate]:
+    """Yield the candidate if all its evidence is there; it leaves what is not of independent roundings."""
+    if material.bits <= _BITS or material.quantity not in material.failed:
+        return
+    verdict = material.failed[material.quantity]
+    if (
+        not any(map(_are_float32, _held(material)))
+        or not (verdict.max or 0.0) > _ADDED_UP * _ROUNDOFF
+    ):
+        return
+    known = np.flatnonzero(np.all(np.isfinite(material.states), axis=1))
+    if len(known) < len(material.states) or len(known) < _FEWEST_PAIRS + 2:
+        return
+    first = np.arange(len(known) - 2)
+    first = first[evenly(len(first), _MOST_PAIRS)]
+    earlier, later = material.at(first), material.at(first + 1)
+    sizes = later.sizes
+    before, after = earlier.defect / sizes, later.defect / sizes
+    size = float(np.sqrt(np.mean(np.sum(after**2, axis=1))))
+    if not _LEAST * _ROUNDOFF <= size <= _MOST * _ROUNDOFF:
+        return
+    carried = (later.flow - _moved_back(later, earlier.defect)) / sizes
+    correlation = float(np.sum(carried * after) / np.sqrt(np.sum(before**2) * np.sum(after**2)))
+    allowed = _ERRORS / np.sqrt(len(first))
+    if not abs(correlation) <= min(allowed, abs(_STORED) / 2):
+        return
+    why = (
+        "the state was kept in float32: all its numbers are float32 numbers, and what it is off by from "
+        f"row to row is {size / _ROUNDOFF:.2g} roundings of 24 bits, independent of the row before"
+    )
+    yield Candidate("float32 inside", material.quantity, correlation**2, why, fitted=0)
+
+
+def _held(material: Material) -> Iterator[Floats]:
+    """The numbers that may have been held in float32: the columns as they are, and the momentum I omega.
+
+    The row at the start may be the scene's own.
+    """
+    yield (material.states if material.columns is None else material.columns)[1:]
+    if material.equations.is_rigid:
+        yield material.states[1:] @ material.equations.tensor
+
+
+def _are_float32(numbers: Floats) -> bool:
+    """Return True if every number is one of float32, up to float64's rounding, and not by chance."""
+    single = numbers.astype(np.float32).astype(float)
+    sizes = np.max(np.abs(numbers), axis=1, keepdims=True)
+    if not np.all(np.abs(single - numbers) <= _FLOAT64 * sizes):
+        return False
+    mantissas = np.abs(np.frexp(single)[0]) * _TELLING
+    return bool(np.any(mantissas != np.floor(mantissas)))
+
+
+def _moved_back(later: Pairs, defect: Floats) -> Floats:
+    """The second rows that would follow if the first ones had not the defects of the rows before."""
+    return replace(later, begin=later.begin - defect).flow

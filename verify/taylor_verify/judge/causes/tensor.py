@@ -1,0 +1,150 @@
+"""Motions of another body: a tensor cut to its diagonal, its axes dropped or reordered, or slightly off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import permutations
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.equations import Equations, with_tensor
+from taylor_verify.judge.causes.fit import fitted
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.judge.causes.terms import tried_equations
+from taylor_verify.judge.shift import LEAVES
+
+# Two tensors nearer than this are one.
+_SAME: Final = 1e-13
+# A body is fitted where the numbers of the pairs are so many times as many as its own.
+_EQUATIONS_PER_NUMBER: Final = 6
+# A defect across the orbit that is less than this part of all is no witness of another body.
+_ACROSS: Final = 1e-3
+# So many numbers fit much by themselves: a body that explains an answer leaves a hundredth of the error.
+_LEAVES: Final = LEAVES**2
+# The axes of two tensors are compared where the principal moments are so many differences apart.
+_APART: Final = 10.0
+
+_AXES: Final = ("1", "2", "3")
+
+
+def other_tensors(material: Material) -> Iterator[Candidate]:
+    """Yield the tensors that a misread one leads to; none of them has a number to fit."""
+    right = material.equations
+    tried: list[tuple[str, str, Equations]] = []
+    for name, why, tensor in _misread(right):
+        known = [right.tensor, *(other.tensor for *_, other in tried)]
+        if all(_distance(tensor, other) > _SAME for other in known):
+            tried.append((name, why, with_tensor(right, tensor)))
+    yield from tried_equations(material, [one for one in tried if one[2].is_possible])
+
+
+def _distance(tensor: Floats, other: Floats) -> float:
+    return float(np.linalg.norm(tensor - other) / np.linalg.norm(other))
+
+
+def _misread(right: Equations) -> Iterator[tuple[str, str, Floats]]:
+    """Yield name, reason and tensor of each way to misread the scene's."""
+    tensor, diagonal = right.tensor, np.diag(right.tensor)
+    noun = "inertia tensor" if right.is_rigid else "energy"
+    yield (
+        f"{noun} cut to its diagonal",
+        "the body moves as if the other entries were zero",
+        np.diag(diagonal),
+    )
+    inverse = np.diag(1 / np.diag(right.inverse))
+    why = "the body moves as if the other entries of the inverse were zero"
+    yield f"{noun} cut to its diagonal", why, inverse
+    if not right.is_rigid:
+        return
+    moments, axes = np.linalg.eigh(tensor)
+    if np.array_equal(tensor, np.diag(diagonal)):
+        for order in permutations(range(3)):
+            listed = ", ".join(f"{diagonal[i]:.6g}" for i in order)
+            why = f"the body moves as if its principal moments about axes 1 2 3 were {listed}"
+            yield "principal moments in another order", why, np.diag(diagonal[list(order)])
+    else:
+        for order in permutations(range(3)):
+            listed = ", ".join(f"{moments[i]:.6g}" for i in order)
+            why = f"the body moves as if its axes were principal, with the moments {listed}"
+            yield "principal axes dropped", why, np.diag(moments[list(order)])
+        for order in permutations(range(3)):
+            for signs in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
+                turned = axes[:, list(order)] * np.array(signs)
+                why = "the body moves as if the turn to its principal axes were taken backwards"
+                back = turned.T @ np.diag(moments[list(order)]) @ turned
+                yield "principal axes turned the wrong way", why, back
+    single = tensor.astype(np.float32).astype(float)
+    yield "inertia in float32", "the body's moments were rounded to 24 bits", single
+    rounded = right.inverse.astype(np.float32).astype(float)
+    why = "the inverse of the inertia tensor was rounded to 24 bits"
+    yield "inertia in float32", why, np.linalg.inv(rounded)
+
+
+# The tensor that explains an answer.
+
+
+def another_body(material: Material) -> Iterator[Candidate]:
+    """Yield the body that fits best, if the answer has more to say than such a body has numbers.
+
+    It must explain what leads across the exact orbit too: along it, any error of the clock would do.
+    """
+    right, pairs = material.equations, material.pairs
+    rows, columns = np.triu_indices(right.moving)
+    if pairs.end.size < _EQUATIONS_PER_NUMBER * len(rows):
+        return
+    across = _across(pairs, pairs.defect)
+    if not pairs.size(across) > _ACROSS * pairs.largest:
+        return
+    scale = np.sqrt(np.outer(np.diag(right.tensor), np.diag(right.tensor)))
+
+    def tensor(parameters: Floats) -> Floats:
+        change = np.zeros_like(right.tensor)
+        change[rows, columns] = change[columns, rows] = parameters
+        found: Floats = right.tensor + scale * change
+        return found
+
+    def model(parameters: Floats) -> Floats:
+        bodies = [with_tensor(right, tensor(p)) for p in parameters]
+        if not all(body.is_possible for body in bodies):
+            return np.full((len(bodies), *pairs.end.shape), np.nan)
+        return pairs.moved(bodies)
+
+    best, states = fitted(model, pairs.end, pairs.sizes, np.zeros(len(rows)))
+    if not np.all(np.isfinite(states)):
+        return
+    left = pairs.size(_across(pairs, pairs.end - states)) / pairs.size(across)
+    why = _difference(right, tensor(best))
+    name = "another inertia tensor" if right.is_rigid else "other coefficients of the energy"
+    left = max(left, pairs.left(states))
+    if left <= _LEAVES:
+        yield Candidate(name, material.quantity, left, why, len(best))
+
+
+def _across(pairs: Pairs, defects: Floats) -> Floats:
+    """The part of defects at right angles to the exact motion, at the second row of every pair."""
+    ahead = np.column_stack([pairs.flow, np.ones(len(pairs.flow))])
+    along = pairs.equations.rates(ahead)[:, :-1] / pairs.sizes
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
+    scaled = defects / pairs.sizes
+    found: Floats = (scaled - np.sum(scaled * along, axis=1, keepdims=True) * along) * pairs.sizes
+    return found
+
+
+def _difference(right: Equations, tensor: Floats) -> str:
+    """The relative difference of a tensor and the turn of its axes, in words."""
+    if not np.any(right.load):  # a free motion does not tell the scale of a tensor
+        tensor = tensor * (np.sum(tensor * right.tensor) / np.sum(tensor**2))
+    difference = _distance(tensor, right.tensor)
+    if not right.is_rigid:
+        return f"the energy that explains this answer differs by {difference:.2g} (relative)"
+    words = f"the inertia tensor that explains this answer differs by {difference:.2g} (relative)"
+    (moments, axes), (_, others) = np.linalg.eigh(right.tensor), np.linalg.eigh(tensor)
+    if np.min(np.diff(moments)) <= _APART * difference * moments[-1]:
+        return words
+    signs = np.sign(np.sum(axes * others, axis=0))
+    angle = 2 * np.arcsin(min(float(np.linalg.norm(axes - others * signs)) / 8**0.5, 1.0))
+    return f"{words}, its axes turned by {angle:.2g} rad"
