@@ -166,10 +166,11 @@ def test_a_file_without_an_error_spoils_no_order(error: float | None) -> None:
 
 
 def test_an_answer_without_any_error_has_no_order() -> None:
-    """All zero: no order shows, and the best step has no error."""
-    found = read([0.0] * 4)
-    assert found.order is None
-    assert "no order shows" in found.sentence
+    """Errors of zero, and errors of roundoff at every step, show none: it is said, and no best step."""
+    for errors in ([0.0] * 4, [7e-16] * 4):
+        found = read(errors)
+        assert found.order is None
+        assert found.sentence.endswith("because the error is near roundoff at every step")
 
 
 def test_an_attitude_is_told_in_radians() -> None:

@@ -46,9 +46,9 @@ class FilesJudgement(Judgement):
     """
 
     files: tuple[FileJudgement, ...]
-    steps: tuple[FileStep | None, ...] = ()
-    order: tuple[Order, ...] = ()
-    notes: tuple[str, ...] = ()
+    steps: tuple[FileStep | None, ...]
+    order: tuple[Order, ...]
+    notes: tuple[str, ...]
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints of several files."""
@@ -86,23 +86,25 @@ def files_judgement(
     ``steps`` are those of the files, if the caller states them; otherwise each file, its name or the
     spacing of its rows says its step.
     """
-    found = steps_of([one.file for one in judged], steps)
-    samples = {
-        one.file.name: Sample(one, step.value)
-        for one, step in zip(judged, found, strict=True)
+    known = steps_of([judgement.file for judgement in judged], steps)
+    samples = [
+        Sample(judgement, step.value)
+        for judgement, step in zip(judged, known, strict=True)
         if step is not None
-    }
-    notes = [*_source_notes(judged, found)]
-    short = _ending_early(list(samples.values()))
-    notes += [f"{name} ends before the others do, and has no part in the order" for name in short]
-    taking_part = [sample for name, sample in samples.items() if name not in short]
-    alike = _alike(taking_part)
-    notes += alike
-    order = orders(taking_part) if len(taking_part) > 1 and not alike else ()
-    notes += _lower_orders(order)
-    notes += _other_starts(judged) if len(judged) > 1 else ()
-    verdicts = tuple(verdict for one in judged for verdict in one.verdicts)
-    return FilesJudgement(verdicts, None, tuple(judged), found, order, tuple(notes))
+    ]
+    whole = _reaching_the_end(samples)
+    short = [sample.judged.file.name for sample in samples if sample not in whole]
+    alike = _alike(whole)
+    order = orders(whole) if len(whole) > 1 and not alike else ()
+    notes = (
+        *_source_notes(judged, known),
+        *(f"{name} ends before the others do, and has no part in the order" for name in short),
+        *alike,
+        *_lower_orders(order),
+        *_other_starts(judged),
+    )
+    verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
+    return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
 
 
 def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
@@ -111,28 +113,29 @@ def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> l
     faults: list[str] = []
     for file in files:
         try:
-            one = judge(file)
+            judgement = judge(file)
         except Refused as error:
             faults += error.faults
             continue
-        if not isinstance(one, FileJudgement):
+        if not isinstance(judgement, FileJudgement):
             raise ValueError(f"expected trajectory files alone in a list, got {brief(file)}")
-        judged.append(one)
+        judged.append(judgement)
     if faults:
         raise Refused(faults)
     return judged
 
 
-def checked_steps(steps: Sequence[Any], count: int) -> list[float]:
+def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
     """Return a step for each of ``count`` files as doubles.
 
     Raises ValueError for another number of steps, for one that is no positive number, and for one that
     stands there twice.
     """
-    if isinstance(steps, str) or not isinstance(steps, Sequence) or len(steps) != count:
-        number = len(steps) if isinstance(steps, Sequence) else brief(steps)
-        raise ValueError(f"expected a step for each of {count} files, got {number} @ steps")
-    values = [positive(step, f"steps[{i}]") for i, step in enumerate(steps)]
+    asked = None if isinstance(steps, str) or not isinstance(steps, Iterable) else [*steps]
+    if asked is None or len(asked) != count:
+        got = brief(steps) if asked is None else len(asked)
+        raise ValueError(f"expected a step for each of {count} files, got {got} @ steps")
+    values = [positive(step, f"steps[{i}]") for i, step in enumerate(asked)]
     if len(set(values)) < count:
         twice = next(value for value in values if values.count(value) > 1)
         raise ValueError(
@@ -189,17 +192,12 @@ def _short(value: float | None, form: str) -> str:
 # What has a part in the order.
 
 
-def _ending_early(samples: Sequence[Sample]) -> list[str]:
-    """Return the names of files that end more than a row before the longest one."""
-    spans = {s.judged.file.name: _span(s.judged.file.times) for s in samples}
-    longest = max(spans.values(), default=Fraction(0))
-    early = []
-    for sample in samples:
-        times = sample.judged.file.times
-        row = abs(times[-1] - times[-2]) if len(times) > 1 else Fraction(0)
-        if spans[sample.judged.file.name] + row < longest:
-            early.append(sample.judged.file.name)
-    return early
+def _reaching_the_end(samples: Sequence[Sample]) -> list[Sample]:
+    """Return the files that end no more than a row before the longest one: errors grow with time."""
+    longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
+    return [
+        sample for sample in samples if _span(sample.times) + _span(sample.times[-2:]) >= longest
+    ]
 
 
 def _span(times: Sequence[Fraction]) -> Fraction:
@@ -210,10 +208,10 @@ def _alike(samples: Sequence[Sample]) -> list[str]:
     """Return a sentence for each two files whose steps are too near to each other for an order."""
     ordered = sorted(samples, key=lambda sample: sample.step)
     return [
-        f"no order of convergence: {one.judged.file.name} and {other.judged.file.name} have the same "
-        f"step, h = {one.step:g}; {_HOW}"
-        for one, other in pairwise(ordered)
-        if other.step < _ALIKE * one.step
+        f"no order of convergence: {small.judged.file.name} and {large.judged.file.name} have the same "
+        f"step, h = {small.step:g}; --steps says others"
+        for small, large in pairwise(ordered)
+        if large.step < _ALIKE * small.step
     ]
 
 
@@ -235,32 +233,29 @@ def _source_notes(
         yield f"assumed: {Source.ROWS} is the step, because nothing states it; --steps says others"
     elif Source.CALL not in sources:
         yield f"the steps are from {' and '.join(sources)}; --steps says others"
-    for one, step in zip(judged, steps, strict=True):
+    for judgement, step in zip(judged, steps, strict=True):
         if step is None:
-            yield f"the step of {one.file.name} is not known: it has no part in the order"
+            yield f"the step of {judgement.file.name} is not known: it has no part in the order"
 
 
 def _lower_orders(order: Sequence[Order]) -> list[str]:
     """Return a sentence for each state quantity whose order is below that of the body's own."""
-    states = [one for one in order if one.quantity in STATES and one.order is not None]
-    if not states:
-        return []
-    first, *others = states
-    assert first.order is not None
+    known = {each.quantity: each.order for each in order if each.order is not None}
+    states = [name for name in STATES if name in known]
     return [
-        f"{one.quantity} has a lower order ({one.order:.1f}) than {first.quantity} "
-        f"({first.order:.1f}): it is integrated by a method of its own"
-        for one in others
-        if one.order is not None and one.order < first.order - _LOWER
+        f"{name} has a lower order ({known[name]:.1f}) than {states[0]} ({known[states[0]]:.1f}): it is "
+        "integrated by a method of its own"
+        for name in states[1:]
+        if known[name] < known[states[0]] - _LOWER
     ]
 
 
 def _other_starts(judged: Sequence[FileJudgement]) -> list[str]:
     """Return a sentence for each file, of some and not all, that does not start as the scene does."""
     wrong = [
-        one.file.name
-        for one in judged
-        if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in one.verdicts)
+        judgement.file.name
+        for judgement in judged
+        if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in judgement.verdicts)
     ]
     if len(wrong) == len(judged):
         return []

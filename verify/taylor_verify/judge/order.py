@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import pairwise
 from math import exp, isfinite, log, log10, sqrt
 from typing import TYPE_CHECKING, Final
@@ -51,11 +52,15 @@ class Sample:
         return None
 
     @property
+    def times(self) -> tuple[Fraction, ...]:
+        """The times of the rows."""
+        return self.judged.file.times
+
+    @property
     def roundings(self) -> float:
         """The factor by which the floor of so many steps is above that of a step for each row."""
-        times = self.judged.file.times
-        steps = float(abs(times[-1] - times[0])) / self.step
-        return sqrt(max(1.0, steps / len(times)))
+        steps = float(abs(self.times[-1] - self.times[0])) / self.step
+        return sqrt(max(1.0, steps / len(self.times)))
 
 
 def orders(samples: Sequence[Sample]) -> tuple[Order, ...]:
@@ -190,6 +195,9 @@ def _stall(found: Convergence, samples: Sequence[Sample]) -> Stall:
 
 
 def _sentences(order: Order, clear: Sequence[OrderPoint]) -> Iterator[str]:
+    if all(_is_at_the_floor(point) for point in order.points if point.error is not None):
+        yield f"{order.quantity}: no order shows, because the error is near roundoff at every step"
+        return
     yield f"{order.quantity}: {_order_words(order, clear)}"
     yield from _best_words(order)
 
@@ -238,7 +246,7 @@ def _best_words(order: Order) -> Iterator[str]:
     smallest = order.points[-1].step
     best = f"best h = {order.best_step:g} with {_accuracy(order)}"
     if order.stall is None or order.stalls_at is None:
-        falls = "near roundoff" if _is_at_the_floor(order) else "the error still falls"
+        falls = "near roundoff" if _is_at_the_floor(order.points[-1]) else "the error still falls"
         yield f"{best}, the smallest: {falls}" if order.best_step == smallest else best
         return
     if order.stalls_at == order.best_step:
@@ -247,9 +255,8 @@ def _best_words(order: Order) -> Iterator[str]:
         yield f"{best}; from h = {order.stalls_at:g} down {_takes_over(order)}"
 
 
-def _is_at_the_floor(order: Order) -> bool:
-    last = order.points[-1]
-    return last.error is not None and last.error <= CLEAR * (last.attainable or 0.0)
+def _is_at_the_floor(point: OrderPoint) -> bool:
+    return point.error is not None and point.error <= CLEAR * (point.attainable or 0.0)
 
 
 def _takes_over(order: Order) -> str:
