@@ -522,7 +522,7 @@ def test_the_verb_never_overwrites_what_was_edited(tmp_path: Path, capsys: Captu
     file.write_text(urdf())
     out.write_text("edited")
     assert main(["scene", "from", str(file), "--out", str(out)]) == 2
-    assert "a name that no file has yet" in capsys.readouterr().err
+    assert "it is there already" in capsys.readouterr().err
     assert out.read_text() == "edited"
     assert main(["scene", "from", str(file), "--out", str(tmp_path / "no" / "a.toml")]) == 2
     assert "@ --out" in capsys.readouterr().err
