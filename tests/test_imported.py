@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
@@ -18,11 +19,14 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.imported import import_scene, rotation
-from taylor_verify.scenes.imported.document import DEEPEST, MOST_BYTES
+from taylor_verify.scenes.imported.document import DEEPEST, MOST_BYTES, MOST_ELEMENTS
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
+
+# What a file of ten megabytes may take where the machine is busy, in seconds.
+PATIENCE = 20.0
 
 Captured = pytest.CaptureFixture[str]
 
@@ -481,7 +485,9 @@ def test_all_faults_of_a_link_are_told_at_once_with_their_lines(tmp_path: Path) 
 
 
 def test_a_deep_and_a_large_file_are_refused(tmp_path: Path) -> None:
-    """Depth and size have limits, with their reasons."""
+    """Depth, size and the number of elements have limits, with their reasons."""
+    many = "<robot>" + "<a/>" * MOST_ELEMENTS.most + "</robot>"
+    assert "a robot of a thousand links" in str(refusal(tmp_path, many))
     deep = "<robot>" + "<a>" * DEEPEST.most + "</a>" * DEEPEST.most + "</robot>"
     assert "the longest chain of bodies" in str(refusal(tmp_path, deep))
     large = tmp_path / "large.urdf"
@@ -489,6 +495,14 @@ def test_a_deep_and_a_large_file_are_refused(tmp_path: Path) -> None:
     os.truncate(large, MOST_BYTES.most + 1)
     with pytest.raises(Refused, match="at most 16777216 bytes"):
         import_scene(large)
+
+
+def test_text_between_many_elements_is_read_once(tmp_path: Path) -> None:
+    """Ten megabytes of text with a hundred thousand elements in it take seconds, not hours."""
+    content = f"<robot>{'x' * 10**7}{'<a/>y' * 10**5}</robot>"
+    begun = time.monotonic()
+    assert "expected a link" in str(refusal(tmp_path, content))
+    assert time.monotonic() - begun < PATIENCE
 
 
 def test_a_pipe_is_never_opened(tmp_path: Path) -> None:
@@ -522,7 +536,7 @@ def test_the_verb_never_overwrites_what_was_edited(tmp_path: Path, capsys: Captu
     file.write_text(urdf())
     out.write_text("edited")
     assert main(["scene", "from", str(file), "--out", str(out)]) == 2
-    assert "a name that no file has yet" in capsys.readouterr().err
+    assert "it is there already" in capsys.readouterr().err
     assert out.read_text() == "edited"
     assert main(["scene", "from", str(file), "--out", str(tmp_path / "no" / "a.toml")]) == 2
     assert "@ --out" in capsys.readouterr().err

@@ -47,14 +47,16 @@ def scene(options: argparse.Namespace) -> Answer:
 
 def _write(text: str, name: str) -> None:
     """Write a new file whole; what somebody has edited is left as it is."""
+    from taylor_verify.records.replacement import replace_files
+
+    place = Path(name)
     try:
-        with open(name, "x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-    except FileExistsError:
-        expected = "a name that no file has yet"
-        raise WrongCall(f"expected {expected}, got {name!r} @ --out") from None
+        if not place.parent.is_dir():
+            raise NotADirectoryError(0, f"no folder {place.parent}")
+        if place.exists():
+            raise FileExistsError(0, "it is there already, and perhaps edited")
+        replace_files(place.parent, {place.name: text})
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise WrongCall(
-            f"expected a file that can be written, got {name!r} ({reason}) @ --out"
-        ) from None
+        expected = "the name of a new file that can be written"
+        raise WrongCall(f"expected {expected}, got {name!r} ({reason}) @ --out") from error

@@ -17,6 +17,7 @@ from taylor_verify.scenes.limit import Limit
 from taylor_verify.scenes.regular_file import read_bytes
 
 MOST_BYTES: Final = Limit(2**24, "bytes", "a description of a robot has its meshes in other files")
+MOST_ELEMENTS: Final = Limit(200_000, "elements", "a robot of a thousand links has a fifth of them")
 DEEPEST: Final = Limit(200, "elements inside each other", "the longest chain of bodies is shorter")
 
 
@@ -57,6 +58,9 @@ class _Builder:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._open: list[Node] = []
+        # Of each open node the pieces of its text: to add to one text takes the square of its length.
+        self._pieces: list[list[str]] = []
+        self._elements = 0
         self._root: Node | None = None
         self._parser = expat.ParserCreate()
         self._parser.buffer_text = True
@@ -82,16 +86,20 @@ class _Builder:
         raise Refused([f"expected {expected}, got <!DOCTYPE {name:.60}> @ {self._path}:{line}"])
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
-        DEEPEST.check(len(self._open) + 1, f"{self._path}:{self._parser.CurrentLineNumber}")
+        self._elements += 1
+        place = f"{self._path}:{self._parser.CurrentLineNumber}"
+        DEEPEST.check(len(self._open) + 1, place)
+        MOST_ELEMENTS.check(self._elements, place)
         node = Node(name, attributes, self._parser.CurrentLineNumber)
         if self._open:
             self._open[-1].children.append(node)
         else:
             self._root = node
         self._open.append(node)
+        self._pieces.append([])
 
     def _end(self, name: str) -> None:
-        self._open.pop()
+        self._open.pop().text = "".join(self._pieces.pop())
 
     def _add_text(self, text: str) -> None:
-        self._open[-1].text += text
+        self._pieces[-1].append(text)
