@@ -134,9 +134,9 @@ class Variables:
             told |= set(group) if told & set(group) else set()
         others = {other for first, other in _SAME if first in wanted}
         if missing := [key for key in wanted if key not in told | others]:
-            names = [list(wanted[key]) for key in missing]
+            defaults = [list(wanted[key]) for key in missing]
             listed = ", ".join(
-                f"{k} ({n[0]} ... {n[-1]})" for k, n in zip(missing, names, strict=True)
+                f"{k} ({n[0]} ... {n[-1]})" for k, n in zip(missing, defaults, strict=True)
             )
             raise Fault(
                 f"expected variables for {listed}, got none or not all @ FMU (name its own: "
