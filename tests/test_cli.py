@@ -30,6 +30,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.guide import GUIDE
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.solvers import registry
+from taylor_verify.solvers.formats.reading import PART_READERS, READERS
 
 ROOT = Path(__file__).resolve().parents[1]
 GENERIC = library.cases_directory() / "euler" / "generic.toml"
@@ -69,6 +70,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "solvers": list(registry.NAMES),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
+        "formats": [*READERS, *PART_READERS],
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out

@@ -31,6 +31,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.reader import load
 from taylor_verify.solvers.file import KNOWN, read
+from taylor_verify.solvers.formats.listing import formats
 from taylor_verify.solvers.formats.reading import PART_READERS, READERS, parted, read_table
 
 SCENE = "euler/with-attitude"
@@ -111,6 +112,17 @@ def test_every_suffix_has_a_reader_and_is_named(tmp_path: Path) -> None:
     with pytest.raises(Refused) as refused:
         read(tmp_path / "run.xlsx")
     assert all(suffix in str(refused.value) for suffix in (*READERS, *PART_READERS))
+
+
+def test_formats_name_what_they_need(tmp_path: Path) -> None:
+    """`list` says of every suffix what it is, and of a package that is missing how to install it."""
+    assert list(formats()) == [*READERS, *PART_READERS]
+    assert not any("pip install" in sentence for sentence in formats().values())
+    done = lacking(tmp_path, ["h5py", "rosbags"], "-m", "taylor_verify", "list")
+    lines = {line.split()[0]: line for line in done.stdout.splitlines() if line.startswith("  .")}
+    assert lines[".h5"].endswith("needs h5py: pip install 'taylor-verify[hdf5]'")
+    assert lines[".bag"].endswith("needs rosbags: pip install 'taylor-verify[rosbag]'")
+    assert "pip install" not in lines[".mcap"]
 
 
 # Recordings of ROS.

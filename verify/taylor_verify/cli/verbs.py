@@ -27,13 +27,16 @@ def list_all(options: argparse.Namespace) -> Answer:
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reader import load
+    from taylor_verify.solvers.formats.listing import formats
     from taylor_verify.solvers.registry import NAMES
 
     del options
     scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
     titles = {name: load(name).title for group in scenes.values() for name in group}
-    found = {**scenes, "solvers": list(NAMES), "rungs": list(LADDER)}
-    return Answer(PASS, {**found, "guide": dict(GUIDE)}, partial(names_text, found, titles, GUIDE))
+    read = formats()
+    found = {**scenes, "solvers": list(NAMES), "rungs": list(LADDER), "formats": list(read)}
+    text = partial(names_text, found, {**titles, **read}, GUIDE)
+    return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
 
 
 def run(options: argparse.Namespace) -> Answer:

@@ -2,7 +2,8 @@
 
 The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, the longest communication
 step or null for that of the FMU; `names`, lists of variables of the FMU in place of those in the table;
-`fixed`, what is built into the FMU and not set. An index counts from 1, that of a quaternion from 0.
+`fixed`, what is built into the FMU and not set. Three names for a matrix are its diagonal; the name of an
+array of the FMU stands for its entries. An index counts from 1, that of a quaternion from 0.
 
     set before the run   inertia I11 ... I33       inverse_inertia K11 ... K33     moment M1 M2 M3
                          linear A11 ... A33        coupling B11 ... B33            angular C11 ... C33
@@ -96,16 +97,26 @@ class Variables:
         self.names = names
 
     def of(self, quantity: str, default: Sequence[str]) -> list[str]:
-        """The variables of a quantity, those of the settings first; a name may stand for a vector."""
-        names = list(self.names.get(quantity, default))
-        if len(names) == 1 and names[0] not in self.references and len(default) in (3, 4):
-            names = [f"{names[0]}[{i}]" for i in range(1, len(default) + 1)]
-        missing = [name for name in names if name not in self.references]
-        if quantity in self.names and missing:
+        """The variables of a quantity, in the order of the default names; "" for what has none."""
+        if quantity not in self.names:
+            return list(default)
+        names = list(self.names[quantity])
+        if len(names) == 1 and names[0] not in self.references:
+            names = self._entries(names[0], len(default))
+        if len(default) == 9 and len(names) == 3:
+            a, b, c = names
+            names = [a, *[""] * 3, b, *[""] * 3, c]
+        if missing := [name for name in names if name and name not in self.references]:
             raise Fault(f"expected a variable of the FMU, got {missing[0]} @ {quantity}")
-        if quantity in self.names and len(names) != len(default):
+        if len(names) != len(default):
             raise Fault(f"expected {len(default)} names, got {len(names)} @ {quantity}")
         return names
+
+    def _entries(self, name: str, count: int) -> list[str]:
+        """The entries of a matrix or of a vector of the FMU; a vector may be the diagonal."""
+        if count == 9 and f"{name}[1,1]" in self.references:
+            return [f"{name}[{i},{k}]" for i in (1, 2, 3) for k in (1, 2, 3)]
+        return [f"{name}[{i}]" for i in range(1, (3 if count == 9 else count) + 1)]
 
     def settings(self, question: Any, fixed: Sequence[str]) -> Iterator[tuple[int, float]]:
         """References and values of all that is set; raises Fault for what the FMU cannot be told."""
@@ -121,11 +132,15 @@ class Variables:
                 told |= {key} if not any(unknown) else set()
         for group in _SAME:
             told |= set(group) if told & set(group) else set()
-        if missing := [key for key in wanted if key not in told]:
-            defaults = "; ".join(f"{key}: {' '.join(wanted[key])}" for key in missing)
+        others = {other for first, other in _SAME if first in wanted}
+        if missing := [key for key in wanted if key not in told | others]:
+            defaults = [list(wanted[key]) for key in missing]
+            listed = ", ".join(
+                f"{k} ({n[0]} ... {n[-1]})" for k, n in zip(missing, defaults, strict=True)
+            )
             raise Fault(
-                f"expected variables for {', '.join(missing)} ({defaults}), got none or not all @ FMU "
-                f"(name its own by ?{missing[0]}=NAME,NAME,..., or say ?fixed={missing[0]})"
+                f"expected variables for {listed}, got none or not all @ FMU (name its own: "
+                f"?{missing[0]}=NAME,NAME,...; what is built into it: ?fixed={missing[0]})"
             )
 
     def outputs(self, columns: Sequence[str]) -> list[int]:

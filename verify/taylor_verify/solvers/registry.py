@@ -52,6 +52,7 @@ NAMES = (
     "outside:rebound-bs?rtol=NUMBER&atol=NUMBER",
     "outside:numbalsoda-dop853?rtol=NUMBER&atol=NUMBER",
     "outside:numbalsoda-lsoda?rtol=NUMBER&atol=NUMBER",
+    "fmu:FILE?step=NUMBER",
 )
 
 

@@ -13,12 +13,10 @@ from typing import Any, BinaryIO, Final
 from taylor_verify.scenes.faults import Refused, cut
 from taylor_verify.solvers.formats.arrays import Array, table
 from taylor_verify.solvers.formats.column import COLUMNS, Table
-from taylor_verify.solvers.formats.package import needed
+from taylor_verify.solvers.formats.package import needed, unbroken
 
 # Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
 _FILTERS: Final = {1, 2, 3, 4, 5, 6, 32000}
-# What a file that is none makes of the library.
-_BROKEN: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError)
 
 
 def read(file: BinaryIO, path: Path, part: str) -> Table:
@@ -30,12 +28,8 @@ def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Tabl
     """Return the table that is made of the open file; whatever is broken in it is refused."""
     with needed("h5py", "HDF5", "hdf5", path):
         import h5py
-    try:
-        with h5py.File(file, "r") as content:
-            return tabulate(content)
-    except _BROKEN as error:
-        reason = cut((str(error).splitlines() or [type(error).__name__])[0])
-        raise Refused([f"expected an HDF5 file, got a fault in it: {reason} @ {path}"]) from None
+    with unbroken("an HDF5 file", path), h5py.File(file, "r") as content:
+        return tabulate(content)
 
 
 def _arrays(content: Any, path: Path) -> Iterator[Array]:

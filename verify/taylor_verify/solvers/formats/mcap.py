@@ -6,10 +6,10 @@ Chunks are unpacked here and not by the library, which unpacks as much as they c
 from __future__ import annotations
 
 import json
-import struct
 from collections import Counter
 from collections.abc import Callable, Iterator
-from io import BytesIO
+from contextlib import redirect_stderr
+from io import BytesIO, StringIO
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, BinaryIO, Final, NamedTuple
@@ -19,29 +19,20 @@ from taylor_verify.scenes.limit import Limit
 from taylor_verify.solvers.formats import messages
 from taylor_verify.solvers.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.formats.messages import Topic
-from taylor_verify.solvers.formats.package import needed
+from taylor_verify.solvers.formats.package import needed, unbroken
 
 _EXTRA: Final = "mcap"
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
-_BROKEN: Final = (
-    *(ValueError, TypeError, KeyError, OverflowError, RecursionError, RuntimeError, struct.error),
-    *(OSError, MemoryError),
-)
 
 
 def read(file: BinaryIO, path: Path, part: str) -> Table:
     """Return the columns of a topic; the file is read twice, first for the topics there are."""
     with needed("mcap", "MCAP", _EXTRA, path):
-        from mcap.exceptions import McapError
-    try:
+        import mcap  # noqa: F401
+    with unbroken("an MCAP file", path):
         recording = _Recording.of(file, path)
         topic = messages.chosen(recording.topics(), part, path)
         return messages.table(topic, recording.decoded(topic, path), path)
-    except (McapError, *_BROKEN) as error:
-        lines = str(error).splitlines() or [type(error).__name__]
-        raise Refused(
-            [f"expected an MCAP file, got a fault in it: {cut(lines[0])} @ {path}"]
-        ) from None
 
 
 class _Recording(NamedTuple):
@@ -96,7 +87,9 @@ def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
         return _from_json
     with needed("mcap-ros2-support", "ROS 2 messages in MCAP", _EXTRA, path):
         from mcap_ros2.decoder import DecoderFactory
-    decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
+    # It prints a definition that it cannot read before it raises.
+    with redirect_stderr(StringIO()):
+        decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
     if decode is None:
         got = f"{channel.message_encoding or 'no encoding'} with schemas in {schema.encoding or 'none'}"
         place = f"{path}, topic {cut(channel.topic)}"

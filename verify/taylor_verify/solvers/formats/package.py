@@ -1,11 +1,11 @@
-"""The refusal of a file whose format needs a package that is not installed."""
+"""Refusals for what a library makes of a file: that it is not installed, or that the file is broken."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.faults import Refused, cut
 
 
 @contextmanager
@@ -23,3 +23,18 @@ def needed(package: str, what: str, extra: str, place: object) -> Iterator[None]
                 f"(install it with `pip install 'taylor-verify[{extra}]'`, or write CSV)"
             ]
         ) from None
+
+
+@contextmanager
+def unbroken(what: str, place: object) -> Iterator[None]:
+    """Refuse the file at ``place`` if a library raises anything in the block.
+
+    Which exceptions a broken file becomes is written down by none of them.
+    """
+    try:
+        yield
+    except Refused:
+        raise
+    except Exception as error:
+        reason = cut((str(error).splitlines() or [type(error).__name__])[0])
+        raise Refused([f"expected {what}, got a fault in it: {reason} @ {place}"]) from None

@@ -9,7 +9,6 @@ from __future__ import annotations
 import bz2
 import os
 import re
-import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, Final
@@ -19,15 +18,11 @@ from taylor_verify.scenes.regular_file import read_bytes, regular_file
 from taylor_verify.solvers.formats import mcap, messages
 from taylor_verify.solvers.formats.column import BYTES, COLUMNS, Table, check_lengths
 from taylor_verify.solvers.formats.messages import Topic
-from taylor_verify.solvers.formats.package import needed
+from taylor_verify.solvers.formats.package import needed, unbroken
 
 _METADATA: Final = "metadata.yaml"
 _PACKED: Final = re.compile(r"compression_mode:\s*['\"]?(file|message)", re.IGNORECASE)
 _ROS1: Final = ".bag"
-_BROKEN: Final = (
-    *(ValueError, TypeError, KeyError, IndexError, AttributeError, AssertionError, StopIteration),
-    *(OverflowError, RecursionError, RuntimeError, OSError, EOFError, MemoryError, struct.error),
-)
 
 
 def is_folder(path: Path) -> bool:
@@ -70,24 +65,21 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 def _table(path: Path, part: str) -> Table:
     with needed("rosbags", "rosbags", "rosbag", path):
         from rosbags import rosbag1, rosbag2
-    try:
-        reader: Any = rosbag1.Reader(path) if path.suffix == _ROS1 else rosbag2.Reader(path)
-        with reader:
-            if path.suffix == _ROS1:
+    with unbroken("a rosbag", path):
+        is_ros1 = path.suffix.lower() == _ROS1
+        with rosbag1.Reader(path) if is_ros1 else rosbag2.Reader(path) as reader:
+            if is_ros1:
                 _bound_chunks(reader, path)
             counts = ((one.topic, one.msgtype, one.msgcount) for one in reader.connections)
             topic = messages.chosen([Topic(*one) for one in sorted(counts)], part, path)
             return messages.table(topic, _decoded(reader, topic, path), path)
-    except (rosbag1.ReaderError, rosbag2.ReaderError, *_BROKEN) as error:
-        lines = str(error).splitlines() or [type(error).__name__]
-        raise Refused([f"expected a rosbag, got a fault in it: {cut(lines[0])} @ {path}"]) from None
 
 
 def _decoded(reader: Any, topic: Topic, path: Path) -> Iterator[Any]:
     """The messages of a topic by the time of their recording."""
     from rosbags.typesys import Stores, get_typestore
 
-    is_ros1 = path.suffix == _ROS1
+    is_ros1 = path.suffix.lower() == _ROS1
     types = get_typestore(Stores.ROS1_NOETIC if is_ros1 else Stores.LATEST)
     decode = types.deserialize_ros1 if is_ros1 else types.deserialize_cdr
     own = types.generate_msgdef(topic.kind)[1] if is_ros1 else types.hash_rihs01(topic.kind)
