@@ -375,6 +375,16 @@ def test_what_is_not_clear_is_refused(names: str, fault: str) -> None:
         made(names)
 
 
+@pytest.mark.parametrize(
+    "names", ["y[0] y[1] y[2] y[3]", "X1 X2 X3 X4", "W0 W1 W2 W3", "q[0] q[1] q[2] q[3] q[4]"]
+)
+def test_a_longer_row_of_numbered_columns_is_no_group(names: str) -> None:
+    """The states of a system are not read for the sake of their letter, and are named."""
+    file = made(f"t gyro_x gyro_y gyro_z {names}")
+    assert set(file.groups) == {"omega"}
+    assert file.notes[-1] == "ignored: " + " ".join(f"`{name}`" for name in names.split())
+
+
 def test_our_own_names_come_before_usual_ones() -> None:
     """w1 w2 w3 beside gyro_x gyro_y gyro_z: ours are taken, the others are named."""
     file = made("t gyro_x gyro_y gyro_z w1 w2 w3")

@@ -29,7 +29,7 @@ from taylor_verify.solvers.values import Value
 # Printed by `publish --reference` beside the motion; it is no part of it.
 _SILENT: Final = ("radius",)
 _MOST_NAMED: Final = 8
-_NUMBERED: Final = re.compile(r"[a-z]\d+")
+_NUMBERED: Final = re.compile(r"[a-z]\d")
 _TWO_ATTITUDES: Final = ("quaternion", "attitude")
 
 
@@ -226,6 +226,8 @@ class _Chooser:
             columns.append(self.columns[hits[0][0]])
             units.append(hits[0][1])
         is_own = all(is_ours(column.name) for column in columns) and spelling.keys == ours
+        if not is_own and self._numbered_beside(spelling.keys):
+            return None
         rank = _Rank.OURS if is_own else _Rank.USUAL
         if any(name in self.asked for name in ours):
             rank = _Rank.ASKED
@@ -279,18 +281,21 @@ class _Chooser:
     def _refuse_numbered(self, choice: _Choice) -> None:
         """Refuse w1 w2 w3 that stand in a row of numbered columns: a state vector, perhaps."""
         ours = GROUPS[choice.group]
-        others = [
-            self.columns[k]
-            for k, name in self.names.items()
-            if name.text.strip() not in GROUP_OF
-            and _NUMBERED.fullmatch(name.text.strip())
-            and name.text.strip()[0] == ours[0][0]
-        ]
-        if others and choice.group not in ("time", "attitude"):
+        others = self._numbered_beside(ours)
+        if others:
             pairs = ",".join(f"{name}={name}" for name in ours)
             got = f"{_shown(others)} beside them: are they the components of a state?"
             mend = f"say which: --columns {pairs}"
             self.faults.add(f"{' '.join(ours)} alone", got, self.place, mend)
+
+    def _numbered_beside(self, keys: Sequence[str]) -> list[Column]:
+        """The columns whose names are a letter and a digit as these are, and others than these."""
+        letters = {key[0] for key in keys if _NUMBERED.fullmatch(key)}
+        return [
+            self.columns[k]
+            for k, name in self.names.items()
+            if _NUMBERED.fullmatch(name.key) and name.key[0] in letters and name.key not in keys
+        ]
 
     def _refuse_split_time(self, choice: _Choice) -> None:
         """Refuse seconds whose fractions stand in a column of their own."""
