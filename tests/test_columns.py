@@ -7,6 +7,7 @@ import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from time import perf_counter
 
 import pytest
 from hypothesis import given
@@ -403,6 +404,15 @@ def test_letters_alone_need_company(names: str) -> None:
     assert groups == ({"omega", "linear_velocity"} if "u" in names.split() else {"omega"})
     assert set(made("t qw qx qy qz u v w").groups) == {"quaternion"}
     assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
+
+
+def test_a_name_of_any_length_is_read_at_once() -> None:
+    """A million dots are no million paths, and blanks behind wx do not make it another name."""
+    began = perf_counter()
+    strange = ["." * 10**6 + "wx", "wx" + " " * 10**5 + "b", "wx" * 10**5, "[" * 10**6]
+    file = made(["t", "w1", "w2", "w3", *strange])
+    assert set(file.groups) == {"omega"}
+    assert perf_counter() - began < 5
 
 
 def test_what_is_ignored_is_named_once() -> None:
