@@ -403,6 +403,7 @@ def test_letters_alone_need_company(names: str) -> None:
     groups = set(made(names).groups)
     assert groups == ({"omega", "linear_velocity"} if "u" in names.split() else {"omega"})
     assert set(made("t qw qx qy qz u v w").groups) == {"quaternion"}
+    assert set(made("t qw qx qy qz motor.w1 motor.w2 motor.w3").groups) == {"quaternion"}
     assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
 
 

@@ -304,6 +304,12 @@ def test_a_mapping_that_is_none_is_refused() -> None:
         taylor_verify.check(SCENE, frame(), columns="w1=wx")  # type: ignore[arg-type]
 
 
+def test_columns_of_a_callable_are_refused() -> None:
+    """A callable answers in the order of a state: it has no names."""
+    with pytest.raises(ValueError, match="expected `columns` with a trajectory"):
+        taylor_verify.check(SCENE, lambda problem: None, columns={"w1": "wx"})
+
+
 def test_limits_hold_for_objects() -> None:
     """A table of more columns than a file may have is refused likewise."""
     with pytest.raises(Refused, match="expected at most 1000 columns"):

@@ -59,9 +59,12 @@ def check(
     scenes.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
-        For what is neither a callable nor a trajectory, and for a name that is no rung.
+        For what is neither a callable nor a trajectory, for a name that is no rung, and for ``columns`` of
+        a callable.
     """
     if callable(solve_or_file):
+        if columns:
+            raise ValueError("expected `columns` with a trajectory, got them with a callable")
         from taylor_verify.run import run
         from taylor_verify.solvers.solver import Callback
 

@@ -19,6 +19,8 @@ _BRACKETS: Final = re.compile(r"(?P<name>.*\S)\s*[\[({](?P<inside>[^\[\](){}]*)[
 # An index, a component, or the variable of a function of time.
 _INDEX: Final = re.compile(r"[\d\s,;:]+|[wxyz]{1,2}|")
 _OF_TIME: Final = "t"
+# Names of one letter and a digit say too little behind a path.
+_TERSE: Final = re.compile(r"[a-z]\d")
 _LONGEST_SUFFIX: Final = 3
 # A longer name has no readings: each path in it would be tried.
 _LONGEST: Final = 200
@@ -107,7 +109,11 @@ def _key(text: str) -> str:
 
 
 def _places(name: str, path: str) -> Iterator[tuple[int, int]]:
-    for spelling, component in PLACES.get(_key(name), ()):
+    key = _key(name)
+    # The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
+    if path and _TERSE.fullmatch(key):
+        return
+    for spelling, component in PLACES.get(key, ()):
         if not (path and SPELLINGS[spelling].is_whole):
             yield spelling, component
 
