@@ -7,6 +7,7 @@ import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
+from time import perf_counter
 
 import pytest
 from hypothesis import given
@@ -375,6 +376,16 @@ def test_what_is_not_clear_is_refused(names: str, fault: str) -> None:
         made(names)
 
 
+@pytest.mark.parametrize(
+    "names", ["y[0] y[1] y[2] y[3]", "X1 X2 X3 X4", "W0 W1 W2 W3", "q[0] q[1] q[2] q[3] q[4]"]
+)
+def test_a_longer_row_of_numbered_columns_is_no_group(names: str) -> None:
+    """The states of a system are not read for the sake of their letter, and are named."""
+    file = made(f"t gyro_x gyro_y gyro_z {names}")
+    assert set(file.groups) == {"omega"}
+    assert file.notes[-1] == "ignored: " + " ".join(f"`{name}`" for name in names.split())
+
+
 def test_our_own_names_come_before_usual_ones() -> None:
     """w1 w2 w3 beside gyro_x gyro_y gyro_z: ours are taken, the others are named."""
     file = made("t gyro_x gyro_y gyro_z w1 w2 w3")
@@ -392,7 +403,17 @@ def test_letters_alone_need_company(names: str) -> None:
     groups = set(made(names).groups)
     assert groups == ({"omega", "linear_velocity"} if "u" in names.split() else {"omega"})
     assert set(made("t qw qx qy qz u v w").groups) == {"quaternion"}
+    assert set(made("t qw qx qy qz motor.w1 motor.w2 motor.w3").groups) == {"quaternion"}
     assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
+
+
+def test_a_name_of_any_length_is_read_at_once() -> None:
+    """A million dots are no million paths, and blanks behind wx do not make it another name."""
+    began = perf_counter()
+    strange = ["." * 10**6 + "wx", "wx" + " " * 10**5 + "b", "wx" * 10**5, "[" * 10**6]
+    file = made(["t", "w1", "w2", "w3", *strange])
+    assert set(file.groups) == {"omega"}
+    assert perf_counter() - began < 5
 
 
 def test_what_is_ignored_is_named_once() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 import xarray as xr
 from scipy.optimize import OptimizeResult
@@ -98,13 +99,34 @@ def with_rotation() -> dict[str, Any]:
     return {**found, "attitude": Rotation.from_quat(np.roll(found["attitude"], -1, axis=1))}
 
 
+def arrow() -> Any:
+    return pa.table(frame())
+
+
+def with_states_beside() -> xr.Dataset:
+    """A data set that has t and y, as a result of SciPy's has."""
+    data = data_set(False).rename(time="t")
+    return data.assign(y=(("t", "part"), np.zeros((len(data["t"]), 4))))
+
+
 def structured() -> Any:
     return frame().to_records(index=False)
 
 
 @pytest.mark.parametrize(
     "build",
-    [of_vectors, frame, indexed, levels, data_set, lambda: data_set(False), ode_result, structured],
+    [
+        of_vectors,
+        frame,
+        indexed,
+        levels,
+        data_set,
+        lambda: data_set(False),
+        ode_result,
+        structured,
+        arrow,
+        with_states_beside,
+    ],
 )
 def test_objects_hold_the_same_trajectory(build: Any) -> None:
     """Times and numbers are those of the plain columns, exactly."""
@@ -280,6 +302,12 @@ def test_a_mapping_that_is_none_is_refused() -> None:
     """`columns` is a dict."""
     with pytest.raises(ValueError, match="expected a dict of our names and the file's"):
         taylor_verify.check(SCENE, frame(), columns="w1=wx")  # type: ignore[arg-type]
+
+
+def test_columns_of_a_callable_are_refused() -> None:
+    """A callable answers in the order of a state: it has no names."""
+    with pytest.raises(ValueError, match="expected `columns` with a trajectory"):
+        taylor_verify.check(SCENE, lambda problem: None, columns={"w1": "wx"})
 
 
 def test_limits_hold_for_objects() -> None:

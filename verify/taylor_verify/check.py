@@ -94,9 +94,11 @@ def check(
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
-        `run`, and for ``steps`` that are no step for each answer of a list.
+        `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
     if callable(solve_or_file):
+        if columns:
+            raise ValueError("expected `columns` with a trajectory, got them with a callable")
         from taylor_verify.run import run
         from taylor_verify.solvers.solver import Callback
 

@@ -59,12 +59,12 @@ def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile
     """
     place = f"the {type(held).__name__}"
     gathered = _Gathered(place)
-    if _is_ode_result(held):
-        gathered.take_states(held, scene, in_order=not columns)
-    elif hasattr(held, "data_vars") and hasattr(held, "dims"):
+    if hasattr(held, "data_vars") and hasattr(held, "dims"):
         gathered.take_data_set(held)
     elif hasattr(held, "columns") and hasattr(held, "__getitem__"):
         gathered.take_table(held)
+    elif _is_ode_result(held):
+        gathered.take_states(held, scene, in_order=not columns)
     elif getattr(getattr(held, "dtype", None), "names", None):
         for name in held.dtype.names:
             gathered.take(name, held[name])
@@ -126,7 +126,8 @@ class _Gathered:
 
     def take_table(self, table: Any) -> None:
         """The columns of a table, and its index where that has a name of its own."""
-        names = list(table.columns)
+        # The columns of an Arrow table are the arrays themselves.
+        names = list(getattr(table, "column_names", table.columns))
         written = [_written(name) for name in names]
         for name in sorted({n for n in written if written.count(n) > 1}):
             self.faults.add("every column once", f"`{cut(name)}` again", self.place)

@@ -19,7 +19,11 @@ _BRACKETS: Final = re.compile(r"(?P<name>.*\S)\s*[\[({](?P<inside>[^\[\](){}]*)[
 # An index, a component, or the variable of a function of time.
 _INDEX: Final = re.compile(r"[\d\s,;:]+|[wxyz]{1,2}|")
 _OF_TIME: Final = "t"
+# Names of one letter and a digit say too little behind a path.
+_TERSE: Final = re.compile(r"[a-z]\d")
 _LONGEST_SUFFIX: Final = 3
+# A longer name has no readings: each path in it would be tried.
+_LONGEST: Final = 200
 
 
 @dataclass(frozen=True)
@@ -44,9 +48,10 @@ class Name:
     @cached_property
     def _parts(self) -> tuple[str, str | None]:
         """The name in plain letters, and the text of brackets behind it that are no index."""
-        found = _BRACKETS.fullmatch(plain(self.text))
+        name = plain(self.text[:_LONGEST])
+        found = _BRACKETS.fullmatch(name)
         if found is None or _INDEX.fullmatch(found["inside"].strip()):
-            return plain(self.text), None
+            return name, None
         inside = found["inside"].strip()
         return found["name"], None if inside == _OF_TIME else inside
 
@@ -71,6 +76,8 @@ class Name:
     @cached_property
     def readings(self) -> tuple[Reading, ...]:
         """Every reading; of each spelling the one with the shortest path, and without a suffix."""
+        if len(self.text) > _LONGEST:
+            return ()
         found: dict[tuple[int, int], Reading] = {}
         matched: set[str] = set()
         for path, name in _tails(self._parts[0]):
@@ -102,7 +109,11 @@ def _key(text: str) -> str:
 
 
 def _places(name: str, path: str) -> Iterator[tuple[int, int]]:
-    for spelling, component in PLACES.get(_key(name), ()):
+    key = _key(name)
+    # The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
+    if path and _TERSE.fullmatch(key):
+        return
+    for spelling, component in PLACES.get(key, ()):
         if not (path and SPELLINGS[spelling].is_whole):
             yield spelling, component
 

@@ -8,38 +8,33 @@ guessed. All other columns are ignored, and named.
 from __future__ import annotations
 
 import difflib
-import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import IntEnum
 from fractions import Fraction
-from functools import cached_property
 from typing import Final
 
 from taylor_verify.scenes.faults import Faults, cut
-from taylor_verify.solvers.columns.names import GROUP_OF, GROUPS, SPELLINGS, Spelling
+from taylor_verify.solvers.columns.candidates import Candidates
+from taylor_verify.solvers.columns.choice import (
+    MOST_NAMED,
+    Choice,
+    Rank,
+    scalar_requests,
+    shown_names,
+)
+from taylor_verify.solvers.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.columns.readings import Name, is_ours
 from taylor_verify.solvers.columns.request import Request, asked_columns
 from taylor_verify.solvers.columns.scaled import Scaled
-from taylor_verify.solvers.columns.units import OWN, Unit, known_units
+from taylor_verify.solvers.columns.units import OWN, known_units
 from taylor_verify.solvers.file_step import STEP_COLUMNS
 from taylor_verify.solvers.formats.column import Column
 from taylor_verify.solvers.values import Value
 
 # Printed by `publish --reference` beside the motion, or a statement of the step: no part of the motion.
 _SILENT: Final = ("radius", *STEP_COLUMNS)
-_MOST_NAMED: Final = 8
-_NUMBERED: Final = re.compile(r"[a-z]\d+")
 _TWO_ATTITUDES: Final = ("quaternion", "attitude")
-
-
-class _Rank(IntEnum):
-    """The precedence of a choice, the strongest first."""
-
-    ASKED = 0
-    OURS = 1
-    USUAL = 2
 
 
 @dataclass(frozen=True)
@@ -63,39 +58,11 @@ class Selection:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class _Choice:
-    """The columns of one group, in our order, each with its unit (None: not known)."""
-
-    group: str
-    columns: tuple[Column, ...]
-    units: tuple[Unit | None, ...]
-    rank: _Rank
-    remark: str = ""
-    doubt: str = ""
-
-    @property
-    def shown(self) -> str:
-        return _shown(self.columns)
-
-    @property
-    def note(self) -> str:
-        """The sentence about what was taken; empty for our own names in the scene's units."""
-        words = dict.fromkeys(unit.words for unit in self.units if unit and unit.words)
-        is_plain = all(is_ours(column.name) for column in self.columns)
-        if is_plain and not words and self.rank is not _Rank.ASKED:
-            return ""
-        said = [self.remark] if self.remark and not is_plain else []
-        said += [f"in {' and in '.join(words)}"] if words else []
-        names = " ".join(GROUPS[self.group])
-        return f"{self.shown} taken as {names}{''.join(f', {part}' for part in said)}"
-
-
 def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
     """Return the columns that are ours, and record what is wrong with them as faults."""
     before = len(faults.lines)
     asked = asked_columns(wanted, columns, place, faults)
-    chooser = _Chooser(columns, asked, place, faults)
+    chooser = _Chooser(Candidates(columns, asked), place, faults)
     if len(faults.lines) > before:
         # The rest of a group that was asked for in vain is no second fault.
         chooser.doubted |= {GROUP_OF.get(name, name) for name, _ in wanted}
@@ -113,16 +80,15 @@ def select(columns: Sequence[Column], wanted: Request, place: str, faults: Fault
 
 @dataclass
 class _Chooser:
-    columns: Sequence[Column]
-    asked: Mapping[str, Column]
+    candidates: Candidates
     place: str
     faults: Faults
     doubted: set[str] = field(default_factory=set)
     half: list[Column] = field(default_factory=list)
 
-    def choices(self) -> dict[str, _Choice]:
+    def choices(self) -> dict[str, Choice]:
         """The choice of each group that the file has; faults of what is no clear choice."""
-        chosen: dict[str, _Choice] = {}
+        chosen: dict[str, Choice] = {}
         for group in GROUPS:
             choice = self._choice(group, chosen)
             if choice is not None:
@@ -136,33 +102,25 @@ class _Chooser:
                 self._refuse_incomplete(group, chosen)
         return chosen
 
-    @cached_property
-    def names(self) -> dict[int, Name]:
-        """The names of all columns that nobody asked for, by number."""
-        used = {id(column) for column in self.asked.values()}
-        return {k: Name(c.name) for k, c in enumerate(self.columns) if id(c) not in used}
+    @property
+    def columns(self) -> Sequence[Column]:
+        """All columns of the file."""
+        return self.candidates.columns
 
-    @cached_property
-    def cells(self) -> dict[tuple[int, str], dict[int, list[tuple[int, Unit | None]]]]:
-        """By spelling and path: of each component the columns that may be it."""
-        found: dict[tuple[int, str], dict[int, list[tuple[int, Unit | None]]]] = defaultdict(
-            lambda: defaultdict(list)
-        )
-        for k, name in self.names.items():
-            for reading in name.readings:
-                hits = found[reading.spelling, reading.path][reading.component]
-                hits.append((k, reading.unit))
-        return found
+    @property
+    def asked(self) -> Mapping[str, Column]:
+        """The columns that somebody asked for, by our names."""
+        return self.candidates.asked
 
     # One group.
 
-    def _choice(self, group: str, chosen: Mapping[str, _Choice]) -> _Choice | None:
+    def _choice(self, group: str, chosen: Mapping[str, Choice]) -> Choice | None:
         asked = [name for name in GROUPS[group] if name in self.asked]
         if len(asked) == len(GROUPS[group]):
             return self._as_asked(group)
-        every = list(self._candidates(group, chosen))
+        every = list(self.candidates.of(group, chosen))
         clear = [choice for choice in every if not choice.doubt]
-        best = min((choice.rank for choice in clear), default=_Rank.USUAL)
+        best = min((choice.rank for choice in clear), default=Rank.USUAL)
         clear = [choice for choice in clear if choice.rank == best]
         if len(clear) == 1:
             return clear[0]
@@ -172,7 +130,7 @@ class _Chooser:
         elif every:
             doubted = every[0]
             got = f"{doubted.shown}: {doubted.doubt}"
-            self._doubt(group, " ".join(GROUPS[group]), got, _either(doubted))
+            self._doubt(group, " ".join(GROUPS[group]), got, scalar_requests(doubted))
         return None
 
     def _doubt(self, group: str, expected: str, got: str, request: str = "") -> None:
@@ -182,59 +140,15 @@ class _Chooser:
         mend = f"say which: --columns {request or names}"
         self.faults.add(expected, got, self.place, mend)
 
-    def _as_asked(self, group: str) -> _Choice:
+    def _as_asked(self, group: str) -> Choice:
         columns = tuple(self.asked[name] for name in GROUPS[group])
         units = tuple(Name(column.name).unit(group) or OWN for column in columns)
         remark = next((s.remark for s in SPELLINGS if s.keys == GROUPS[group]), "")
-        return _Choice(group, columns, units, _Rank.ASKED, remark)
-
-    def _candidates(self, group: str, chosen: Mapping[str, _Choice]) -> Iterator[_Choice]:
-        """Every spelling all of whose names are there; each set of columns once."""
-        seen: dict[tuple[int, ...], _Choice] = {}
-        for (number, _), cells in self.cells.items():
-            spelling = SPELLINGS[number]
-            if spelling.group == group and self._is_possible(spelling, chosen):
-                choice = self._whole(spelling, cells)
-                if choice is not None:
-                    seen.setdefault(tuple(map(id, choice.columns)), choice)
-        yield from seen.values()
-
-    def _is_possible(self, spelling: Spelling, chosen: Mapping[str, _Choice]) -> bool:
-        keys = {name.key for name in self.names.values()}
-        return (not spelling.beside or spelling.beside in chosen) and not spelling.unless & keys
-
-    def _whole(
-        self, spelling: Spelling, cells: Mapping[int, Sequence[tuple[int, Unit | None]]]
-    ) -> _Choice | None:
-        ours = GROUPS[spelling.group]
-        columns: list[Column] = []
-        units: list[Unit | None] = []
-        doubt = spelling.doubt
-        for component, name in enumerate(ours):
-            if name in self.asked:
-                column = self.asked[name]
-                columns.append(column)
-                units.append(Name(column.name).unit(spelling.group) or OWN)
-                continue
-            hits = cells.get(component, ())
-            exact = [hit for hit in hits if self.columns[hit[0]].name.strip() == name]
-            hits = exact or hits
-            if not hits:
-                return None
-            if len(hits) > 1:
-                both = _shown([self.columns[k] for k, _ in hits])
-                doubt = doubt or f"{both} are alike"
-            columns.append(self.columns[hits[0][0]])
-            units.append(hits[0][1])
-        is_own = all(is_ours(column.name) for column in columns) and spelling.keys == ours
-        rank = _Rank.OURS if is_own else _Rank.USUAL
-        if any(name in self.asked for name in ours):
-            rank = _Rank.ASKED
-        return _Choice(spelling.group, tuple(columns), tuple(units), rank, spelling.remark, doubt)
+        return Choice(group, columns, units, Rank.ASKED, remark)
 
     # All groups.
 
-    def _drop_one_attitude(self, chosen: dict[str, _Choice]) -> None:
+    def _drop_one_attitude(self, chosen: dict[str, Choice]) -> None:
         both = [chosen[group] for group in _TWO_ATTITUDES if group in chosen]
         if len(both) < len(_TWO_ATTITUDES):
             return
@@ -243,13 +157,13 @@ class _Chooser:
             del chosen[weaker.group]
             return
         got = " and ".join(choice.shown for choice in both)
-        if weaker.rank is _Rank.USUAL:
+        if weaker.rank is Rank.USUAL:
             mend = "say which: --columns q0=NAME,... or r11=NAME,..."
         else:
             got, mend = "q0 q1 q2 q3 and r11 ... r33", "keep one of them"
         self.faults.add("the attitude once", got, self.place, mend)
 
-    def _refuse_shared(self, chosen: Mapping[str, _Choice]) -> None:
+    def _refuse_shared(self, chosen: Mapping[str, Choice]) -> None:
         """Refuse a column that two groups would take."""
         groups: dict[int, list[str]] = defaultdict(list)
         for choice in chosen.values():
@@ -261,7 +175,7 @@ class _Chooser:
             ours = " or ".join(f"{GROUPS[n][0]}=NAME,..." for n in names)
             self.faults.add("each column once", got, self.place, f"say which: --columns {ours}")
 
-    def _refuse_odd(self, choice: _Choice) -> None:
+    def _refuse_odd(self, choice: Choice) -> None:
         """Refuse unknown units, numbered states beside our own names, and halves of a time."""
         for column, unit in zip(choice.columns, choice.units, strict=True):
             if unit is None:
@@ -272,28 +186,22 @@ class _Chooser:
                 expected = f"a unit of {known_units(choice.group)}"
                 place = f"{self.place}, column {cut(column.name)}"
                 self.faults.add(expected, f"`{cut(Name(column.name).unit_text)}`", place, mend)
-        if choice.rank is _Rank.OURS:
+        if choice.rank is Rank.OURS:
             self._refuse_numbered(choice)
-        if choice.group == "time" and choice.rank is not _Rank.ASKED:
+        if choice.group == "time" and choice.rank is not Rank.ASKED:
             self._refuse_split_time(choice)
 
-    def _refuse_numbered(self, choice: _Choice) -> None:
+    def _refuse_numbered(self, choice: Choice) -> None:
         """Refuse w1 w2 w3 that stand in a row of numbered columns: a state vector, perhaps."""
         ours = GROUPS[choice.group]
-        others = [
-            self.columns[k]
-            for k, name in self.names.items()
-            if name.text.strip() not in GROUP_OF
-            and _NUMBERED.fullmatch(name.text.strip())
-            and name.text.strip()[0] == ours[0][0]
-        ]
-        if others and choice.group not in ("time", "attitude"):
+        others = self.candidates.numbered_beside(ours)
+        if others:
             pairs = ",".join(f"{name}={name}" for name in ours)
-            got = f"{_shown(others)} beside them: are they the components of a state?"
+            got = f"{shown_names(others)} beside them: are they the components of a state?"
             mend = f"say which: --columns {pairs}"
             self.faults.add(f"{' '.join(ours)} alone", got, self.place, mend)
 
-    def _refuse_split_time(self, choice: _Choice) -> None:
+    def _refuse_split_time(self, choice: Choice) -> None:
         """Refuse seconds whose fractions stand in a column of their own."""
         key = Name(choice.columns[0].name).key.removesuffix("s").removesuffix("sec")
         parts = {
@@ -303,22 +211,22 @@ class _Chooser:
             f"{key}nanosecs",
             f"{key}nanoseconds",
         }
-        for k, name in self.names.items():
+        for k, name in self.candidates.names.items():
             if name.key in parts and self.columns[k] is not choice.columns[0]:
                 got = f"{choice.shown} `{cut(self.columns[k].name)}`"
                 mend = "write their sum into one column, t"
                 self.faults.add("one column of times", got, self.place, mend)
 
-    def _refuse_incomplete(self, group: str, chosen: Mapping[str, _Choice]) -> None:
+    def _refuse_incomplete(self, group: str, chosen: Mapping[str, Choice]) -> None:
         used = {id(column) for choice in chosen.values() for column in choice.columns}
         ours = GROUPS[group]
-        own = {c.name.strip() for k, c in enumerate(self.columns) if k in self.names}
+        own = {c.name.strip() for k, c in enumerate(self.columns) if k in self.candidates.names}
         own -= {c.name.strip() for c in self.columns if id(c) in used}
         present = own | set(self.asked)
         missing = [name for name in ours if name not in present]
         if group == "time":
-            free = [self.columns[k] for k in self.names][:_MOST_NAMED]
-            named = f"; the columns are {_shown(free)}" if free else ""
+            free = [self.columns[k] for k in self.candidates.names][:MOST_NAMED]
+            named = f"; the columns are {shown_names(free)}" if free else ""
             mend = self._meant(missing, used) or f"name it: --columns t=NAME{named}"
             self.faults.add("a column `t` of times", "none", self.place, mend)
         elif len(missing) < len(ours):
@@ -328,7 +236,9 @@ class _Chooser:
 
     def _meant(self, missing: Sequence[str], used: set[int]) -> str:
         """A mend that names the columns that may be the missing ones."""
-        free = {k: name for k, name in self.names.items() if id(self.columns[k]) not in used}
+        free = {
+            k: name for k, name in self.candidates.names.items() if id(self.columns[k]) not in used
+        }
         pairs = []
         for ours in missing:
             group = GROUP_OF[ours]
@@ -354,42 +264,22 @@ class _Chooser:
 
     # What is not taken.
 
-    def left_out(self, chosen: Mapping[str, _Choice]) -> Iterator[str]:
+    def left_out(self, chosen: Mapping[str, Choice]) -> Iterator[str]:
         """Sentences about groups of which a part is there, and about columns that are ignored."""
         used = {id(column) for choice in chosen.values() for column in choice.columns}
-        for (number, _), cells in self.cells.items():
+        for (number, _), cells in self.candidates.cells.items():
             spelling = SPELLINGS[number]
             if spelling.group in chosen or spelling.is_whole or len(cells) < 2:
                 continue
             lacking = [n for i, n in enumerate(GROUPS[spelling.group]) if i not in cells]
             present = [self.columns[hits[0][0]] for _, hits in sorted(cells.items())]
             if lacking and not any(id(c) in used or is_ours(c.name) for c in present):
-                yield f"{_shown(present)} not taken: nothing in the file is {' '.join(lacking)}"
+                yield f"{shown_names(present)} not taken: nothing in the file is {' '.join(lacking)}"
         ignored = [
             column
             for column in self.columns
             if id(column) not in used and column.name not in _SILENT
         ]
         if ignored:
-            named, more = _shown(ignored[:_MOST_NAMED]), len(ignored) - _MOST_NAMED
+            named, more = shown_names(ignored[:MOST_NAMED]), len(ignored) - MOST_NAMED
             yield f"ignored: {named}{f' and {more} more' if more > 0 else ''}"
-
-
-def _either(choice: _Choice) -> str:
-    """The requests for a scalar that is the first of four columns, and for one that is the last."""
-    names = [column.name.strip() for column in choice.columns]
-    if choice.group != "quaternion":
-        return ""
-    first, last = (
-        ",".join(
-            f"{ours}={cut(name)}" for ours, name in zip(GROUPS[choice.group], order, strict=True)
-        )
-        for order in (names, [names[-1], *names[:-1]])
-    )
-    return f"{first} for the first, {last} for the last"
-
-
-def _shown(columns: Sequence[Column]) -> str:
-    if len(columns) > _MOST_NAMED:
-        return f"`{cut(columns[0].name)}` ... `{cut(columns[-1].name)}`"
-    return " ".join(f"`{cut(column.name)}`" for column in columns)
