@@ -44,7 +44,7 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
 	@$(BIN)/python -m pytest -m browser tests/site
 
-bench: $(INSTALLED)  ## Time the exact solutions, in ratios within one run
+bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one run
 	@$(BIN)/python tests/bench.py
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md

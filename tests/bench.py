@@ -1,4 +1,4 @@
-"""What the exact solutions cost, and the suite around a propagation: `make bench`.
+"""What the exact solutions cost, the suite around a propagation, and `check` of long files: `make bench`.
 
 Times are those of one run, and ratios are within it.
 
@@ -20,6 +20,7 @@ from importlib.metadata import version
 from pathlib import Path
 from unittest.mock import patch
 
+from bench_check import judging
 from mpmath import mpf
 from two_runs import two_runs
 
@@ -318,6 +319,8 @@ def main() -> None:
         for name, track in PROPAGATED.items():
             for periods in (None, 1000):
                 around_the_integrator(name, track, periods)
+
+    judging(lambda each, rounds: [spent.best for spent in interleaved(each, rounds)], line)
 
     print(f"\nSeconds of all derivatives by start and body, {SENSITIVE_TIMES} times,", end=" ")
     print(f"{SENSITIVE_DIGITS} digits; as a multiple of one motion.")

@@ -120,7 +120,7 @@ def to_bytes(judgements: Sequence[Judgement]) -> bytes:
     """Return the content of a file: the digest of the rest, then JSON."""
     rows = [_Stored(j.verdicts, j.record, dict(j.costs), j.causes) for j in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
-    text = json.dumps(to_builtins(rows)).encode()
+    text = json.dumps(to_builtins(rows, enc_hook=tuple)).encode()
     return _digest(text).encode() + b"\n" + text
 
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from taylor_verify.records.doubles import Doubles
+
 
 @dataclass(frozen=True)
 class GateRecord:
@@ -22,6 +24,9 @@ class GateRecord:
     attainable: Sequence[float]
     truth_radius: float
     shifts: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        _pack(self, "errors", "attainable", "shifts")
 
     def document(self) -> dict[str, Any]:
         """The gate as JSON holds it."""
@@ -50,7 +55,18 @@ class Record:
     times: Sequence[float]
     gates: tuple[GateRecord, ...]
 
+    def __post_init__(self) -> None:
+        _pack(self, "times")
+
     def document(self) -> dict[str, Any]:
         """The record as JSON holds it."""
         gates = [gate.document() for gate in self.gates]
         return {**vars(self), "times": tuple(self.times), "gates": gates}
+
+
+def _pack(record: GateRecord | Record, *fields: str) -> None:
+    """Hold numbers of a record in eight bytes each, in whatever sequence they came."""
+    for field in fields:
+        numbers = getattr(record, field)
+        if not isinstance(numbers, Doubles):
+            object.__setattr__(record, field, Doubles(numbers))
