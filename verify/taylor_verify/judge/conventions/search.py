@@ -98,20 +98,18 @@ class Conventions:
         return sum(finding.is_certain for finding in self.findings), len(self.findings)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an answer may run away
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     """The conventions of a file of groups that the scene can be compared with.
 
     Raises Unsettled where there is no exact motion, and NotRepresentable where the rung cannot hold
     the scene.
     """
-    with np.errstate(
-        over="ignore", invalid="ignore"
-    ):  # an answer that runs away has no conventions
-        searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
-        if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
-            return Conventions((), World(scene), {})
-        # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
-        return max((search.conventions() for search in searches), key=lambda found: found._rank)
+    searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
+    if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
+        return Conventions((), World(scene), {})
+    # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
+    return max((search.conventions() for search in searches), key=lambda found: found._rank)
 
 
 def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
