@@ -52,7 +52,9 @@ def names(path: Path, scene: str | Scene, columns: Columns) -> set[str]:
 
 def sentences(scene: Scene, columns: Columns) -> dict[str, str]:
     """The names and sentences of the causes of an answer whose states failed, whatever their errors."""
-    return {cause.name: cause.sentence for cause in likely_causes(material(scene, columns), scene)}
+    with np.errstate(all="ignore"):
+        causes = likely_causes(material(scene, columns), scene)
+    return {cause.name: cause.sentence for cause in causes}
 
 
 # Wrong equations of the states.

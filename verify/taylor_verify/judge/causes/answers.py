@@ -55,8 +55,9 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
 def _causes(material: Callable[[], Material | None], scene: Scene) -> tuple[LikelyCause, ...]:
     """The causes by float64; none where its range or a decomposition does not suffice."""
     try:
-        made = material()
-        return () if made is None or not made.failed else likely_causes(made, scene)
+        with np.errstate(all="ignore"):
+            made = material()
+            return () if made is None or not made.failed else likely_causes(made, scene)
     except (OverflowError, np.linalg.LinAlgError):
         return ()
 

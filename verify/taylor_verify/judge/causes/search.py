@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final
 
-import numpy as np
-
 from taylor_verify.judge.causes.another_scene import another_scene
 from taylor_verify.judge.causes.candidate import Candidate, causes_of
 from taylor_verify.judge.causes.damping import damping
@@ -46,16 +44,15 @@ OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precisio
 
 def likely_causes(material: Material, scene: Scene) -> tuple[LikelyCause, ...]:
     """Return the causes that explain nearly all of an error, quantity by quantity; none by chance."""
-    with np.errstate(all="ignore"):  # an answer that runs away has no cause here
-        attitude, turned = attitude_reading(material)
-        omega, read, tried = _read(turned)
-        for hypothesis in OTHERS:
-            tried += [one for one in hypothesis(read) if one.quantity in material.failed]
-        others = list(another_scene(material, scene)) if material.failed else []
-        if any(one.is_sure for one in others):
-            omega, attitude, tried = [], [], []
-        every = ([*omega, *attitude], tried, others)
-        return tuple(cause for candidates in every for cause in causes_of(candidates))
+    attitude, turned = attitude_reading(material)
+    omega, read, tried = _read(turned)
+    for hypothesis in OTHERS:
+        tried += [one for one in hypothesis(read) if one.quantity in material.failed]
+    others = list(another_scene(material, scene)) if material.failed else []
+    if any(one.is_sure for one in others):
+        omega, attitude, tried = [], [], []
+    every = ([*omega, *attitude], tried, others)
+    return tuple(cause for candidates in every for cause in causes_of(candidates))
 
 
 def _read(material: Material) -> tuple[list[Candidate], Material, list[Candidate]]:

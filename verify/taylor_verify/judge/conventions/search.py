@@ -98,6 +98,7 @@ class Conventions:
         return sum(finding.is_certain for finding in self.findings), len(self.findings)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an answer may run away
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     """The conventions of a file of groups that the scene can be compared with.
 
