@@ -28,8 +28,8 @@ def check(options: argparse.Namespace) -> Answer:
     asked = outputs(options)
     with working(f"check {options.file}"):
         judged = judge_file(file, scene, rung(name), options.accept_conventions, options.partial)
-    text = partial(check_text, judged, scene.name, name)
     to_ci = tell(asked, judged, exit_status(judged.verdicts))
+    text = partial(check_text, judged, scene.name, name, to_ci.status, options.explain)
     document = {**judged.document(), **to_ci.document}
     return Answer(to_ci.status, document, text, to_ci.messages)
 

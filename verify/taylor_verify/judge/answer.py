@@ -37,6 +37,7 @@ from taylor_verify.judge.inputs import input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
+from taylor_verify.judge.storage import with_file_kinds
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
@@ -149,8 +150,10 @@ def judge_file(
     causes = gyroscopic_cause(compared, scene, rung, found) if "omega" in failed else ()
     if failed:
         notes += (*cut_off(file, rung), *single_precision(file, rung))
+    left = [finding for finding in found.findings if not accept_conventions]
+    verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     return FileJudgement(
-        judged.verdicts, judged.record, file, found.findings, accept_conventions, notes, causes
+        verdicts, judged.record, file, found.findings, accept_conventions, notes, causes
     )
 
 
@@ -258,16 +261,19 @@ def _side(answer: _Answer, rung: Rung, name: str) -> _Side:
 def _united(sides: Sequence[_Side], file: TrajectoryFile, start: float) -> Judgement:
     gates = [gate for side in sides for gate in side.gates]
     names = list(dict.fromkeys(gate.verdict.quantity for gate in gates))
-    verdicts = [_verdict([g for g in gates if g.verdict.quantity == name], file) for name in names]
+    verdicts = [
+        _verdict([g for g in gates if g.verdict.quantity == name], file, start) for name in names
+    ]
     initial = initial_verdict(gates, start)
     records = [side.judgement.record for side in sides if side.judgement.record is not None]
     first = (initial,) if initial is not None else ()
     return Judgement((*first, *verdicts), merged(records, gates))
 
 
-def _verdict(sides: Sequence[Graded], file: TrajectoryFile) -> Verdict:
+def _verdict(sides: Sequence[Graded], file: TrajectoryFile, start: float) -> Verdict:
     is_sound = all(np.all(np.isfinite(side.errors)) for side in sides)
-    return verdict_of(sides, "" if is_sound else _flaw(file, sides[0].verdict.quantity))
+    flaw = "" if is_sound else _flaw(file, sides[0].verdict.quantity)
+    return verdict_of(sides, flaw, start)
 
 
 def _flaw(file: TrajectoryFile, quantity: str) -> str:

@@ -68,21 +68,25 @@ def drifts(
 # What follows is in MPFR's numbers.
 
 
-def _errors(invariant: Invariant, answer: Motion, drift: Column) -> Errors:
+def _errors(invariant: Invariant, answer: Motion, change: Column) -> Errors:
     scale = invariant.scale(answer)
+    drift = _sizes(change)
     values, scales = to_mpf(drift / scale), to_mpf(np.array([scale], dtype=object))
+    last = to_mpf(change[-1:] / scale)[0] if change.ndim == 1 else None
     radius = np.array([mp.zero] * len(drift), dtype=object)
     unit = f"scale of {invariant.name}"
-    return Errors(invariant.name, unit, values, radius, {invariant.name: scales[0]})
+    return Errors(invariant.name, unit, values, radius, {invariant.name: scales[0]}, change=last)
 
 
 def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
-    return _sizes(invariant.value(answer) - invariant.value(start)[0])
+    change: Column = invariant.value(answer) - invariant.value(start)[0]
+    return change
 
 
 def _balance(invariant: Invariant, answer: Motion, ends: Motion) -> Column:
     increments = invariant.value(answer) - invariant.value(ends)
-    return _sizes(np.cumsum(increments, axis=0))
+    change: Column = np.cumsum(increments, axis=0)
+    return change
 
 
 def _sizes(values: Column) -> Column:

@@ -17,6 +17,7 @@ from taylor_verify.judge.arithmetic import MORE_DIGITS, truth_digits, working_bi
 from taylor_verify.judge.attainable import Floats, Floor, floor
 from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, ERRORS, TRUTH, Costs
+from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.drifts import drifts
 from taylor_verify.judge.errors import Errors, state_errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
@@ -90,22 +91,12 @@ class Judgement:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [
-                f"{v.scene} {v.rung} {v.quantity}: {v.verdict}{_size(v)}: {v.because}"
-                for v in others
-            ]
+            lines = [f"{v.scene} {v.rung}: {v.verdict}: {v.sentence}" for v in others]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 
 def _short(value: float | None) -> str:
     return "" if value is None else f"{value:.3g}"
-
-
-def _size(verdict: Verdict) -> str:
-    """The error beside its bound, where both are known."""
-    if verdict.max is None or verdict.bound is None:
-        return ""
-    return f", error {verdict.max:.3g} at t = {verdict.at:g}, allowed {verdict.bound:.3g}"
 
 
 @dataclass(frozen=True)
@@ -200,7 +191,14 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
             ]
             gated += _lengths(run, base)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
-    return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
+    verdicts = tuple(_diagnosed(run, verdict, gate) for verdict, gate in gated)
+    return Judgement(verdicts, record, costs=costs.seconds)
+
+
+def _diagnosed(run: _Run, verdict: Verdict, gate: GateRecord) -> Verdict:
+    clock = run.problem.given.clock
+    times, errors = np.array(_floats(clock.instants)), np.array(gate.errors)
+    return diagnosed(verdict, times, float(clock.start), errors, np.array(gate.attainable))
 
 
 def _scale(errors: Errors) -> Any:
@@ -280,6 +278,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         attainable=float(attainable[worst]),
         ratio=finding.ratio,
         ratio_at=float(instants[finding.ratio_at]),
+        change=None if errors.change is None else float(errors.change),
     )
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
@@ -72,12 +73,13 @@ def _graded(
     return Graded.of(verdict, times, np.array(gate.errors), both, terms)
 
 
-def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
+def verdict_of(sides: Sequence[Graded], flaw: str, start: float) -> Verdict:
     """The verdict of one gate: that of the direction of time which is graver, or else nearer to it.
 
-    ``flaw`` says where the data have no finite number, if there is such a place.
+    ``flaw`` says where the data have no finite number, if there is such a place; ``start`` is the time of
+    the initial state.
     """
-    return min((_verdict(side, flaw) for side in sides), key=_gravity)
+    return min((_verdict(side, flaw, start) for side in sides), key=_gravity)
 
 
 def _gravity(verdict: Verdict) -> tuple[int, float]:
@@ -86,7 +88,7 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
     return GRAVITY.index(verdict.verdict), -told
 
 
-def _verdict(side: Graded, flaw: str) -> Verdict:
+def _verdict(side: Graded, flaw: str, start: float) -> Verdict:
     gate, times, attainable = side.verdict, side.times, side.attainable
     column = np.array([mpf(float(e)) for e in side.errors], dtype=object)
     widths = np.array([mp.inf if side.is_doubtful else mp.zero] * len(times), dtype=object)
@@ -94,7 +96,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
     errors = Errors(gate.quantity, gate.unit, column, widths, {}, is_state)
     finding = judge(errors, attainable, side.terms)
     worst = finding.worst
-    return replace(
+    verdict = replace(
         gate,
         verdict=finding.status,
         max=float(side.errors[worst]),
@@ -105,6 +107,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
         ratio=finding.ratio,
         ratio_at=float(times[finding.ratio_at]),
     )
+    return diagnosed(verdict, times, start, side.errors, attainable)
 
 
 def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:
