@@ -151,7 +151,9 @@ def _failed(demand: Demand, against: str) -> list[str]:
     verdict = demand.verdict
     status = Status.FAIL if demand.tolerance is not None else verdict.verdict
     if verdict.max is None:
-        lines = [f"{verdict.quantity}: {status}, {verdict.outcome}"]
+        lines = [f"{verdict.quantity}: {status}, {verdict.outcome}; {_said(verdict)}"]
+    elif demand.tolerance is None:
+        lines = [f"{verdict.quantity}: {status}; {_said(verdict)}"]
     else:
         lines = [
             f"{verdict.quantity}: {status}, the error reaches {_short(verdict.max)}{_unit(verdict)} "
@@ -160,6 +162,11 @@ def _failed(demand: Demand, against: str) -> list[str]:
         ]
     lines += [f"    {name:<8} {text}" for name, text in _reasons(demand, against) if text]
     return lines
+
+
+def _said(verdict: Verdict) -> str:
+    """Return the sentence of a verdict without its quantity."""
+    return verdict.sentence.removeprefix(f"{verdict.quantity}: ")
 
 
 def _reasons(demand: Demand, against: str) -> Iterator[tuple[str, str]]:
@@ -177,7 +184,6 @@ def _reasons(demand: Demand, against: str) -> Iterator[tuple[str, str]]:
     else:
         if verdict.bound is not None:
             yield "bound", f"{_short(verdict.bound)}{_unit(verdict)}{_times_attainable(verdict)}"
-        yield "because", verdict.because
         yield "mend", _MEND.get(verdict.verdict, "")
 
 

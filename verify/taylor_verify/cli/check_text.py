@@ -51,13 +51,12 @@ def check_text(
     for note in judged.notes:
         print_line(console, Text("note", "yellow"), f": {note}")
     print_line(console)
-    compared = [verdict for verdict in judged.verdicts if verdict.is_compared]
-    if compared:
-        print_numbers(console, compared)
+    if any(verdict.is_compared for verdict in judged.verdicts):
+        print_numbers(console, judged.verdicts)
         print_line(console)
-    if explained and compared:
-        print_arithmetic(console, compared)
-        print_line(console)
+        if explained:
+            print_arithmetic(console, judged.verdicts)
+            print_line(console)
     print_end(console, judged.verdicts, counts(judged.verdicts), status, explained)
     return text_of(console)
 
@@ -90,7 +89,7 @@ def _print_conventions(console: Console, judged: FileJudgement) -> None:
 
 
 def print_numbers(console: Console, verdicts: Sequence[Verdict]) -> None:
-    """Print the numbers of compared quantities, and what stands in the columns."""
+    """Print the numbers of all quantities, and what stands in the columns."""
     print_table(console, _HEADINGS, [_cells(verdict) for verdict in verdicts], keys=1)
     print_line(console)
     allowed = (
@@ -101,5 +100,6 @@ def print_numbers(console: Console, verdicts: Sequence[Verdict]) -> None:
 
 def _cells(v: Verdict) -> list[str | Text]:
     since = "" if v.since is None else figure(v.since)
-    figures = [figure(number) for number in (v.max, v.at, v.bound, v.ratio)]
+    numbers = (v.max, v.at, v.bound, v.ratio)
+    figures = [figure(number) if v.is_compared else "" for number in numbers]
     return [v.quantity, status_text(v.verdict.value), *figures, since, v.unit]

@@ -19,6 +19,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
+Places = np.ndarray[Any, np.dtype[np.bool_]]
 
 _OF_A_SHIFT: Final = {
     Kind.CONSTANT.value: ErrorKind.TIME_SHIFT,
@@ -28,10 +29,11 @@ _OF_A_SHIFT: Final = {
 # A constant error stays within this part of its largest value, over so many samples at least.
 _CONSTANT: Final = 0.9
 _FEWEST: Final = 5
-# A bounded error comes as near as this to its largest one, in this first part of the time.
-_BOUNDED: Final = 0.7
-_FIRST_PART: Final = 0.1
-_FEWEST_FIRST: Final = 5
+# The root mean squares of a bounded error over the quarters of the time are alike to this part, which
+# leaves room for noise, and for a growth as t^0.15. So many samples in each at least.
+_BOUNDED: Final = 0.75
+_QUARTERS: Final = 4
+_FEWEST_IN_A_QUARTER: Final = 5
 # The fit of a power: root mean squares over equal parts of the logarithm of time, from this part of the
 # time on. So many samples in each at least, and an interval of 95 % no wider than this to either side.
 _FROM: Final = 1 / 32
@@ -96,9 +98,12 @@ def is_constant(errors: Floats) -> bool:
 
 
 def is_bounded(elapsed: Floats, errors: Floats) -> bool:
-    """Return True for an error that is as large in the first part of the time as ever after."""
-    first = errors[elapsed <= _FIRST_PART * np.max(elapsed)]
-    return len(first) >= _FEWEST_FIRST and bool(np.max(first) >= _BOUNDED * np.max(errors))
+    """Return True for an error that is as large in the first quarter of the time as in the others."""
+    quarters = _parts(elapsed, np.linspace(0.0, float(np.max(elapsed)), _QUARTERS + 1))
+    if any(np.count_nonzero(inside) < _FEWEST_IN_A_QUARTER for inside in quarters):
+        return False
+    sizes = [_mean_square_root(errors[inside]) for inside in quarters]
+    return min(sizes) >= _BOUNDED * max(sizes)
 
 
 def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
@@ -106,19 +111,28 @@ def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
     end = float(np.max(elapsed))
     if not end > 0:
         return None
-    edges = np.geomspace(_FROM * end, end, _PARTS + 1)
-    part = np.clip(np.searchsorted(edges, elapsed, side="right"), 0, _PARTS)
     points = []
-    for k in range(1, _PARTS + 1):
-        inside = (part == k) & (elapsed > 0)
-        size = float(np.max(errors[inside], initial=0.0))
+    for inside in _parts(elapsed, np.geomspace(_FROM * end, end, _PARTS + 1)):
+        size = _mean_square_root(errors[inside])
         if np.count_nonzero(inside) < _FEWEST_IN_A_PART or not size > 0:
             return None
-        # Scaled, so that no square leaves the doubles.
-        mean = size * float(np.sqrt(np.mean((errors[inside] / size) ** 2)))
-        points.append((float(np.mean(np.log(elapsed[inside]))), float(np.log(mean))))
+        points.append((float(np.mean(np.log(elapsed[inside]))), float(np.log(size))))
     slope, half = _line(np.array(points))
     return round(slope, 3) if half <= _CLEAR and slope >= _LEAST_POWER else None
+
+
+def _parts(elapsed: Floats, edges: Floats) -> list[Places]:
+    """Return the samples between each edge and the next one, the last edge included."""
+    begins, ends = edges[:-1], [*edges[1:-1], np.inf]
+    return [(elapsed >= begin) & (elapsed < end) for begin, end in zip(begins, ends, strict=True)]
+
+
+def _mean_square_root(errors: Floats) -> float:
+    """Return the root mean square, scaled so that no square leaves the doubles; 0 of none."""
+    largest = float(np.max(errors, initial=0.0))
+    if not largest > 0:
+        return 0.0
+    return largest * float(np.sqrt(np.mean((errors / largest) ** 2)))
 
 
 def _line(points: Floats) -> tuple[float, float]:

@@ -79,19 +79,23 @@ class Judgement:
         run = " ".join(filter(None, (first.scene, first.solver, first.setting, first.rung)))
         return f"<{type(self).__name__} of {run}: {word}; {counts(self.verdicts)}>"
 
+    def __str__(self) -> str:
+        """Return the sentence of every quantity, a line each."""
+        return "\n".join([repr(self)[1:-1], *(verdict.sentence for verdict in self.verdicts)])
+
     def _repr_html_(self) -> str:
         headings = ("quantity", "verdict", "largest error", "allowed", "unit")
         rows = (
             (v.quantity, v.verdict.value, _short(v.max), _short(v.bound), v.unit)
             for v in self.verdicts
         )
-        return html_table(repr(self)[1:-1], headings, rows)
+        return html_table(repr(self)[1:-1], headings, rows, [v.sentence for v in self.verdicts])
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [f"{v.scene} {v.rung}: {v.verdict}: {v.sentence}" for v in others]
+            lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 

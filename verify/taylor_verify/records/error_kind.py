@@ -6,31 +6,24 @@ from enum import StrEnum
 
 
 class ErrorKind(StrEnum):
-    """What the error of a quantity is made of, as far as its samples tell.
+    """What the error of a quantity is made of, as far as its samples and its file tell."""
 
-    ROUNDOFF        within what arithmetic of the rung would leave, at every sample
-    PRINTED         no larger than what the printed digits of the file leave
-    SINGLE          no larger than what storing in float32 leaves
-    TIME_SHIFT      the right motion, late or early by a constant
-    PHASE_DRIFT     the right motion by a clock that runs slow or fast
-    PHASE_WANDER    the right motion at times that wander
-    CONVENTION      the file departs from the scene's conventions, which explains the error
-    OFFSET          about the same at every sample, the first one included
-    BOUNDED         as large in the first tenth of the time as ever after
-    GROWTH          growing with a power of time, which is ``exponent``
-    NOT_FINITE      a sample is no finite number
-    UNEXPLAINED     none of these
-    """
-
+    # Within what arithmetic of the rung would leave, at every sample.
     ROUNDOFF = "roundoff"
+    # No larger than what the printed digits of the file leave, or storing in float32.
     PRINTED = "printed digits"
     SINGLE = "float32 storage"
+    # The right motion late or early by a constant, by a clock that runs slow or fast, at wandering times.
     TIME_SHIFT = "time shift"
     PHASE_DRIFT = "drift of phase"
     PHASE_WANDER = "wandering phase"
+    # The file departs from the scene's conventions, which explains the error.
     CONVENTION = "convention"
+    # About the same at every sample, the first one included.
     OFFSET = "constant offset"
+    # About as large in every quarter of the time.
     BOUNDED = "bounded"
+    # Growing with a power of time, which is the exponent of the verdict.
     GROWTH = "growth"
     NOT_FINITE = "not finite"
     UNEXPLAINED = "unexplained"

@@ -85,7 +85,7 @@ def _course(verdict: Verdict) -> Iterator[str]:
     if verdict.error_kind is ErrorKind.OFFSET:
         yield "the error is a constant offset, there from the first row on"
     elif verdict.error_kind is ErrorKind.BOUNDED:
-        yield "it does not grow with time"
+        yield "it hardly grows with time"
     elif verdict.exponent is not None:
         yield _growth(verdict, verdict.exponent)
 
@@ -93,7 +93,7 @@ def _course(verdict: Verdict) -> Iterator[str]:
 def _growth(verdict: Verdict, exponent: float) -> str:
     nearest = min(_POWERS, key=lambda power: abs(power - exponent))
     if abs(nearest - exponent) > _NEAR:
-        return f"it grows about as t^{exponent:.1f}"
+        return f"it grows with time, about as t^{exponent:.1f}"
     if nearest == 1.0:
         return f"it grows in proportion to t{_tendency(verdict)}"
     return f"it grows as {_POWERS[nearest]}{', as random roundings do' if nearest == 0.5 else ''}"
