@@ -70,13 +70,13 @@ def print_end(
     """Print the counts, the meaning of the exit status, and what to do next."""
     print_line(console, f"{counts}: {_MEANINGS.get(status, '')} (exit status {status})")
     for step in _next_steps(verdicts, explained):
-        print_line(console, f"  {step}")
+        print_indented(console, "  ", step)
 
 
 def _next_steps(verdicts: Sequence[Verdict], explained: bool) -> Iterator[str]:
     tolerance = coarser_tolerance(verdicts)
     if tolerance is not None:
-        yield f"--tolerance {tolerance:.0e} judges a method of this accuracy, and passes"
+        yield f"--tolerance {tolerance:.0e} judges a method of this accuracy"
     if not explained and any(v.is_compared and v.verdict.value != "pass" for v in verdicts):
         yield "--explain shows the arithmetic of what is allowed"
 

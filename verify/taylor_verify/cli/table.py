@@ -13,6 +13,8 @@ from taylor_verify.scenes.names import escaped
 
 Cell = str | Text
 
+# The blanks between two columns, one where this makes room for all.
+_GAP = 2
 # A key that has to be folded is not folded into less.
 _NARROWEST_KEY = 8
 
@@ -29,17 +31,17 @@ def print_table(
     headings: Sequence[Heading],
     rows: Sequence[Sequence[Cell]],
     keys: int,
-    gap: int = 2,
 ) -> None:
     """Print a table in the width of the console; the first ``keys`` columns begin each of its parts.
 
-    A key of any length, such as a path, is folded. No other cell is.
+    The first column may hold cells of any length, such as paths, and is folded. No other cell is.
     """
     cells = [[cell if isinstance(cell, Text) else Text(escaped(cell)) for cell in r] for r in rows]
     widths = [
         max(Text(heading.name).cell_len, *(row[i].cell_len for row in cells), 0)
         for i, heading in enumerate(headings)
     ]
+    gap = _GAP if sum(widths) + _GAP * (len(widths) - 1) <= console.width else 1
     widest = max(widths[keys:], default=0)
     room = console.width - sum(width + gap for width in widths[1:keys]) - gap - widest
     widths[0] = min(widths[0], max(room, _NARROWEST_KEY))

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from taylor_verify.batch.expectations import Agreement
     from taylor_verify.records.verdict import Verdict
 
-_ROOMY = 120
 # The sentences of so many runs come before the lines of the overview.
 _FEW = 2
 _OVERVIEW = (
@@ -122,7 +121,7 @@ def _print_overview(
 ) -> None:
     """Print a line for each run: its worst state, its worst drift, what it cost."""
     rows = [[scene, rung, *_run_cells(group)] for (scene, rung), group in runs]
-    print_table(console, _OVERVIEW, rows, keys=2, gap=2 if console.width >= _ROOMY else 1)
+    print_table(console, _OVERVIEW, rows, keys=2)
     print_line(console)
     print_indented(
         console,

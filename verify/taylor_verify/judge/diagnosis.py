@@ -40,7 +40,7 @@ _FROM: Final = 1 / 32
 _PARTS: Final = 5
 _FEWEST_IN_A_PART: Final = 3
 _STUDENT: Final = 3.182  # three degrees of freedom
-_CLEAR: Final = 0.3
+_CLEAR: Final = 0.2
 # A slower growth than this cannot be told from none.
 _LEAST_POWER: Final = 0.3
 

@@ -44,4 +44,5 @@ def html_table(
     head = "".join(f"<th>{escape(heading)}</th>" for heading in headings)
     lines = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)
-    return f"<p>{escape(title)}</p>{listed}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    shown = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f"<p>{escape(title)}</p>{listed}{shown}"

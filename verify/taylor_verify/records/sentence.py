@@ -16,7 +16,7 @@ from taylor_verify.records.status import Status
 if TYPE_CHECKING:
     from taylor_verify.records.verdict import Verdict
 
-# Powers of time that have a meaning: a random walk, a steady error, and their integrals.
+# Powers of time that have a name: a random walk, a steady error, and their integrals.
 _POWERS: Final = {0.5: "t^1/2", 1.0: "t", 1.5: "t^3/2", 2.0: "t^2", 3.0: "t^3"}
 # A fitted power this near to one of them is called by its name.
 _NEAR: Final = 0.15
@@ -51,9 +51,11 @@ def _digits(verdict: Verdict) -> str:
     size = f"{verdict.max:.2g}{' rad' if verdict.unit == 'rad' else ''}"
     if not digits:
         return f"no digit is right at t = {verdict.at:g} (error {size})"
-    verb = "kept" if verdict.is_conserved else "right"
     is_one_row = verdict.until is None or verdict.quantity == INITIAL
     end = "" if is_one_row else f" up to t = {verdict.until:g}"
+    if verdict.max == 0:
+        return f"exact{end}"
+    verb = "kept" if verdict.is_conserved else "right"
     count = "1 digit is" if digits == 1 else f"{digits} digits are"
     return f"{count} {verb}{end} (largest error {size})"
 
@@ -61,6 +63,8 @@ def _digits(verdict: Verdict) -> str:
 def _left(verdict: Verdict) -> Iterator[str]:
     """Return what the error that is left is made of; empty where nothing is known of it."""
     kind = verdict.error_kind
+    if verdict.max == 0:
+        return
     if kind is ErrorKind.ROUNDOFF:
         yield "what is left is roundoff"
     elif kind in _STORED:
@@ -96,7 +100,7 @@ def _growth(verdict: Verdict, exponent: float) -> str:
         return f"it grows with time, about as t^{exponent:.1f}"
     if nearest == 1.0:
         return f"it grows in proportion to t{_tendency(verdict)}"
-    return f"it grows as {_POWERS[nearest]}{', as random roundings do' if nearest == 0.5 else ''}"
+    return f"it grows as {_POWERS[nearest]}"
 
 
 def _tendency(verdict: Verdict) -> str:
