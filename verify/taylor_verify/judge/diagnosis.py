@@ -29,6 +29,8 @@ _OF_A_SHIFT: Final = {
 # A constant error stays within this part of its largest value, over so many samples at least.
 _CONSTANT: Final = 0.9
 _FEWEST: Final = 5
+# An error as large as this part of the motion has nowhere to grow to.
+_LOST: Final = 0.1
 # The root mean squares of a bounded error over the quarters of the time are alike to this part, which
 # leaves room for noise, and for a growth as t^0.15. So many samples in each at least.
 _BOUNDED: Final = 0.75
@@ -84,6 +86,8 @@ def _kind(
         return along, None
     if is_constant(errors):
         return along or ErrorKind.OFFSET, None
+    if np.max(errors) >= _LOST:
+        return along or ErrorKind.UNEXPLAINED, None
     if is_bounded(elapsed, errors):
         return along or ErrorKind.BOUNDED, None
     exponent = power_of_time(elapsed, errors)

@@ -97,7 +97,7 @@ def _course(verdict: Verdict) -> Iterator[str]:
 def _growth(verdict: Verdict, exponent: float) -> str:
     nearest = min(_POWERS, key=lambda power: abs(power - exponent))
     if abs(nearest - exponent) > _NEAR:
-        return f"it grows with time, about as t^{exponent:.1f}"
+        return "it grows with time"
     if nearest == 1.0:
         return f"it grows in proportion to t{_tendency(verdict)}"
     return f"it grows as {_POWERS[nearest]}"
