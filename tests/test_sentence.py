@@ -217,6 +217,15 @@ def test_a_lost_number_is_above_every_bound() -> None:
     assert (found.since, found.error_kind) == (1.0, ErrorKind.NOT_FINITE)
 
 
+def test_a_truth_that_is_too_wide_has_no_digits() -> None:
+    """An undecided row says why, and nothing of digits or of the kind of an error."""
+    errors, wide = np.array([0.0, 1e-3, 2e-3]), stated(Cause.WIDE_TRUTH, "the truth is wide")
+    undecided = row(Status.UNDECIDED, reason=wide)
+    found = diagnosed(undecided, np.arange(3.0), 0.0, errors, np.ones(3))
+    assert (found.digits, found.error_kind, found.exponent) == (None, None, None)
+    assert found.sentence == "omega: undecided, the truth is wide"
+
+
 # The course of an error in time.
 
 

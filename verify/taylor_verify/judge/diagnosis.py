@@ -58,7 +58,10 @@ def diagnosed(
     bounds = _bounds(verdict, attainable)
     too_large = np.flatnonzero(~(errors <= bounds))
     is_failed = verdict.verdict is Status.FAIL and len(too_large) > 0
-    kind, exponent = _kind(verdict, np.abs(times - start), errors, attainable)
+    kind, exponent = None, None
+    if verdict.verdict is not Status.UNDECIDED:
+        # A truth that is too wide shows no course of the error.
+        kind, exponent = _kind(verdict, np.abs(times - start), errors, attainable)
     return replace(
         verdict,
         since=float(times[too_large[0]]) if is_failed else None,

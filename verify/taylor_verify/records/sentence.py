@@ -37,6 +37,8 @@ def sentence(verdict: Verdict) -> str:
         return f"{verdict.quantity}: {conclusion or verdict.verdict.value}"
     if not verdict.is_compared:
         return f"{verdict.quantity}: {conclusion or verdict.outcome}"
+    if verdict.verdict is Status.UNDECIDED:
+        return f"{verdict.quantity}: undecided{f', {conclusion}' if conclusion else ''}"
     if verdict.quantity == INITIAL:
         # Where the start is off by its printed digits alone, nothing after follows from it.
         conclusion = ""
@@ -63,7 +65,7 @@ def _digits(verdict: Verdict) -> str:
 def _left(verdict: Verdict) -> Iterator[str]:
     """Return what the error that is left is made of; empty where nothing is known of it."""
     kind = verdict.error_kind
-    if verdict.max == 0:
+    if verdict.max == 0 or verdict.verdict is Status.VACUOUS:
         return
     if kind is ErrorKind.ROUNDOFF:
         yield "what is left is roundoff"

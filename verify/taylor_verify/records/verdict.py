@@ -126,9 +126,10 @@ class Verdict:
     def digits(self) -> int | None:
         """The decimal digits that are right at every sample, at most those that the rung has.
 
-        None where nothing was compared, or an error is no finite number. A radian counts as a whole.
+        None where nothing was compared, where the truth is too wide to tell, and where an error is no
+        finite number. A radian counts as a whole.
         """
-        if self.max is None or not 0 <= self.max < inf:
+        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
             return None
         has = _digits_below(self.roundoff) if self.roundoff else None
         right = _digits_below(self.max) if self.max else has
