@@ -34,12 +34,13 @@ def status_text(status: str) -> Text:
     return Text(status, _COLOURS.get(status, "magenta"))
 
 
-def print_sentence(console: Console, verdict: Verdict, place: str = "", more: str = "") -> None:
+def print_sentence(console: Console, verdict: Verdict, place: str = "", why: str = "") -> None:
     """Print the sentence of a verdict, its quantity in the colour of the status.
 
-    ``place`` says behind the status which run it is, and ``more`` is added to the sentence.
+    ``place`` says behind the status which run it is. A verdict that came as expected has ``why`` in place
+    of its sentence.
     """
-    said = "; ".join(filter(None, (verdict.sentence, more)))
+    said = f"{verdict.quantity}: as expected: {why}" if why else verdict.sentence
     head = Text.assemble(status_text(verdict.verdict.value), f"  {place} ") if place else Text()
     width = max(console.width, 20) if sys.stdout.isatty() else sys.maxsize
     lines = textwrap.wrap(

@@ -84,7 +84,7 @@ def _print_rows(
         for (scene, rung), rows in runs:
             print_line(console, Text(scene, "bold"), f" in {rung} arithmetic")
             for verdict in rows:
-                print_sentence(console, verdict, more=_expected(verdict, held))
+                print_sentence(console, verdict, why=_expected(verdict, held))
             print_line(console)
     _print_overview(console, runs)
     print_line(console)
@@ -104,7 +104,7 @@ def _print_rows(
 
 def _expected(verdict: Verdict, held: Agreement) -> str:
     expected = held.met(verdict)
-    return "" if expected is None else f"as expected: {expected.why}"
+    return "" if expected is None else expected.why
 
 
 def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
