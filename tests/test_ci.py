@@ -219,20 +219,20 @@ def test_a_failure_says_what_a_person_needs() -> None:
     """Which quantity, by how much, when, against what, and why that."""
     (failure,) = ElementTree.fromstring(junit.junit([row(Status.FAIL)])).iter("failure")
     assert failure.get("message") == (
-        "omega: fail; the error reaches 3.30e-12 (max|omega|) at t = 7, where 2.00e-13 is allowed; "
-        "it is up to 165 times what perfect rounding would leave at t = 6.5; because 10 x "
-        "attainable; one rounding a step"
+        "omega: 11 digits are right (largest error 3.3e-12); 10 x attainable; one rounding a step; "
+        "above what f64 arithmetic would leave; largest error 3.30e-12 (max|omega|) at t = 7, where "
+        "2.00e-13 is allowed; up to 165 times what perfect rounding would leave at t = 6.5"
     )
-    assert (failure.text or "").startswith("euler/generic on f64: omega fail\nomega: fail; the")
+    assert (failure.text or "").startswith("euler/generic on f64: omega fail\nomega: 11 digits")
 
 
 def test_an_error_that_is_no_number_is_told() -> None:
     """NaN is neither left out nor printed as a size."""
     lost = row(Status.FAIL, max=None, ratio=None)
-    assert "the error is not finite (max|omega|) at t = 7, where 2.00e-13 is allowed" in sentence(
-        lost
-    )
-    assert "omega: fail; because it crashed" in sentence(unscored(Status.FAIL, "it crashed"))
+    said = sentence(lost)
+    assert said.startswith("omega: not a finite number; ")
+    assert "largest error not finite (max|omega|) at t = 7, where 2.00e-13 is allowed" in said
+    assert sentence(unscored(Status.FAIL, "it crashed")) == "omega: it crashed"
 
 
 def test_a_regression_fails_the_case_that_passed() -> None:
@@ -330,7 +330,7 @@ def test_a_scene_file_is_named_and_a_shipped_scene_is_not() -> None:
     (line,) = annotation_lines([row(Status.FAIL, scene="scenes/my.toml")])
     assert line.startswith("::error file=scenes/my.toml,line=1,title=scenes/my.toml on f64%3A ")
     (line,) = annotation_lines([row(Status.FAIL)])
-    assert line.startswith("::error title=euler/generic on f64%3A omega fail::omega: fail; ")
+    assert line.startswith("::error title=euler/generic on f64%3A omega fail::omega: 11 digits ")
 
 
 @pytest.mark.parametrize(("count", "last"), [(10, "omega fail"), (11, "2 more"), (30, "21 more")])
@@ -497,7 +497,9 @@ def test_the_schema_describes_every_field_of_a_verdict() -> None:
     """The published schema is that of the types; a row has all its keys, and stored rows are of it."""
     assert schema.text() == SCHEMA_FILE.read_text(encoding="utf-8")
     described = SCHEMA["$defs"]["Verdict"]["properties"]
-    assert {field.name for field in fields(Verdict)} | {"because"} == set(described)
+    assert {field.name for field in fields(Verdict)} | {"because", "sentence", "digits"} == set(
+        described
+    )
     assert set(schema.REQUIRED) <= set(row().row())
     rows = [store.row(verdict) for verdict in (row(), row(Status.FAIL, time_shift=0.1))]
     counts = {status.value: 0 for status in Status}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -442,9 +443,9 @@ def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str
         return " ".join(capsys.readouterr().out.split())
 
     text = printed("implicit-midpoint")
-    assert "as a shift of time: late by" in text
-    assert "its clock runs slow by 2.52e-06 of the time" in text
+    assert "the error is a drift of phase: the clock runs slow by 2.52e-06 of the time" in text
     text = printed("splitting")
-    assert "no shift of time explains it" in text
-    assert "fail euler/generic f64 T" in text
-    assert "fail euler/generic f64 H2" not in text
+    assert "no shift of time explains the error" in text
+    assert re.search(
+        "T: .* since t = .* H2: 1[345] digits are kept .*; what is left is roundoff", text
+    )

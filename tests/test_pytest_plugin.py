@@ -90,10 +90,9 @@ def test_my_simulator(verify_solver):
         [
             '>       verify_solver("euler/generic", still)',
             "E       Failed: still on euler/generic, f64: 1 of 4 judged quantities are no pass",
-            "E       omega: fail, the error reaches * x max|omega| at t = * (mean *, at the end *)",
+            "E       omega: fail; no digit is right at t = * (error *); *; above what f64 * since t = *",
             "E           against  the exact motion of the same rounded data (route *)",
             "E           bound    * x max|omega|; the error is * times what perfect rounding *",
-            "E           because  10 x attainable; attainable = u sqrt(N) x growth = *",
             "E       T: pass, * <= * x scale of T",
             "E       H2: pass, * <= * x scale of H2",
             "E       T, H2 hold and the state does not: *",

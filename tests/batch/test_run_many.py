@@ -285,7 +285,7 @@ def test_its_truth_value_is_whether_it_passed(
     assert found.exit_status == exit_status
     assert found.passed is bool(found) is (exit_status == 0)
     if exit_status:
-        with pytest.raises(NotPassed, match=rf"^euler/rest f32 .*: {status}: "):
+        with pytest.raises(NotPassed, match=rf"^{status}  euler/rest f32 .*: "):
             found.raise_for_failure()
     else:
         found.raise_for_failure()

@@ -7,7 +7,6 @@ from typing import Final
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.quantities import STATES
-from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.faults import brief
@@ -87,16 +86,15 @@ def _passed(verdict: Verdict) -> list[str]:
 
 
 def _failed(verdict: Verdict, against: str) -> list[str]:
-    if verdict.max is None:
-        lines = [f"{verdict.quantity}: {verdict.verdict}, {verdict.outcome}"]
-    else:
-        lines = [
-            f"{verdict.quantity}: {verdict.verdict}, the error reaches "
-            f"{_short(verdict.max)}{_unit(verdict)} at t = {_short(verdict.at)} "
-            f"(mean {_short(verdict.mean)}, at the end {_short(verdict.final)})"
-        ]
+    outcome = f", {verdict.outcome}" if verdict.max is None else ""
+    lines = [f"{verdict.quantity}: {verdict.verdict}{outcome}; {_said(verdict)}"]
     lines += [f"    {name:<8} {text}" for name, text in _reasons(verdict, against) if text]
     return lines
+
+
+def _said(verdict: Verdict) -> str:
+    """Return the sentence of a verdict without its quantity."""
+    return verdict.sentence.removeprefix(f"{verdict.quantity}: ")
 
 
 def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
@@ -105,19 +103,9 @@ def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
         yield "against", f"its value on {against}" if verdict.is_conserved else against
     if verdict.bound is not None:
         yield "bound", f"{_short(verdict.bound)}{_unit(verdict)}{_times_attainable(verdict)}"
-    yield from _because(verdict.reason)
     yield "mend", _MEND.get(verdict.verdict, "")
     if verdict.verdict is Status.UNAVAILABLE:
         yield "mend", _MEND_UNAVAILABLE.get(verdict.outcome, "")
-
-
-def _because(reason: Reason) -> Iterator[tuple[str, str]]:
-    """The reason; the arithmetic of a bound that a tolerance has replaced is left out."""
-    if reason.tolerance is None:
-        yield "because", str(reason)
-        return
-    yield "because", "; ".join(filter(None, [reason.conclusion, reason.tolerance.sentence()]))
-    yield "time", reason.shift.sentence() if reason.shift else ""
 
 
 def _times_attainable(verdict: Verdict) -> str:

@@ -52,8 +52,8 @@ def check(options: argparse.Namespace) -> Answer:
     asked = outputs(options)
     if len(files) == 1:
         judged = _judged(options, files[0], scene)
-        text = partial(check_text, judged, scene.name, options.rung)
         to_ci = tell(asked, judged, exit_status(judged.verdicts))
+        text = partial(check_text, judged, scene.name, options.rung, to_ci.status, options.explain)
         document = {**judged.document(), **to_ci.document}
         return Answer(to_ci.status, document, to_ci.closing(text), to_ci.messages)
     try:

@@ -3,54 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
-from taylor_verify.cli.terminal import error_sentences, figure, status_text
+from taylor_verify.cli.sentences import (
+    print_arithmetic,
+    print_end,
+    print_sentence,
+    status_text,
+)
+from taylor_verify.cli.table import Heading, print_table
+from taylor_verify.cli.terminal import figure
 from taylor_verify.records.quantities import GATE_FACTOR
 
 if TYPE_CHECKING:
     from taylor_verify.judge.answer import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
+_HEADINGS: Final = (
+    *(Heading("quantity"), Heading("verdict")),
+    *(Heading(name, to_right=True) for name in ("error", "at t", "allowed", "/floor", "since t")),
+    Heading("unit"),
+)
 
-def check_text(judged: FileJudgement, scene: str, rung: str) -> str:
-    """What the file is, what its conventions are, a line for each quantity, and every reason."""
-    from taylor_verify.records.verdict import summary
+
+def check_text(
+    judged: FileJudgement, scene: str, rung: str, status: int, explained: bool = False
+) -> str:
+    """Return the sentence for each quantity, the likely causes, the numbers, and the counts.
+
+    The conventions of the file come first. With ``explained`` the arithmetic of the bounds is there too.
+    """
+    from taylor_verify.judge.showing import counts
 
     console = new_console()
     print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")
     print_line(console, f"judged as an answer to {scene} in {rung} arithmetic")
     _print_conventions(console, judged)
     print_line(console)
-    if any(verdict.at is not None for verdict in judged.verdicts):
-        console.print(_quantities_table([v for v in judged.verdicts if v.at is not None]))
-        print_line(console)
-        has_tolerance = any(verdict.tolerance is not None for verdict in judged.verdicts)
-        first = (
-            "the tolerance that was asked for, where there is one; else " if has_tolerance else ""
-        )
-        print_line(
-            console,
-            f"allowed: {first}{GATE_FACTOR} times what rounding the input and every step would leave;",
-        )
-        print_line(console, "/floor: the largest error over what it would leave, of all rows.")
+    for verdict in judged.verdicts:
+        print_sentence(console, verdict)
     for cause in judged.causes:
-        print_line(console, Text("likely cause", "bold yellow"), f"  {cause.sentence}")
+        print_line(console, Text("likely cause", "bold yellow"), f": {cause.sentence}")
     for note in judged.notes:
-        print_line(console, Text("note", "yellow"), f"  {note}")
-    others = [verdict for verdict in judged.verdicts if verdict.verdict.value != "pass"]
-    if others:
+        print_line(console, Text("note", "yellow"), f": {note}")
+    print_line(console)
+    if any(verdict.is_compared for verdict in judged.verdicts):
+        print_numbers(console, judged.verdicts)
         print_line(console)
-    for verdict in others:
-        print_line(console, status_text(verdict.verdict.value), f"  {verdict.quantity}")
-        _print_reason(console, verdict)
-    counts = ", ".join(f"{n} {status}" for status, n in summary(judged.verdicts).items() if n)
-    print_line(console, f"\n{counts}")
+        if explained:
+            print_arithmetic(console, judged.verdicts)
+            print_line(console)
+    print_end(console, judged.verdicts, counts(judged.verdicts), status, explained)
     return text_of(console)
 
 
@@ -81,39 +88,18 @@ def _print_conventions(console: Console, judged: FileJudgement) -> None:
         print_line(console, "  (--accept-conventions corrects this and judges the rest)")
 
 
-def _print_reason(console: Console, verdict: Verdict) -> None:
-    """Print the conclusion, the error and its place, its shift of time, and the arithmetic of the bound."""
-    reason = verdict.reason
-    if reason.conclusion:
-        print_indented(console, "    ", reason.conclusion)
-    if verdict.at is None:
-        return
-    print_indented(console, "    ", "; ".join(error_sentences(verdict.row())))
-    if reason.meaning:
-        print_indented(console, "    ", reason.meaning)
-    sign = ": " if reason.tolerance else " = "
-    print_indented(console, "    allowed: ", f"{figure(verdict.bound)}{sign}{reason.allowance}")
+def print_numbers(console: Console, verdicts: Sequence[Verdict]) -> None:
+    """Print the numbers of all quantities, and what stands in the columns."""
+    print_table(console, _HEADINGS, [_cells(verdict) for verdict in verdicts], keys=1)
+    print_line(console)
+    by_tolerance = any(verdict.tolerance is not None for verdict in verdicts)
+    asked = "the tolerance that was asked for, where there is one; else " if by_tolerance else ""
+    allowed = f"{asked}{GATE_FACTOR} times the roundoff floor, which perfect rounding would leave"
+    print_indented(console, "", f"allowed: {allowed}; /floor: the largest error over that floor")
 
 
-def _quantities_table(verdicts: Sequence[Verdict]) -> Table:
-    table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
-    numbers = ("largest error", "at t", "allowed", "/floor", "late by", "error left")
-    for heading in ("quantity", "verdict", *numbers, "unit"):
-        table.add_column(heading, justify="right" if heading in numbers else "left", no_wrap=True)
-    for v in verdicts:
-        figures = (v.max, v.at, v.bound, v.ratio)
-        cells = [*(figure(f) for f in figures), *_shift_cells(v)]
-        table.add_row(v.quantity, status_text(v.verdict.value), *cells, v.unit)
-    return table
-
-
-def _shift_cells(verdict: Verdict) -> tuple[str, str]:
-    """The shift of time that explains the error, and what it leaves: the fit of the reason."""
-    if verdict.remains is None:
-        return "", ""
-    left = figure(verdict.remains)
-    if verdict.trend is not None:
-        return f"{figure(verdict.trend)} t, {verdict.shift}", left
-    if verdict.shift == "constant":
-        return f"{figure(verdict.time_shift)}, constant", left
-    return str(verdict.shift), left
+def _cells(v: Verdict) -> list[str | Text]:
+    since = "" if v.since is None else figure(v.since)
+    numbers = (v.max, v.at, v.bound, v.ratio)
+    figures = [figure(number) if v.is_compared else "" for number in numbers]
+    return [v.quantity, status_text(v.verdict.value), *figures, since, v.unit]

@@ -26,7 +26,10 @@ BOUND, BASELINE = "bound", "baseline"
 
 
 def add_options(verb: argparse.ArgumentParser) -> None:
-    """The options, for every verb whose answer is verdicts."""
+    """Add the options of every verb whose answer is verdicts."""
+    verb.add_argument(
+        "--explain", action="store_true", help="show the arithmetic of every bound as well"
+    )
     verb.add_argument("--junit", metavar="FILE", help="write the verdicts there as JUnit XML")
     verb.add_argument(
         "--github",

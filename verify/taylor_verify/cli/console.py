@@ -35,7 +35,7 @@ def print_line(console: Console, *parts: str | Text) -> None:
 def print_indented(console: Console, label: str, text: str) -> None:
     """A line behind its label; on a terminal what is too long goes on below itself."""
     width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
-    for i, line in enumerate(textwrap.wrap(text, width)):
+    for i, line in enumerate(textwrap.wrap(text, width, break_on_hyphens=False)):
         print_line(console, (label if i == 0 else " " * len(label)) + line)
 
 

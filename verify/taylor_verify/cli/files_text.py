@@ -10,7 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
-from taylor_verify.cli.terminal import figure, status_text
+from taylor_verify.cli.sentences import status_text
+from taylor_verify.cli.terminal import figure
 from taylor_verify.judge.showing import counts
 from taylor_verify.records.quantities import STATES
 

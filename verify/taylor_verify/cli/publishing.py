@@ -18,6 +18,123 @@ from taylor_verify.cli.streams import say
 _ON = "f64"
 
 
+def add_options(verb: argparse.ArgumentParser) -> None:
+    """Add the options of the verb: what is made, and from which folder."""
+    verb.add_argument(
+        "--from", dest="folder", metavar="DIR", help="default: reports of the checkout around"
+    )
+    made = verb.add_mutually_exclusive_group()
+    made.add_argument(
+        "--reference",
+        action="store_true",
+        help="instead compute the exact trajectory of every shipped scene, as CSV and JSON with "
+        "32 digits, into DIR/reference",
+    )
+    made.add_argument(
+        "--portraits",
+        action="store_true",
+        help="instead gather all that a page shows of each shipped scene (equations, exact motion, "
+        "numbers of the orbit) into DIR/data/portraits (a minute, all cores)",
+    )
+    made.add_argument(
+        "--gallery",
+        action="store_true",
+        help="instead draw some motions and their errors from what DIR holds (matplotlib), into "
+        "DIR/figures",
+    )
+    made.add_argument(
+        "--controls",
+        action="store_true",
+        help="instead run the solvers that are broken on purpose and the calls of heyoka that go "
+        "wrong, and write what each gate sees of them into DIR/data and DIR/tables",
+    )
+    made.add_argument(
+        "--enclosure",
+        action="store_true",
+        help="instead enclose two motions without a closed form, and draw the proven width beside the true "
+        "error (matplotlib), into DIR/data and DIR/figures (a minute)",
+    )
+    made.add_argument(
+        "--claims",
+        action="store_true",
+        help="instead run the ledger of both source texts, and write DIR/claims.md, the errata in front",
+    )
+    made.add_argument(
+        "--prices",
+        action="store_true",
+        help="instead measure what each thing that a scene may ask for costs (minutes; a quiet "
+        "machine), and write DIR/data/prices.json and DIR/tables/prices.md",
+    )
+    made.add_argument(
+        "--tradeoff",
+        action="store_true",
+        help="instead measure speed against accuracy on four scenes, in fresh processes (minutes; a "
+        "quiet machine), and write errors and times into DIR/data and a page into DIR/tables",
+    )
+    made.add_argument(
+        "--extremes",
+        action="store_true",
+        help="instead run the extremes on f64 and write what becomes of each, beside what was expected, "
+        "into DIR/data/extremes.json and DIR/tables/extremes.md (minutes, all cores)",
+    )
+    made.add_argument(
+        "--paper",
+        action="store_true",
+        help="instead render the pages of DIR as LaTeX and HTML, into DIR/tables, and draw their "
+        "pictures as PDF",
+    )
+    made.add_argument(
+        "--missing",
+        action="store_true",
+        help="instead make what a clone of the repository lacks in DIR (minutes, all cores)",
+    )
+    made.add_argument("--archive", metavar="DIST", help="instead pack DIR into the folder DIST")
+    made.add_argument(
+        "--site",
+        metavar="SITE",
+        help="instead make static pages of what DIR holds, into the folder SITE (jinja2, "
+        "markdown-it-py, latex2mathml, plotly)",
+    )
+    made.add_argument(
+        "--worst",
+        action="store_true",
+        help="instead hunt for the largest error over attainable in families of extremes, and write "
+        "DIR/data/worst.json, DIR/tables/worst.md and the scenes of cases/extremes/worst",
+    )
+    made.add_argument(
+        "--reach",
+        action="store_true",
+        help="instead measure how many digits each precision leaves of families of extremes, over "
+        "their number and periods (minutes, all cores), and write DIR/data/reach.json, "
+        "DIR/tables/reach.md and its pictures",
+    )
+    made.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead follow ensembles of starts over decades of time (ten minutes, all cores), and "
+        "write how each error grows into DIR/data/growth.json and DIR/tables/growth.md; stopped, it "
+        "goes on from DIR/local/growth",
+    )
+    verb.add_argument(
+        "--seconds", type=float, default=600.0, metavar="S", help="of --worst; default: 600"
+    )
+    verb.add_argument("--seed", type=int, default=1, metavar="N", help="of --worst; default: 1")
+    verb.add_argument(
+        "--periods", metavar="N", help="with --growth: follow none for more than N periods"
+    )
+    verb.add_argument(
+        "--long",
+        action="store_true",
+        help="with --growth: the one ensemble of 100 million periods instead (an hour or more)",
+    )
+    verb.add_argument(
+        "--outside",
+        action="store_true",
+        help="with --tradeoff: compiled integrators of other libraries too, each solve a program of "
+        "its own that compiles first (a quarter of an hour more)",
+    )
+
+
 def publish(options: argparse.Namespace) -> Answer:
     """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
     from taylor_verify.cli.claims import publish_claims

@@ -7,10 +7,11 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import PIPED_WIDTH, new_console, print_indented, print_line, text_of
+from taylor_verify.cli.sentences import print_arithmetic, print_end, print_sentence, status_text
+from taylor_verify.cli.table import Cell, Heading, print_table
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.quantities import STATES
 from taylor_verify.records.reason import Reason
@@ -21,8 +22,14 @@ if TYPE_CHECKING:
     from taylor_verify.records.answers import LikelyCause
     from taylor_verify.records.verdict import Verdict
 
-_ROOMY = 120
-_COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
+# The sentences of so many runs come before the lines of the overview.
+_FEW = 2
+_OVERVIEW = (
+    *(Heading("scene"), Heading("rung"), Heading("verdict")),
+    *(Heading("state"), Heading("error/u", to_right=True), Heading("at t", to_right=True)),
+    *(Heading("drift"), Heading("error/u", to_right=True)),
+    *(Heading(name, to_right=True) for name in ("/floor", "steps", "seconds")),
+)
 
 # The unit of time is the scene's, whatever that is.
 _UNITS = {
@@ -54,52 +61,74 @@ def names_text(
 
 
 def verdicts_text(
-    verdicts: Sequence[Verdict], held: Agreement, causes: Sequence[LikelyCause] = ()
+    verdicts: Sequence[Verdict],
+    held: Agreement,
+    status: int,
+    causes: Sequence[LikelyCause] = (),
+    explained: bool = False,
 ) -> str:
-    """Return a line for each scene and rung, the likely causes, each row that is no pass, and the counts.
+    """Return the sentences of a run or two and then a line for each; of many runs the lines come first.
 
-    Where no row was judged, and all for one reason, the counts and the reason are enough.
+    Of many runs only rows that are no pass have a sentence. Where no row was judged, and all for one
+    reason, the counts and the reason are enough. With ``explained`` the arithmetic of the bounds is there.
     """
-    from taylor_verify.records.verdict import summary
+    from taylor_verify.judge.showing import counts
 
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))
     why = held.unjudged(verdicts)
     if not why or len({verdict.because for verdict in verdicts}) > 1:
-        _print_rows(console, verdicts, held)
-    for cause in causes:
-        place = f"{cause.scene} {cause.rung}"
-        print_line(console, Text("likely cause", "bold yellow"), f"  {place}: {cause.sentence}")
-    counts = ", ".join(f"{count} {status}" for status, count in summary(verdicts).items() if count)
-    print_line(console, f"{counts}{_as_expected(verdicts, held)}")
+        _print_rows(console, verdicts, held, causes, explained)
+    total = f"{counts(verdicts)}{_as_expected(verdicts, held)}"
+    unexpected = [verdict for verdict in verdicts if held.met(verdict) is None]
+    print_end(console, unexpected, total, status, explained)
     if why:
         print_line(console, f"nothing was judged: {why}")
     return text_of(console)
 
 
-def _print_rows(console: Console, verdicts: Sequence[Verdict], held: Agreement) -> None:
-    console.print(_table(verdicts, gap=2 if console.width >= _ROOMY else 1))
+def _print_rows(
+    console: Console,
+    verdicts: Sequence[Verdict],
+    held: Agreement,
+    causes: Sequence[LikelyCause],
+    explained: bool,
+) -> None:
+    runs = [(run, list(rows)) for run, rows in groupby(verdicts, key=lambda v: (v.scene, v.rung))]
+    is_few = len(runs) <= _FEW
+    if is_few:
+        for (scene, rung), rows in runs:
+            print_line(console, Text(scene, "bold"), f" in {rung} arithmetic")
+            for verdict in rows:
+                print_sentence(console, verdict, why=_expected(verdict, held))
+            for cause in causes:
+                if (cause.scene, cause.rung) == (scene, rung):
+                    print_line(console, Text("likely cause", "bold yellow"), f": {cause.sentence}")
+            print_line(console)
+    _print_overview(console, runs)
     print_line(console)
-    print_line(
-        console,
-        "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits;",
-    )
-    print_line(
-        console, "/floor is the largest error over what perfect rounding would leave, of all gates."
-    )
     if any(verdict.tolerance is not None for verdict in verdicts):
         print_line(console, "Judged by the tolerance that was asked for.")
     others = [verdict for verdict in verdicts if verdict.verdict.value != "pass"]
-    if others:
-        print_line(console)
-    for verdict in others:
-        place = f"{verdict.scene} {verdict.rung} {verdict.quantity}"
-        expected = held.met(verdict)
-        told = _told(verdict) if expected is None else f"as expected: {expected.why}"
-        print_line(console, status_text(verdict.verdict.value), f"  {place}: {told}")
+    for verdict in () if is_few else others:
+        place = f"{verdict.scene} {verdict.rung}"
+        print_sentence(console, verdict, place, _expected(verdict, held))
+    for cause in () if is_few else causes:
+        told = f"  {cause.scene} {cause.rung}: {cause.sentence}"
+        print_line(console, Text("likely cause", "bold yellow"), told)
     for mismatch in held.mismatches:
         print_line(console, Text("not as expected", "bold red"), f"  {mismatch}")
-    print_line(console)
+    if explained:
+        for (scene, rung), rows in runs:
+            print_line(console, Text(scene, "bold"), f" in {rung} arithmetic")
+            print_arithmetic(console, rows)
+    if explained or held.mismatches or (others and not is_few):
+        print_line(console)
+
+
+def _expected(verdict: Verdict, held: Agreement) -> str:
+    expected = held.met(verdict)
+    return "" if expected is None else expected.why
 
 
 def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
@@ -111,22 +140,22 @@ def _as_expected(verdicts: Sequence[Verdict], held: Agreement) -> str:
     )
 
 
-def _table(verdicts: Sequence[Verdict], gap: int) -> Table:
-    table = Table(box=None, padding=(0, gap, 0, 0), pad_edge=False)
-    for heading in ("scene", "rung", "verdict", "state", "error/u", "at t", "drift", "error/u"):
-        table.add_column(heading, justify="right" if heading in ("error/u", "at t") else "left")
-    for heading in ("/floor", "steps", "seconds"):
-        table.add_column(heading, justify="right")
-    # A long path is folded; a name is not, nor is a number.
-    for column in table.columns[1:]:
-        column.no_wrap = True
-    table.columns[0].overflow = "fold"
-    for (scene, rung), group in groupby(verdicts, key=lambda v: (v.scene, v.rung)):
-        table.add_row(Text(scene), rung, *_run_cells(list(group)))
-    return table
+def _print_overview(
+    console: Console, runs: Sequence[tuple[tuple[str, str], list[Verdict]]]
+) -> None:
+    """Print a line for each run: its worst state, its worst drift, what it cost."""
+    rows = [[scene, rung, *_run_cells(group)] for (scene, rung), group in runs]
+    print_table(console, _OVERVIEW, rows, keys=2)
+    print_line(console)
+    print_indented(
+        console,
+        "",
+        "Errors and drifts are the largest of all samples, in units of roundoff u = 2^-bits; "
+        "/floor is the largest error over what perfect rounding would leave, of all gates.",
+    )
 
 
-def _run_cells(group: list[Verdict]) -> tuple[Text | str, ...]:
+def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
     status = status_text(gravest(v.verdict for v in group))
     compared = [v for v in group if v.at is not None]
     if not compared:
@@ -159,12 +188,6 @@ def _ratio(verdict: Verdict) -> float:
     return ratio if ratio is not None and ratio == ratio else float("inf")
 
 
-def _told(verdict: Verdict) -> str:
-    if verdict.at is None:
-        return verdict.because
-    return f"{'; '.join(error_sentences(verdict.row()))}; bound = {verdict.because}"
-
-
 def error_sentences(gate: Mapping[str, Any]) -> tuple[str, str]:
     """Return the error and its ratio of a gate, from a row or an explanation; null is not finite."""
     size, bound = figure(gate["max"]), figure(gate["bound"])
@@ -177,10 +200,6 @@ def error_sentences(gate: Mapping[str, Any]) -> tuple[str, str]:
 
 def figure(value: float | None) -> str:
     return "not finite" if value is None or value != value else f"{value:.3g}"
-
-
-def status_text(status: str) -> Text:
-    return Text(status, _COLOURS.get(status, "magenta"))
 
 
 # exact

@@ -75,9 +75,10 @@ def run(options: argparse.Namespace) -> Answer:
         raise WrongCall(f"{error} (--out)") from error
     except ReportNotWritten as error:
         # A run that took hours is shown in any case.
-        return _run_answer(error.results, asked, published, f"{error} (--out)", WRONG_CALL)
+        told = f"{error} (--out)"
+        return _run_answer(error.results, asked, published, told, WRONG_CALL, options.explain)
     written = f"wrote {folder / 'tables'} and {folder / 'data'}" if folder is not None else ""
-    return _run_answer(results, asked, published, written)
+    return _run_answer(results, asked, published, written, explained=options.explain)
 
 
 def _run_answer(
@@ -86,6 +87,7 @@ def _run_answer(
     published: Earlier | None,
     written: str,
     status: int = PASS,
+    explained: bool = False,
 ) -> Answer:
     """Return the answer of a run, with what comparisons and files add to it."""
     from taylor_verify.cli.ci import tell
@@ -111,7 +113,14 @@ def _run_answer(
     messages += [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
     if len(results.selection.scenes) > 1 and results.costs:
         messages.append(sentence(results.costs))
-    text = partial(verdicts_text, results.verdicts, results.agreement, results.causes)
+    text = partial(
+        verdicts_text,
+        results.verdicts,
+        results.agreement,
+        to_ci.status,
+        results.causes,
+        explained,
+    )
     return Answer(to_ci.status, {**document, **to_ci.document}, to_ci.closing(text), messages)
 
 

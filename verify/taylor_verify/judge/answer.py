@@ -40,6 +40,7 @@ from taylor_verify.judge.inputs import impulses, input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
+from taylor_verify.judge.storage import with_file_kinds
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
@@ -156,8 +157,10 @@ def judge_file(
     if failed:
         causes = causes_of_file(compared, rung, found, judged)
         notes += (*cut_off(file, rung), *single_precision(file, rung))
+    left = [finding for finding in found.findings if not accept_conventions]
+    verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     return FileJudgement(
-        judged.verdicts,
+        verdicts,
         judged.record,
         file,
         found.findings,
@@ -314,16 +317,19 @@ def _side(answer: _Answer, rung: Rung, name: str, tolerances: Tolerances) -> _Si
 def _united(sides: Sequence[_Side], file: TrajectoryFile, start: float) -> Judgement:
     gates = [gate for side in sides for gate in side.gates]
     names = list(dict.fromkeys(gate.verdict.quantity for gate in gates))
-    verdicts = [_verdict([g for g in gates if g.verdict.quantity == name], file) for name in names]
+    verdicts = [
+        _verdict([g for g in gates if g.verdict.quantity == name], file, start) for name in names
+    ]
     initial = initial_verdict(gates, start)
     records = [side.judgement.record for side in sides if side.judgement.record is not None]
     first = (initial,) if initial is not None else ()
     return Judgement((*first, *verdicts), merged(records, gates))
 
 
-def _verdict(sides: Sequence[Graded], file: TrajectoryFile) -> Verdict:
+def _verdict(sides: Sequence[Graded], file: TrajectoryFile, start: float) -> Verdict:
     is_sound = all(np.all(np.isfinite(side.errors)) for side in sides)
-    return verdict_of(sides, "" if is_sound else _flaw(file, sides[0].verdict.quantity))
+    flaw = "" if is_sound else _flaw(file, sides[0].verdict.quantity)
+    return verdict_of(sides, flaw, start)
 
 
 def _flaw(file: TrajectoryFile, quantity: str) -> str:

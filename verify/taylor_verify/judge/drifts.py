@@ -68,6 +68,8 @@ class Drifts:
         # Where the last block ended: its time, its state, and the sums of all increments.
         self._before: tuple[Fraction, State] = Fraction(0), scene.initial
         self._sums: dict[str, Column] = {}
+        # The signed drift of the last row, over its scale, of what is a number.
+        self._changes: dict[str, float] = {}
         # The rows so far that the scales are made of.
         self._largest: Motion | None = None
         self._is_lost = False
@@ -83,12 +85,15 @@ class Drifts:
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:
-                    values = _conserved(invariant, self._begin, quick)
+                    change = _conserved(invariant, self._begin, quick)
                 elif ends is None:
-                    values = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
+                    change = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
                 else:
-                    values = self._balance(invariant, quick, ends)
-                self._series[invariant.name].add(values, invariant.scale(self._largest))
+                    change = self._balance(invariant, quick, ends)
+                scale = invariant.scale(self._largest)
+                self._series[invariant.name].add(_sizes(change), scale)
+                if change.ndim == 1:
+                    self._changes[invariant.name] = float(change[-1] / scale)
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
         """The drifts of all rows; if one is not finite under loads, NaN for all."""
@@ -100,7 +105,8 @@ class Drifts:
         if self._is_lost:
             values = np.full(len(values), np.nan)
         name, (in_mpf,) = invariant.name, to_mpf(np.array([scale], dtype=object))
-        return Errors(name, f"scale of {name}", values, np.zeros(len(values)), {name: in_mpf})
+        widths, change = np.zeros(len(values)), self._changes.get(name)
+        return Errors(name, f"scale of {name}", values, widths, {name: in_mpf}, change=change)
 
     def _widen(self, answer: Motion) -> None:
         rows = answer.at(decisive(self._scene, answer))
@@ -114,7 +120,7 @@ class Drifts:
             increments[0] = self._sums[invariant.name] + increments[0]
         sums = np.cumsum(increments, axis=0)
         self._sums[invariant.name] = sums[-1]
-        return _sizes(sums)
+        return sums
 
     def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
         """Where the exact motion leads from each sample (the first from the start) to the next one."""
@@ -130,7 +136,8 @@ class Drifts:
 
 
 def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
-    return _sizes(invariant.value(answer) - invariant.value(start)[0])
+    change: Column = invariant.value(answer) - invariant.value(start)[0]
+    return change
 
 
 def _sizes(values: Column) -> Column:

@@ -28,7 +28,8 @@ class Errors:
 
     ``parts`` names the quantities of the motion that it compares, each with the scale its error is
     divided by; ``truth_radius`` is how wide the truth is, in the same unit. ``is_state`` tells the
-    quantities that say where the body is from those it conserves.
+    quantities that say where the body is from those it conserves. ``change`` is the error of the last
+    sample with its sign, of a conserved number.
     """
 
     quantity: str
@@ -37,6 +38,7 @@ class Errors:
     truth_radius: Column
     parts: dict[str, Any]
     is_state: bool = False
+    change: float | None = None
 
     @cached_property
     def doubles(self) -> Floats:

@@ -17,6 +17,7 @@ from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.regraded import Graded
+from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
 from taylor_verify.records.verdict import Verdict
@@ -78,6 +79,11 @@ def initial_verdict(
         shift=None,
         trend=None,
         remains=None,
+        change=None,
+        exponent=None,
+        since=None,
+        until=start,
+        error_kind=ErrorKind.ROUNDOFF if finding.is_rounding else None,
     )
 
 

@@ -16,6 +16,7 @@ from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import Floats, Floor, floor
 from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
+from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.measured import Comparison
@@ -82,35 +83,29 @@ class Judgement:
         run = " ".join(filter(None, (first.scene, first.solver, first.setting, first.rung)))
         return f"<{type(self).__name__} of {run}: {word}; {counts(self.verdicts)}>"
 
+    def __str__(self) -> str:
+        """Return the sentence of every quantity, a line each."""
+        return "\n".join([repr(self)[1:-1], *(verdict.sentence for verdict in self.verdicts)])
+
     def _repr_html_(self) -> str:
         headings = ("quantity", "verdict", "largest error", "allowed", "unit")
         rows = (
             (v.quantity, v.verdict.value, _short(v.max), _short(v.bound), v.unit)
             for v in self.verdicts
         )
-        return html_table(repr(self)[1:-1], headings, rows)
+        return html_table(repr(self)[1:-1], headings, rows, [v.sentence for v in self.verdicts])
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError, unless the judgement passed."""
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
-            lines = [
-                f"{v.scene} {v.rung} {v.quantity}: {v.verdict}{_size(v)}: {v.because}"
-                for v in others
-            ]
+            lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
             lines += [f"likely cause: {cause.sentence}" for cause in self.causes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 
 def _short(value: float | None) -> str:
     return "" if value is None else f"{value:.3g}"
-
-
-def _size(verdict: Verdict) -> str:
-    """The error beside its bound, where both are known."""
-    if verdict.max is None or verdict.bound is None:
-        return ""
-    return f", error {verdict.max:.3g} at t = {verdict.at:g}, allowed {verdict.bound:.3g}"
 
 
 @dataclass(frozen=True)
@@ -208,7 +203,14 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
             ]
             gated += _lengths(run, base, measured.excess)
     record = _record(run, exact, digits, tuple(gate for _, gate in gated))
-    return Judgement(tuple(verdict for verdict, _ in gated), record, costs=costs.seconds)
+    verdicts = tuple(_diagnosed(run, verdict, gate) for verdict, gate in gated)
+    return Judgement(verdicts, record, costs=costs.seconds)
+
+
+def _diagnosed(run: _Run, verdict: Verdict, gate: GateRecord) -> Verdict:
+    clock = run.problem.given.clock
+    times, errors = np.array([float(t) for t in clock.instants]), np.array(gate.errors)
+    return diagnosed(verdict, times, float(clock.start), errors, np.array(gate.attainable))
 
 
 def _scale(errors: Errors) -> Any:
@@ -293,6 +295,7 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
         attainable=float(attainable[worst]),
         ratio=finding.ratio,
         ratio_at=float(instants[finding.ratio_at]),
+        change=errors.change,
     )
 
 

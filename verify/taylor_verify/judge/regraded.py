@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors import Errors
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.inputs import InputRounding
@@ -85,12 +86,13 @@ def _graded(
     return Graded.of(verdict, gate, times, both, terms)
 
 
-def verdict_of(sides: Sequence[Graded], flaw: str) -> Verdict:
+def verdict_of(sides: Sequence[Graded], flaw: str, start: float) -> Verdict:
     """The verdict of one gate: that of the direction of time which is graver, or else nearer to it.
 
-    ``flaw`` says where the data have no finite number, if there is such a place.
+    ``flaw`` says where the data have no finite number, if there is such a place; ``start`` is the time of
+    the initial state.
     """
-    return min((_verdict(side, flaw) for side in sides), key=_gravity)
+    return min((_verdict(side, flaw, start) for side in sides), key=_gravity)
 
 
 def _gravity(verdict: Verdict) -> tuple[int, float]:
@@ -99,14 +101,14 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
     return GRAVITY.index(verdict.verdict), -told
 
 
-def _verdict(side: Graded, flaw: str) -> Verdict:
+def _verdict(side: Graded, flaw: str, start: float) -> Verdict:
     gate, times, attainable = side.verdict, side.times, side.attainable
     widths = np.full(len(times), np.inf if side.is_doubtful else 0.0)
     is_state = gate.quantity in STATES
     errors = Errors(gate.quantity, gate.unit, side.errors, widths, {}, is_state)
     finding = judge(errors, attainable, side.terms, gate.tolerance)
     worst = finding.worst
-    return replace(
+    verdict = replace(
         gate,
         verdict=finding.status,
         max=float(side.errors[worst]),
@@ -117,6 +119,7 @@ def _verdict(side: Graded, flaw: str) -> Verdict:
         ratio=finding.ratio,
         ratio_at=float(times[finding.ratio_at]),
     )
+    return diagnosed(verdict, times, start, side.errors, attainable)
 
 
 def merged(records: Sequence[Record], gates: Sequence[Graded]) -> Record | None:

@@ -32,11 +32,17 @@ def dataframe(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
     return pandas.DataFrame([dict(row) for row in rows])
 
 
-def html_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a paragraph and a table; every text is escaped."""
+def html_table(
+    title: str,
+    headings: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    sentences: Iterable[str] = (),
+) -> str:
+    """Return a paragraph, a list of sentences and a table; every text is escaped."""
+    points = "".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
+    listed = f"<ul>{points}</ul>" if points else ""
     head = "".join(f"<th>{escape(heading)}</th>" for heading in headings)
     lines = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)
-    return (
-        f"<p>{escape(title)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-    )
+    shown = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f"<p>{escape(title)}</p>{listed}{shown}"

@@ -211,7 +211,7 @@ class TimeShift:
         """Return the shift in words that a person can act on."""
         if self.kind is Kind.NONE:
             return "no shift of time explains it"
-        left = f"{self.remains:.2g} remains{self._strays()}"
+        left = f"{self.remains:.2g} remains{self.rows_of_it()}"
         if self.at is None:
             return f"{_late(self.late)}, {self.kind}; {left}"
         at_worst = f"{_late(self.late)} at t = {self.at:g}"
@@ -223,7 +223,7 @@ class TimeShift:
             first = f" and is {_late(self.begins)} at t = {self.begins_at:g}"
         return f"{at_worst}, drifting: its clock runs {pace}{first}; {left}"
 
-    def _strays(self) -> str:
+    def rows_of_it(self) -> str:
         """Return the number of rows that share the shift, and the times of those that do not."""
         if not self.strays:
             return ""

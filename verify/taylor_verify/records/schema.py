@@ -24,6 +24,19 @@ REQUIRED: Final = (
     *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
     *("evaluations", "provenance"),
 )
+# What is made of the other keys of a row.
+_DERIVED: Final = {
+    "because": {"description": "The reason in one line.", "type": "string"},
+    "sentence": {
+        "description": "The digits that are right, the kind of error that is left, and since when.",
+        "type": "string",
+        "minLength": 1,
+    },
+    "digits": {
+        "description": "The decimal digits that are right at every sample; null where none were compared.",
+        "anyOf": [{"type": "integer", "minimum": 0}, {"type": "null"}],
+    },
+}
 _RUNG: Final = "^(f32|f64|f80|f128|mp[1-9][0-9]*)$"
 
 
@@ -32,8 +45,7 @@ def schema() -> dict[str, Any]:
     _, found = msgspec.json.schema_components((Answer, FilesAnswer), ref_template="#/$defs/{name}")
     answer = _with_files(found.pop(Answer.__name__), found.pop(FilesAnswer.__name__))
     verdict = found["Verdict"]
-    because = {"description": "The reason in one line.", "type": "string"}
-    verdict["properties"] = {"because": because, **verdict["properties"]}
+    verdict["properties"] = {**_DERIVED, **verdict["properties"]}
     verdict["properties"]["rung"]["pattern"] = _RUNG
     verdict["properties"]["quantity"]["minLength"] = 1
     verdict["properties"]["provenance"] = {

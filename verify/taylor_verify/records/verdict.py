@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
+from math import floor, inf, log10
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 from msgspec import Meta
 
+from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import Count, Size, converted, finite, plain, read
 from taylor_verify.records.quantities import COMPLETE, is_conserved
 from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
+from taylor_verify.records.sentence import sentence
 from taylor_verify.records.status import Status
 
 Study = TypeVar("Study")
@@ -99,6 +102,23 @@ class Verdict:
     exponent: Annotated[
         float | None, Meta(description="Growth of the error as a power of t, where fitted.")
     ] = None
+    change: Annotated[
+        float | None,
+        Meta(
+            description="Conserved numbers: the error of the last sample with its sign, below zero for a "
+            "loss; null for vectors and states."
+        ),
+    ] = None
+    since: Annotated[
+        float | None,
+        Meta(
+            description="The time of the first sample whose error exceeds its bound; null if none does."
+        ),
+    ] = None
+    until: Annotated[float | None, Meta(description="The time of the last sample.")] = None
+    error_kind: Annotated[
+        ErrorKind | None, Meta(description="What the error that is left is made of.")
+    ] = None
     steps: Count = 0
     evaluations: Annotated[Count, Meta(description="Of the derivative.")] = 0
     seconds: Annotated[
@@ -111,6 +131,24 @@ class Verdict:
     def because(self) -> str:
         """The reason of the bound, or why there is no number, in one line."""
         return str(self.reason)
+
+    @property
+    def digits(self) -> int | None:
+        """The decimal digits that are right at every sample, at most those that the rung has.
+
+        None where nothing was compared, where the truth is too wide to tell, and where an error is no
+        finite number. A radian counts as a whole.
+        """
+        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
+            return None
+        has = _digits_below(self.roundoff) if self.roundoff else None
+        right = _digits_below(self.max) if self.max else has
+        return right if right is None or has is None else min(right, has)
+
+    @property
+    def sentence(self) -> str:
+        """The digits that are right, the kind of error that is left, and since when, in one line."""
+        return sentence(self)
 
     @property
     def is_conserved(self) -> bool:
@@ -128,9 +166,9 @@ class Verdict:
         return self.at is not None
 
     def row(self) -> dict[str, Any]:
-        """Return the row as JSON holds it: no NaN, no infinity, the reason also as a sentence.
+        """Return the row as JSON holds it: no NaN, no infinity, its reason also in one line.
 
-        Its ``provenance`` is the verdict's own.
+        ``digits`` and ``sentence`` are made of the others. Its ``provenance`` is the verdict's own.
         """
         found: dict[str, Any] = {}
         # A verdict that was read has its attributes in the order of the file.
@@ -139,7 +177,12 @@ class Verdict:
                 found |= {"because": self.because, "reason": plain(value)}
             else:
                 found[name] = finite(value)
-        return found
+        return {**found, "digits": self.digits, "sentence": self.sentence}
+
+
+def _digits_below(size: float) -> int:
+    """Return the number of zeros behind the point of a positive size, or 0."""
+    return max(floor(-log10(size)), 0)
 
 
 def read_row(row: Mapping[str, Any]) -> Verdict:

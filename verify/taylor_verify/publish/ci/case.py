@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from taylor_verify.publish.cells import figure, instant, ratio, reason
+from taylor_verify.publish.cells import figure, instant, ratio
 from taylor_verify.records.status import Status, gravest
 from taylor_verify.records.verdict import Verdict, exit_status
 
@@ -110,14 +110,14 @@ def _sentences(verdict: Verdict | None, remarks: list[Remark]) -> Iterator[str]:
 
 
 def sentence(verdict: Verdict) -> str:
-    """What a person can act on: which quantity, by how much, when, against what, and why that."""
+    """Return the sentence of a verdict, and the numbers that a person needs beside it."""
     if not verdict.is_compared:
-        return f"{verdict.quantity}: {verdict.verdict}; because {verdict.because}"
-    size = "is not finite" if verdict.max is None else f"reaches {figure(verdict.max)}"
+        return verdict.sentence
+    size = "not finite" if verdict.max is None else figure(verdict.max)
     unit = f" ({verdict.unit})" if verdict.unit else ""
     where = "" if verdict.ratio_at is None else f" at t = {instant(verdict.ratio_at)}"
     return (
-        f"{verdict.quantity}: {verdict.verdict}; the error {size}{unit} at t = {instant(verdict.at)}"
-        f", where {figure(verdict.bound)} is allowed; it is up to {ratio(verdict)} times what "
-        f"perfect rounding would leave{where}; because {reason(verdict)}"
+        f"{verdict.sentence}; largest error {size}{unit} at t = {instant(verdict.at)}, where "
+        f"{figure(verdict.bound)} is allowed; up to {ratio(verdict)} times what perfect rounding "
+        f"would leave{where}"
     )

@@ -1,0 +1,152 @@
+"""The kind of the error that is left in one quantity, and since when, from its samples.
+
+Only what the samples show is said: a power of time is named where a straight line in logarithms fits it
+closely, and an error that fits nothing is unexplained.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isfinite
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.reason import Kind
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Places = np.ndarray[Any, np.dtype[np.bool_]]
+
+_OF_A_SHIFT: Final = {
+    Kind.CONSTANT.value: ErrorKind.TIME_SHIFT,
+    Kind.DRIFTING.value: ErrorKind.PHASE_DRIFT,
+    Kind.WANDERING.value: ErrorKind.PHASE_WANDER,
+}
+# A constant error stays within this part of its largest value, over so many samples at least.
+_CONSTANT: Final = 0.9
+_FEWEST: Final = 5
+# An error as large as this part of the motion has nowhere to grow to.
+_LOST: Final = 0.1
+# The root mean squares of a bounded error over the quarters of the time are alike to this part, which
+# leaves room for noise, and for a growth as t^0.15. So many samples in each at least.
+_BOUNDED: Final = 0.75
+_QUARTERS: Final = 4
+_FEWEST_IN_A_QUARTER: Final = 5
+# The fit of a power: root mean squares over equal parts of the logarithm of time, from this part of the
+# time on. So many samples in each at least, and an interval of 95 % no wider than this to either side.
+_FROM: Final = 1 / 32
+_PARTS: Final = 5
+_FEWEST_IN_A_PART: Final = 3
+_STUDENT: Final = 3.182  # three degrees of freedom
+_CLEAR: Final = 0.2
+# A slower growth than this cannot be told from none.
+_LEAST_POWER: Final = 0.3
+
+
+def diagnosed(
+    verdict: Verdict, times: Floats, start: float, errors: Floats, attainable: Floats
+) -> Verdict:
+    """Return the verdict with the kind of its error, the growth of it, and since when it is too large.
+
+    ``errors`` and ``attainable`` are those of all samples, in the order of ``times``; ``start`` is the
+    time of the initial state.
+    """
+    bounds = _bounds(verdict, attainable)
+    too_large = np.flatnonzero(~(errors <= bounds))
+    is_failed = verdict.verdict is Status.FAIL and len(too_large) > 0
+    kind, exponent = None, None
+    if verdict.verdict is not Status.UNDECIDED:
+        # A truth that is too wide shows no course of the error.
+        kind, exponent = _kind(verdict, np.abs(times - start), errors, attainable)
+    return replace(
+        verdict,
+        since=float(times[too_large[0]]) if is_failed else None,
+        until=float(times[-1]),
+        error_kind=kind,
+        exponent=exponent,
+    )
+
+
+def _bounds(verdict: Verdict, attainable: Floats) -> Floats:
+    """Return the bound of every sample: the caller's tolerance, or that of the arithmetic."""
+    tolerance = verdict.tolerance
+    return GATE_FACTOR * attainable if tolerance is None else np.full(len(attainable), tolerance)
+
+
+def _kind(
+    verdict: Verdict, elapsed: Floats, errors: Floats, attainable: Floats
+) -> tuple[ErrorKind, float | None]:
+    if not np.isfinite(errors).all():
+        return ErrorKind.NOT_FINITE, None
+    if (errors <= GATE_FACTOR * attainable).all():
+        return ErrorKind.ROUNDOFF, None
+    along = _OF_A_SHIFT.get(verdict.shift or "")
+    if along in (ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT):
+        return along, None
+    if is_constant(errors):
+        return along or ErrorKind.OFFSET, None
+    if np.max(errors) >= _LOST:
+        return along or ErrorKind.UNEXPLAINED, None
+    if is_bounded(elapsed, errors):
+        return along or ErrorKind.BOUNDED, None
+    exponent = power_of_time(elapsed, errors)
+    if along is not None or exponent is not None:
+        return along or ErrorKind.GROWTH, exponent
+    return ErrorKind.UNEXPLAINED, None
+
+
+def is_constant(errors: Floats) -> bool:
+    """Return True for an error that is about the same at every sample, the first one included."""
+    return len(errors) >= _FEWEST and bool(np.min(errors) >= _CONSTANT * np.max(errors))
+
+
+def is_bounded(elapsed: Floats, errors: Floats) -> bool:
+    """Return True for an error that is as large in the first quarter of the time as in the others."""
+    quarters = _parts(elapsed, np.linspace(0.0, float(np.max(elapsed)), _QUARTERS + 1))
+    if any(np.count_nonzero(inside) < _FEWEST_IN_A_QUARTER for inside in quarters):
+        return False
+    sizes = [_mean_square_root(errors[inside]) for inside in quarters]
+    return min(sizes) >= _BOUNDED * max(sizes)
+
+
+def power_of_time(elapsed: Floats, errors: Floats) -> float | None:
+    """Return the power with which an error grows; None where the samples show none clearly."""
+    end = float(np.max(elapsed))
+    if not end > 0:
+        return None
+    points = []
+    for inside in _parts(elapsed, np.geomspace(_FROM * end, end, _PARTS + 1)):
+        size = _mean_square_root(errors[inside])
+        if np.count_nonzero(inside) < _FEWEST_IN_A_PART or not size > 0:
+            return None
+        points.append((float(np.mean(np.log(elapsed[inside]))), float(np.log(size))))
+    slope, half = _line(np.array(points))
+    return round(slope, 3) if half <= _CLEAR and slope >= _LEAST_POWER else None
+
+
+def _parts(elapsed: Floats, edges: Floats) -> list[Places]:
+    """Return the samples between each edge and the next one, the last edge included."""
+    begins, ends = edges[:-1], [*edges[1:-1], np.inf]
+    return [(elapsed >= begin) & (elapsed < end) for begin, end in zip(begins, ends, strict=True)]
+
+
+def _mean_square_root(errors: Floats) -> float:
+    """Return the root mean square, scaled so that no square leaves the doubles; 0 of none."""
+    largest = float(np.max(errors, initial=0.0))
+    if not largest > 0:
+        return 0.0
+    return largest * float(np.sqrt(np.mean((errors / largest) ** 2)))
+
+
+def _line(points: Floats) -> tuple[float, float]:
+    """Return the slope of a straight line through some points, and half of its interval."""
+    x, y = points[:, 0] - np.mean(points[:, 0]), points[:, 1] - np.mean(points[:, 1])
+    weight = float(np.sum(x * x))
+    slope = float(np.sum(x * y)) / weight
+    scatter = float(np.sum((y - slope * x) ** 2)) / (len(x) - 2)
+    half = _STUDENT * (scatter / weight) ** 0.5
+    return (slope, half) if isfinite(slope) and isfinite(half) else (0.0, float("inf"))

@@ -1,0 +1,93 @@
+"""The kinds of error that the file itself explains: its printed digits, float32, another convention.
+
+u is half a unit in the last printed place of the largest component, or 2^-24 for float32. Storing one row
+moves a vector of three components by at most sqrt(3) u of the largest of them, a quaternion by 2 u and so
+the attitude by 4 u radians, and a conserved quantity by u times its gradient, which stands in the reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import sqrt
+from typing import Final
+
+from taylor_verify.judge.arithmetic import truth_digits
+from taylor_verify.judge.conventions.search import Finding
+from taylor_verify.judge.file_notes import single_precision
+from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.quantities import CONSERVED, INITIAL, STATES, UNIT_QUATERNION
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.file import TrajectoryFile
+
+_FLOAT32: Final = 2.0**-24
+# A file with two digits less than the rung has is cut off.
+_SPARE_DIGITS: Final = 2
+_VECTOR: Final = sqrt(3)
+_ATTITUDE: Final = 4.0
+# The momenta in a conserved quantity are a state each, and the start has its own.
+_GRADIENT: Final = 2 * _VECTOR
+_IN_SPACE: Final = ("H_space", "x_space", "y_space")
+# The quantities that a convention of each subject changes; a map of time changes nothing conserved.
+_CHANGED: Final = {
+    "time": STATES,
+    "body": (*STATES, *CONSERVED),
+    "axes": (*STATES, *CONSERVED),
+    "omega": ("omega", *CONSERVED),
+    "linear_impulse": ("impulse", *CONSERVED),
+    "angular_impulse": ("impulse", *CONSERVED),
+    "quaternion": ("attitude", *_IN_SPACE),
+    "attitude": ("attitude", *_IN_SPACE),
+    "centre": ("centre", "y_space"),
+}
+# An error that its samples explain needs no other cause.
+_EXPLAINED: Final = (ErrorKind.ROUNDOFF, ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
+
+
+def with_file_kinds(
+    verdicts: Iterable[Verdict], file: TrajectoryFile, rung: Rung, findings: Sequence[Finding]
+) -> tuple[Verdict, ...]:
+    """Return the verdicts, the error of each as the file explains it where it does.
+
+    ``findings`` are those conventions that were not corrected.
+    """
+    stored = storing(file, rung)
+    changed = {
+        name for found in findings if found.is_certain for name in _CHANGED.get(found.subject, ())
+    }
+    return tuple(_with_kind(verdict, stored, changed) for verdict in verdicts)
+
+
+def storing(file: TrajectoryFile, rung: Rung) -> tuple[ErrorKind, float] | None:
+    """Return how the numbers were stored and the u of it; None where they have all that the rung has."""
+    if any(single_precision(file, rung)):
+        return ErrorKind.SINGLE, _FLOAT32
+    digits = file.digits
+    if digits is None or digits >= truth_digits(rung.bits, 1) - _SPARE_DIGITS:
+        return None
+    return ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits)
+
+
+def _with_kind(
+    verdict: Verdict, stored: tuple[ErrorKind, float] | None, changed: set[str]
+) -> Verdict:
+    if not verdict.is_compared or verdict.error_kind is ErrorKind.ROUNDOFF:
+        return verdict
+    if stored is not None:
+        kind, u = stored
+        if verdict.max is not None and verdict.max <= _left_by_storing(verdict) * u:
+            return replace(verdict, error_kind=kind, exponent=None)
+    if verdict.quantity in changed and verdict.error_kind not in _EXPLAINED:
+        return replace(verdict, error_kind=ErrorKind.CONVENTION, exponent=None)
+    return verdict
+
+
+def _left_by_storing(verdict: Verdict) -> float:
+    """Return the largest error that storing a row leaves, in units of u."""
+    if verdict.unit == "rad":
+        return _ATTITUDE
+    if verdict.quantity in (*STATES, INITIAL, UNIT_QUATERNION):
+        return _VECTOR
+    floor = verdict.reason.floor
+    return 0.0 if floor is None or floor.growth is None else _GRADIENT * floor.growth

@@ -1,0 +1,160 @@
+"""The sentence about one quantity: digits that are right, the error that is left, and since when.
+
+It is made of the values of a verdict, here and nowhere else. The arithmetic of the bound is the reason's
+affair.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.quantities import COMPLETE, GATE_FACTOR, INITIAL
+from taylor_verify.records.status import Status
+
+if TYPE_CHECKING:
+    from taylor_verify.records.verdict import Verdict
+
+# Powers of time that have a name: a random walk, a steady error, and their integrals.
+_POWERS: Final = {0.5: "t^1/2", 1.0: "t", 1.5: "t^3/2", 2.0: "t^2", 3.0: "t^3"}
+# A fitted power this near to one of them is called by its name.
+_NEAR: Final = 0.15
+# What of a change has one direction all the way, as a part of the largest error.
+_STEADY: Final = 0.5
+# Quantities of one sign: to lose some of them has a meaning.
+_POSITIVE: Final = ("T", "H2", "F2")
+_STORED: Final = {
+    ErrorKind.PRINTED: "the rounding of the file's own printed digits",
+    ErrorKind.SINGLE: "the rounding of the file's numbers to float32",
+}
+
+
+def sentence(verdict: Verdict) -> str:
+    """Return one line that begins with the quantity and can stand alone."""
+    conclusion = verdict.reason.conclusion
+    if verdict.quantity in (INITIAL, COMPLETE) and verdict.error_kind not in _STORED:
+        return f"{verdict.quantity}: {conclusion or verdict.verdict.value}"
+    if not verdict.is_compared:
+        return f"{verdict.quantity}: {conclusion or verdict.outcome}"
+    if verdict.verdict is Status.UNDECIDED:
+        return f"{verdict.quantity}: undecided{f', {conclusion}' if conclusion else ''}"
+    if verdict.quantity == INITIAL:
+        # Where the start is off by its printed digits alone, nothing after follows from it.
+        conclusion = ""
+    parts = [_digits(verdict), conclusion, *_left(verdict), _bound(verdict)]
+    return f"{verdict.quantity}: {'; '.join(filter(None, parts))}"
+
+
+def _digits(verdict: Verdict) -> str:
+    digits = verdict.digits
+    if digits is None or verdict.max is None:
+        return f"not a finite number{_since(verdict)}"
+    size = f"{verdict.max:.2g}{' rad' if verdict.unit == 'rad' else ''}"
+    if not digits:
+        return f"no digit is right at t = {verdict.at:g} (error {size})"
+    is_one_row = verdict.until is None or verdict.quantity == INITIAL
+    end = "" if is_one_row else f" up to t = {verdict.until:g}"
+    if verdict.max == 0:
+        return f"exact{end}"
+    verb = "kept" if verdict.is_conserved else "right"
+    count = "1 digit is" if digits == 1 else f"{digits} digits are"
+    return f"{count} {verb}{end} (largest error {size})"
+
+
+def _left(verdict: Verdict) -> Iterator[str]:
+    """Return what the error that is left is made of; empty where nothing is known of it."""
+    kind = verdict.error_kind
+    if verdict.max == 0 or verdict.verdict is Status.VACUOUS:
+        return
+    if kind is ErrorKind.ROUNDOFF:
+        yield "what is left is roundoff"
+    elif kind in _STORED:
+        yield f"what is left is {_STORED[kind]}"
+    elif kind is ErrorKind.CONVENTION:
+        yield "the file has another convention than the scene"
+    elif kind is ErrorKind.TIME_SHIFT:
+        yield f"the error is a time shift: the answer is {_late(verdict.time_shift)}{_remains(verdict)}"
+    elif kind is ErrorKind.PHASE_DRIFT:
+        yield f"the error is a drift of phase: the clock runs {_pace(verdict.trend)}{_remains(verdict)}"
+    elif kind is ErrorKind.PHASE_WANDER:
+        yield f"the error is a phase that wanders{_worst_shift(verdict)}{_remains(verdict)}"
+        yield from _course(verdict)
+    elif kind is not None and kind is not ErrorKind.NOT_FINITE:
+        if verdict.shift is not None and kind is not ErrorKind.OFFSET:
+            yield "no shift of time explains the error"
+        yield from _course(verdict)
+
+
+def _course(verdict: Verdict) -> Iterator[str]:
+    """Return the course of the error in time."""
+    if verdict.error_kind is ErrorKind.OFFSET:
+        yield "the error is a constant offset, there from the first row on"
+    elif verdict.error_kind is ErrorKind.BOUNDED:
+        yield "it hardly grows with time"
+    elif verdict.exponent is not None:
+        yield _growth(verdict, verdict.exponent)
+
+
+def _growth(verdict: Verdict, exponent: float) -> str:
+    nearest = min(_POWERS, key=lambda power: abs(power - exponent))
+    if abs(nearest - exponent) > _NEAR:
+        return "it grows with time"
+    if nearest == 1.0:
+        return f"it grows in proportion to t{_tendency(verdict)}"
+    return f"it grows as {_POWERS[nearest]}"
+
+
+def _tendency(verdict: Verdict) -> str:
+    change, size = verdict.change, verdict.max
+    if change is None or size is None or not abs(change) >= _STEADY * size:
+        return ""
+    if verdict.quantity not in _POSITIVE:
+        return ": a steady drift"
+    return ": a steady loss" if change < 0 else ": a steady gain"
+
+
+def _bound(verdict: Verdict) -> str:
+    """Return the bound in words, and since when the error is above it."""
+    tolerance = verdict.tolerance
+    if tolerance is not None:
+        limit = f"the tolerance of {tolerance:.3g}{_allowed_by_arithmetic(verdict)}"
+    else:
+        limit = f"what {verdict.rung} arithmetic would leave"
+    if verdict.error_kind is ErrorKind.NOT_FINITE:
+        return ""
+    if verdict.verdict is Status.FAIL:
+        return f"above {limit}{_since(verdict)}"
+    return f"within {limit}" if tolerance is not None and verdict.verdict is Status.PASS else ""
+
+
+def _since(verdict: Verdict) -> str:
+    return "" if verdict.since is None else f" since t = {verdict.since:g}"
+
+
+def _allowed_by_arithmetic(verdict: Verdict) -> str:
+    if verdict.attainable is None or verdict.error_kind is ErrorKind.ROUNDOFF:
+        return ""
+    return f" (roundoff of {verdict.rung} alone would need {GATE_FACTOR * verdict.attainable:.2g})"
+
+
+def _late(shift: float | None) -> str:
+    shift = shift or 0.0
+    return f"{'late' if shift >= 0 else 'early'} by {abs(shift):.3g}"
+
+
+def _pace(trend: float | None) -> str:
+    trend = trend or 0.0
+    return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} of the time"
+
+
+def _worst_shift(verdict: Verdict) -> str:
+    shift = verdict.reason.shift
+    return "" if shift is None or shift.at is None else f", {_late(shift.late)} at t = {shift.at:g}"
+
+
+def _remains(verdict: Verdict) -> str:
+    if verdict.remains is None:
+        return ""
+    shift = verdict.reason.shift
+    return f", and {verdict.remains:.2g} remains{shift.rows_of_it() if shift else ''}"
