@@ -152,7 +152,7 @@ def _times(stamps: Sequence[int]) -> tuple[list[Decimal], str]:
     is_clock = bool(stamps) and min(stamps) >= _CLOCK * 10**9
     zero = stamps[0] if is_clock else 0
     since = (
-        f"counts from the first stamp, {_seconds(zero)}"
+        f"counts from the first stamp, {zero // 10**9}.{zero % 10**9:09} s"
         if is_clock
         else "is the stamp of the header"
     )
