@@ -53,6 +53,8 @@ class Series:
         found = np.concatenate(self._blocks)
         if self._first != self._scale:
             found *= float(self._first / self._scale)
+        # The blocks are not kept beside it.
+        self._blocks, self._first = [found], self._scale
         return found, self._scale
 
 
