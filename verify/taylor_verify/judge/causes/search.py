@@ -60,6 +60,8 @@ def _read(material: Material) -> tuple[list[Candidate], Material, list[Candidate
     plain = _dynamics(material)
     by_motion = bool(plain) and not any(one.leaves <= LEAVES for one in plain)
     for reading in space_readings(material) if "omega" in material.failed else ():
+        if reading.is_refuted(material):
+            continue
         tried = _dynamics(reading.material)
         left = reading.leaves(material, tried, by_motion)
         if left is not None:

@@ -31,6 +31,11 @@ class SpaceReading:
         why = f"by the answer's own attitude it is taken to body axes{self.words}"
         return Candidate("omega in space axes", "omega", leaves, why)
 
+    def is_refuted(self, plain: Material) -> bool:
+        """Return True if the row at the start is right as it stands, and wrong so read."""
+        before, after = plain.start_error, self.material.start_error
+        return before is not None and after is not None and before <= _OFF < after
+
     def leaves(self, plain: Material, tried: list[Candidate], telling: bool) -> float | None:
         """Return the part of the error that the reading leaves; None if it is not proven.
 
