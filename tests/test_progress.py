@@ -35,3 +35,12 @@ def test_short_work_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
         PROGRESS.info("half of it")
     assert capsys.readouterr() == ("", "")
     assert not PROGRESS.handlers
+
+
+def test_a_share_is_drawn_and_told() -> None:
+    """News that say how much is done have a bar as long as that; others have none."""
+    with progress._news() as latest:
+        assert latest().bar == ""
+        PROGRESS.info("50 % of 8192 rows", extra={"share": 0.5})
+        assert latest().words == "50 % of 8192 rows"
+        assert latest().bar == f"[{'#' * 15}{'.' * 15}] "

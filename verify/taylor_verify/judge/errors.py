@@ -99,7 +99,7 @@ def state_distances(
     if "centre" in scene.track:
         length = (arc or Arc()).through(scene, truth)
         distances = norms(answer["centre"] - truth["centre"])
-        widths = _width(truth, "centre")
+        widths = _width(truth, "centre", norms(truth["centre"]))
         found.append(_distances("centre", "arc length", distances, widths, length))
     return found
 
@@ -112,12 +112,13 @@ def _vectors(
     quantity: str, unit: str, parts: Sequence[str], truth: Motion, answer: Motion
 ) -> Distances:
     """The size of each part is the largest norm that it reaches."""
+    sizes = {part: norms(truth[part]) for part in parts}
     return Distances(
         quantity,
         unit,
         {part: norms(answer[part] - truth[part]) for part in parts},
-        {part: _width(truth, part) for part in parts},
-        {part: largest(norms(truth[part])) for part in parts},
+        {part: _width(truth, part, sizes[part]) for part in parts},
+        {part: largest(sizes[part]) for part in parts},
     )
 
 
@@ -128,10 +129,10 @@ def _larger(by_part: Sequence[Column]) -> Column:
     return np.array([largest(row) for row in zip(*by_part, strict=True)], dtype=object)
 
 
-def _width(truth: Motion, quantity: str) -> Column:
-    """How wrong each vector of the truth may be, in its own unit."""
-    sizes = [or_one(size) for size in norms(truth[quantity])]
-    width: Column = truth.radius_of(quantity) * np.array(sizes, dtype=object)
+def _width(truth: Motion, quantity: str, sizes: Column) -> Column:
+    """How wrong each vector of the truth may be, in its own unit; ``sizes`` are those of the vectors."""
+    whole = np.array([or_one(size) for size in sizes], dtype=object)
+    width: Column = truth.radius_of(quantity) * whole
     return width
 
 
