@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -27,12 +27,15 @@ def files_text(judged: FilesJudgement, scene: str, rung: str) -> str:
     print_line(console, Text(head, "bold"), f": judged as answers to {scene} in {rung} arithmetic")
     for order in judged.order:
         print_indented(console, "  ", order.sentence)
-    for note in judged.notes:
+    common = [
+        note for note in judged.files[0].notes if all(note in one.notes for one in judged.files)
+    ]
+    for note in (*judged.notes, *common):
         print_line(console, Text("note", "yellow"), f"  {note}")
     print_line(console)
     console.print(_files_table(judged))
     for one in judged.files:
-        _print_peculiar(console, one)
+        _print_peculiar(console, one, common)
     print_line(console, f"\n{counts(judged.verdicts)}; `check` of one file alone says the reasons")
     return text_of(console)
 
@@ -62,8 +65,8 @@ def _files_table(judged: FilesJudgement) -> Table:
     return table
 
 
-def _print_peculiar(console: Console, one: FileJudgement) -> None:
-    lines = list(_peculiar(one))
+def _print_peculiar(console: Console, one: FileJudgement, common: Sequence[str]) -> None:
+    lines = [line for line in _peculiar(one) if line not in common]
     if not lines:
         return
     print_line(console)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -18,9 +18,10 @@ from taylor_verify.judge.conventions.search import Conventions
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.quantities import MOMENTA, STATES
+from taylor_verify.records.quantities import MOMENTA, STATES, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -72,8 +73,10 @@ def _of_file(
         return None
     attitudes = _attitudes(file, given, found)
     values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
-    made = _material(given, values, _quaternions(attitudes), rung, verdicts)
     columns = [file.rows[name].doubles() for name in values]
+    if not values and isinstance(given.body, ImmersedBody) and set(VELOCITIES) <= set(file.groups):
+        values = _impulses(given.body, [_read(file, name, found, attitudes) for name in VELOCITIES])
+    made = _material(given, values, _quaternions(attitudes), rung, verdicts)
     return replace(made, digits=file.digits, columns=np.hstack(columns) if columns else None)
 
 
@@ -117,6 +120,13 @@ def _material(
 
 def _momenta(file: TrajectoryFile, given: Scene) -> list[str]:
     return [name for name in MOMENTA[given.model] if name in file.groups]
+
+
+def _impulses(body: ImmersedBody, velocities: Sequence[Floats]) -> dict[str, Floats]:
+    """The impulses x and y of U and Omega, (x, y) = M (U, Omega)."""
+    M = np.array([[float(entry) for entry in row] for row in body.mass_matrix])
+    x, y = np.hsplit(np.hstack(velocities) @ M.T, 2)
+    return dict(zip(MOMENTA["kirchhoff"], (x, y), strict=True))
 
 
 def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
