@@ -9,7 +9,11 @@ import pytest
 from worked import DOCS, Numbers, Untrue, blocks, compare, work
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
-CHECK, CHOOSE, GATE = (page.stem for page in TUTORIALS)
+# A tutorial for each role, and for each use.
+NAMES = (
+    *("check-my-satellite", "check-my-simulator", "check-my-vehicle", "choose-my-precision"),
+    *("gate-my-ci", "gate-my-cpp", "judge-my-engine"),
+)
 
 
 @pytest.fixture(autouse=True)
@@ -22,14 +26,16 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
 def test_a_tutorial_is_true(page: Path, tmp_path: Path) -> None:
     """Worked from top to bottom in an empty folder, every block does what the page says."""
-    if "$ cc " in page.read_text(encoding="utf-8") and shutil.which("cc") is None:
-        pytest.skip("no C compiler")
-    assert work(page, tmp_path) >= 9
+    text = page.read_text(encoding="utf-8")
+    for compiler in ("cc", "c++"):
+        if f"$ {compiler} " in text and shutil.which(compiler) is None:
+            pytest.skip(f"no compiler {compiler}")
+    assert work(page, tmp_path) >= 8
 
 
-def test_the_three_uses_have_a_tutorial() -> None:
-    """Check my simulator, choose my precision, gate my CI."""
-    assert (CHECK, CHOOSE, GATE) == ("check-my-simulator", "choose-my-precision", "gate-my-ci")
+def test_each_role_has_a_tutorial() -> None:
+    """Satellite, simulator, vehicle, precision, CI in Python and C, CI in C++, engine."""
+    assert tuple(page.stem for page in TUTORIALS) == NAMES
 
 
 def test_every_command_of_a_tutorial_is_run() -> None:

@@ -4,7 +4,7 @@ A reader goes from top to bottom in an empty folder, and so does `work`:
 
     ```python   whose first line is `# NAME.py`: the file of that name; without a name it is executed,
                 and what it prints must be the ```text block that follows
-    ```toml     likewise a file
+    ```toml     likewise a file, and so is ```cpp, whose first line is `// NAME.cpp`
     ```diff     a change of a file that is there: each hunk's old lines must occur in it once
     ```console  `$ COMMAND` and what it prints, on stdout and, as a terminal mixes them, stderr
 
@@ -38,12 +38,12 @@ DOCS: Final = ROOT / "docs"
 
 _FENCE: Final = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _REMARK: Final = re.compile(r"<!-- (numbers|given): (.+?) -->")
-_NAMED: Final = re.compile(r"# ([\w./-]+\.(?:py|toml))\n")
+_NAMED: Final = re.compile(r"(?:#|//) ([\w./-]+\.(?:py|toml|cpp))\n")
 _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 _TOKEN: Final = re.compile(rf"\.\.\.|{_NUMBER.pattern}|[\w/]+|\S")
 _OWN_COMMAND: Final = re.compile(r"(taylor-verify|pytest) [^|&;<]*")
 # What a terminal shows and wipes away, and files do not: see taylor_verify.cli.progress.
-_SIGN_OF_LIFE: Final = re.compile(r"taylor-verify: (?:.*: computing|\d+/\d+ .* on [\w ]+)$")
+_SIGN_OF_LIFE: Final = re.compile(r"taylor-verify: (?:.*: computing|.*\d % of .*|\d+/\d+ .* on [\w ]+)$")
 
 
 class Untrue(AssertionError):
@@ -144,6 +144,7 @@ class Desk:
             "given": self._given,
             "python": self._python,
             "toml": self._file,
+            "cpp": self._file,
             "diff": self._diff,
             "console": self._console,
             "text": self._text,
@@ -207,10 +208,16 @@ class Desk:
         self.status = done.returncode
         return done.stdout
 
+    def _names(self, word: str) -> list[str]:
+        found = sorted(self.folder.glob(word)) if "*" in word else []
+        return [path.name for path in found] or [word]
+
     def _own(self, command: str) -> str:
         """taylor-verify and pytest in this process, where everything is imported already."""
         call, _, file = command.partition(">")
-        name, *arguments = shlex.split(call)
+        name, *words = shlex.split(call)
+        # A shell replaces a pattern by the names that fit it.
+        arguments = [one for word in words for one in self._names(word)]
         with (
             contextlib.redirect_stdout(io.StringIO()) as out,
             contextlib.redirect_stderr(io.StringIO()) as err,
