@@ -283,7 +283,7 @@ def baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     def judged(jobs: list[Job], *_: Any) -> list[Any]:
         scenes = {job.name for job in jobs}
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
+        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}, "causes": ()})]
 
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
     return tmp_path / "data" / "verdicts.json"
@@ -342,7 +342,7 @@ def test_a_baseline_excuses_no_failure(
     failed = row(60.0, verdict=Status.FAIL)
     monkeypatch.setattr(
         "taylor_verify.batch.judging.judge_all",
-        lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}})],
+        lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}, "causes": ()})],
     )
     baseline.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")
     assert main(["run", "euler/generic", "--baseline", str(baseline), "--json"]) == 1

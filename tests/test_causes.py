@@ -441,4 +441,4 @@ def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path
     solver = f"process:{sys.executable} {program}"
     assert main(["run", "euler/generic", "--solver", solver]) == 1
     printed = capsys.readouterr().out
-    assert "likely cause  euler/generic f64: no gyroscopic term: " in printed
+    assert "likely cause: no gyroscopic term: " in printed

@@ -279,7 +279,7 @@ def test_a_list_of_files_has_one_judgement(judged: FilesJudgement, files: list[s
     assert {verdict.setting for verdict in judged.verdicts} == {*files}
     assert not judged.passed
     assert not judged
-    with pytest.raises(NotPassed, match="omega: fail"):
+    with pytest.raises(NotPassed, match="f64 omega: 5 digits are right"):
         judged.raise_for_failure()
     assert len(judged.to_dataframe()) == len(judged.verdicts)
     assert repr(judged).startswith("<FilesJudgement of 4 files on ")
@@ -323,7 +323,7 @@ def test_one_file_in_a_list_shows_no_order(scene: Path, files: list[str]) -> Non
             {},
             "expected trajectory files alone in a list",
         ),
-        ([3], {}, "expected a callable solve.problem. or a trajectory file, got int"),
+        ([3], {}, "expected a callable solve.problem., a trajectory file, .*, got int: 3"),
     ],
 )
 def test_a_wrong_call_is_refused(

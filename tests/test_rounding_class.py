@@ -249,7 +249,7 @@ def published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     def judged(jobs: list[Job], *_: Any) -> list[Any]:
         scenes = {job.name for job in jobs}
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}})]
+        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}, "causes": ()})]
 
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
     return tmp_path

@@ -98,7 +98,7 @@ def test_run_names_the_command_that_installs_it(scenes: list[str], tmp_path: Pat
     status, out, err = command(tmp_path, "run", *scenes, "--rung", "f64")
     assert status == 2
     (counts, why) = out.splitlines()
-    assert counts.endswith(" unavailable")
+    assert counts.endswith(" unavailable: not judged (exit status 2)")
     assert why == f"nothing was judged: expected heyoka, got no such package: {INSTALL}"
     assert err.splitlines()[-1] == f"taylor-verify: {why}"
 
@@ -110,7 +110,7 @@ def test_the_plugin_advises_to_install_it(tmp_path: Path) -> None:
     )
     done = lacking(tmp_path, HEYOKA, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_mine.py")
     assert done.returncode == 1
-    assert f"because  expected heyoka, got no such package: {INSTALL}" in done.stdout
+    assert f"expected heyoka, got no such package: {INSTALL}" in done.stdout
     assert "mend     install the package that is missing" in done.stdout
     assert "take another" not in done.stdout
 

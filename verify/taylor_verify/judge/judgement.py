@@ -18,6 +18,7 @@ from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.four_digits import four_digits
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.measured import Comparison
 from taylor_verify.judge.provenance import provenance
@@ -28,7 +29,7 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.doubles import Doubles, four_digits
+from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.quantities import MAIN, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, final, overload
+from typing import TYPE_CHECKING, Any, final, overload
 
-import numpy as np
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
-
-# Decimal digits of a number that a picture needs.
-_DIGITS = 4
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @final
@@ -20,9 +17,11 @@ class Doubles(Sequence[float]):
     __slots__ = ("_values",)
 
     def __init__(self, values: Iterable[float] = ()) -> None:
-        given = values if isinstance(values, np.ndarray) else list(values)
-        self._values: Floats = np.array(given, dtype=np.float64)
-        self._values.setflags(write=False)
+        self._values = array("d")
+        if hasattr(values, "tobytes") and hasattr(values, "astype"):
+            self._values.frombytes(values.astype("float64").tobytes())
+        else:
+            self._values.extend(values)
 
     def __len__(self) -> int:
         return len(self._values)
@@ -34,15 +33,18 @@ class Doubles(Sequence[float]):
     def __getitem__(self, place: slice) -> Doubles: ...
 
     def __getitem__(self, place: int | slice) -> float | Doubles:
-        found = self._values[place]
-        return Doubles(found) if isinstance(place, slice) else float(found)
+        return Doubles(self._values[place]) if isinstance(place, slice) else self._values[place]
 
     def __iter__(self) -> Iterator[float]:
         return iter(self._values.tolist())
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        import numpy as np
+
         # Who asks for no copy gets what nobody can write to.
-        return self._values if copy is False else self._values.astype(dtype or np.float64)
+        held = np.asarray(self._values)
+        held.setflags(write=False)
+        return held if copy is False else held.astype(dtype or np.float64)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
@@ -57,25 +59,3 @@ class Doubles(Sequence[float]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Doubles, (self._values,)
-
-
-def four_digits(values: Iterable[float]) -> Doubles:
-    """Return the numbers, each the nearest double to its own first four decimal digits.
-
-    A million numbers are written out once for each of the four digits that occur, not once each.
-    """
-    exact: Floats = np.asarray(values if isinstance(values, np.ndarray) else list(values), float)
-    found = exact.copy()
-    with np.errstate(all="ignore"):
-        power = np.floor(np.log10(np.abs(exact))) - (_DIGITS - 1)
-        counts = exact / 10.0**power
-        whole = np.rint(counts)
-        # Elsewhere a rounding of the quotient cannot change the digits.
-        is_clear = (np.abs(power) < 250) & (np.abs(np.abs(counts - whole) - 0.5) > 1e-6)
-    codes = whole[is_clear] + 1j * power[is_clear]
-    each, places = np.unique(codes, return_inverse=True)
-    texts = [float(f"{int(code.real)}e{int(code.imag)}") for code in each]
-    found[is_clear] = np.array(texts, dtype=float)[places]
-    others = np.flatnonzero(~is_clear)
-    found[others] = [float(f"{value:.{_DIGITS}g}") for value in exact[others].tolist()]
-    return Doubles(found)
