@@ -30,7 +30,7 @@ def test_a_tutorial_is_true(page: Path, tmp_path: Path) -> None:
     for compiler in ("cc", "c++"):
         if f"$ {compiler} " in text and shutil.which(compiler) is None:
             pytest.skip(f"no compiler {compiler}")
-    assert work(page, tmp_path) >= 8
+    assert work(page, tmp_path) >= 5
 
 
 def test_each_role_has_a_tutorial() -> None:
