@@ -120,16 +120,22 @@ def _numerical(found: Mapping[str, str]) -> dict[str, str]:
 # Writing.
 
 
+# Made of the other numbers of a row.
+_DERIVED = ("digits", "sentence")
+# Most rows have none of these.
+_SELDOM = ("tolerance", "since", "change", "error_kind")
+
+
 def row(verdict: Verdict) -> dict[str, Any]:
     """A verdict as it is stored: without what is another number every time, or on every machine."""
     stored = verdict.row()
     del stored["seconds"]
-    if stored["tolerance"] is None:
-        del stored["tolerance"]
+    left_out = {*_DERIVED, *(name for name in _SELDOM if stored[name] is None)}
     if verdict.verdict is not Status.FAIL:
         # Which way roundings push the time is another draw on every machine.
-        for name in _SHIFT:
-            del stored[name]
+        left_out |= {*_SHIFT, "change"}
+    for name in left_out:
+        del stored[name]
     apart = ("versions", *_MACHINE)
     stored["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
     return stored
