@@ -15,7 +15,7 @@ from taylor_verify.records.verdict import Verdict, read_study
 CONTROLS: Final = f"{store.FOLDER}/controls.json"
 
 _MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
-_APART: Final = ("seconds", "provenance")
+_APART: Final = ("digits", "sentence", "seconds", "provenance")
 _SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
+from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import first_line, replace_files
@@ -120,8 +121,8 @@ def _numerical(found: Mapping[str, str]) -> dict[str, str]:
 # Writing.
 
 
-# Made of the other numbers of a row.
-_DERIVED = ("digits", "sentence")
+# Made of the other numbers of a row, or of the scene.
+_DERIVED = ("digits", "sentence", "until")
 # Most rows have none of these.
 _SELDOM = ("tolerance", "since", "change", "error_kind")
 
@@ -134,6 +135,8 @@ def row(verdict: Verdict) -> dict[str, Any]:
     if verdict.verdict is not Status.FAIL:
         # Which way roundings push the time is another draw on every machine.
         left_out |= {*_SHIFT, "change"}
+    if verdict.error_kind is ErrorKind.ROUNDOFF:
+        left_out.add("error_kind")
     for name in left_out:
         del stored[name]
     apart = ("versions", *_MACHINE)
