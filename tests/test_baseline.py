@@ -342,7 +342,9 @@ def test_a_baseline_excuses_no_failure(
     failed = row(60.0, verdict=Status.FAIL)
     monkeypatch.setattr(
         "taylor_verify.batch.judging.judge_all",
-        lambda *_: [type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}, "causes": ()})],
+        lambda *_: [
+            type("Judged", (), {"verdicts": (failed,), "record": None, "costs": {}, "causes": ()})
+        ],
     )
     baseline.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")
     assert main(["run", "euler/generic", "--baseline", str(baseline), "--json"]) == 1

@@ -214,7 +214,7 @@ def test_half_a_millisecond_is_seen(tmp_path: Path) -> None:
 
 
 def test_initial_state_that_is_not_the_scenes_is_said_first(tmp_path: Path) -> None:
-    """The first row is its own, fails and says that everything after follows from it."""
+    """The first row is its own, fails and says by how much."""
     scene = load(SCENE)
     assert isinstance(scene.initial, Spin)
     w1, w2, w3 = scene.initial.omega

@@ -104,7 +104,7 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
     ),
     "offset": (
         lambda: changed(lambda omega, t: omega + np.array([1e-5, -1e-5, 2e-5])),
-        repr, ErrorKind.OFFSET, "the error is a constant offset, there from the first row on",
+        repr, ErrorKind.OFFSET, "the error has one size at all samples",
     ),
     "noise": (lambda: changed(noisy), repr, ErrorKind.BOUNDED, "it hardly grows with time"),
     "loss": (
@@ -181,8 +181,8 @@ def test_a_printed_start_is_no_wrong_start(judged: dict[str, dict[str, Verdict]]
     """Where the digits of the file are all that is wrong with its first row, nothing follows from it."""
     start = judged["float32"][INITIAL]
     assert start.error_kind is ErrorKind.SINGLE
-    assert "everything after follows" not in start.sentence
-    assert "everything after follows" in judged["offset"][INITIAL].sentence
+    assert "is not the scene's initial state" not in start.sentence
+    assert "is not the scene's initial state" in judged["offset"][INITIAL].sentence
 
 
 # Since when.

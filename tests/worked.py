@@ -43,7 +43,9 @@ _NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])
 _TOKEN: Final = re.compile(rf"\.\.\.|{_NUMBER.pattern}|[\w/]+|\S")
 _OWN_COMMAND: Final = re.compile(r"(taylor-verify|pytest) [^|&;<]*")
 # What a terminal shows and wipes away, and files do not: see taylor_verify.cli.progress.
-_SIGN_OF_LIFE: Final = re.compile(r"taylor-verify: (?:.*: computing|.*\d % of .*|\d+/\d+ .* on [\w ]+)$")
+_SIGN_OF_LIFE: Final = re.compile(
+    r"taylor-verify: (?:.*: computing|.*\d % of .*|\d+/\d+ .* on [\w ]+)$"
+)
 
 
 class Untrue(AssertionError):

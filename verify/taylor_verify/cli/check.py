@@ -53,7 +53,9 @@ def check(options: argparse.Namespace) -> Answer:
     if len(files) == 1:
         judged = _judged(options, files[0], scene)
         to_ci = tell(asked, judged, exit_status(judged.verdicts))
-        text = partial(check_text, judged, scene.name, options.rung, to_ci.status, options.explain)
+        text = partial(
+            check_text, judged, scene.name, options.rung, to_ci.stated_status, options.explain
+        )
         document = {**judged.document(), **to_ci.document}
         return Answer(to_ci.status, document, to_ci.closing(text), to_ci.messages)
     try:

@@ -31,7 +31,7 @@ _HEADINGS: Final = (
 
 
 def check_text(
-    judged: FileJudgement, scene: str, rung: str, status: int, explained: bool = False
+    judged: FileJudgement, scene: str, rung: str, status: int | None, explained: bool = False
 ) -> str:
     """Return the sentence for each quantity, the likely causes, the numbers, and the counts.
 

@@ -70,6 +70,11 @@ class Told:
     status: int
     decision: str = ""
 
+    @property
+    def stated_status(self) -> int | None:
+        """The exit status that follows from the rows; None where a baseline alone has decided it."""
+        return None if self.decision else self.status
+
     def closing(self, text: Callable[[], str]) -> Callable[[], str]:
         """Return the text with the decision as its last line."""
         return (lambda: f"{text()}\n{self.decision}") if self.decision else text

@@ -66,10 +66,14 @@ def print_arithmetic(console: Console, verdicts: Sequence[Verdict]) -> None:
 
 
 def print_end(
-    console: Console, verdicts: Sequence[Verdict], counts: str, status: int, explained: bool
+    console: Console, verdicts: Sequence[Verdict], counts: str, status: int | None, explained: bool
 ) -> None:
-    """Print the counts, the meaning of the exit status, and what to do next."""
-    print_line(console, f"{counts}: {_MEANINGS.get(status, '')} (exit status {status})")
+    """Print the counts, the meaning of the exit status, and what to do next.
+
+    ``status`` is None where something else than the rows decides it.
+    """
+    meaning = f"{_MEANINGS.get(status, '')} (exit status {status})" if status is not None else ""
+    print_line(console, f"{counts}: {meaning or 'by their own bounds'}")
     for step in _next_steps(verdicts, explained):
         print_indented(console, "  ", step)
 

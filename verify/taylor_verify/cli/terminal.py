@@ -63,7 +63,7 @@ def names_text(
 def verdicts_text(
     verdicts: Sequence[Verdict],
     held: Agreement,
-    status: int,
+    status: int | None,
     causes: Sequence[LikelyCause] = (),
     explained: bool = False,
 ) -> str:

@@ -117,7 +117,7 @@ def _run_answer(
         verdicts_text,
         results.verdicts,
         results.agreement,
-        to_ci.status,
+        to_ci.stated_status,
         results.causes,
         explained,
     )

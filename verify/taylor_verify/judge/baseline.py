@@ -142,11 +142,18 @@ def _compared(verdicts: Iterable[Verdict]) -> Iterator[Verdict]:
 def _other_question(old: Verdict, new: Verdict) -> Iterator[Departure]:
     if old.provenance.get("scene") != new.provenance.get("scene"):
         yield departure(new, "scene", "the text that the baseline was made of", "another")
+    if _is_other_span(old, new):
+        yield departure(new, "last time", told(old.until), told(new.until))
     for name in ("unit", "roundoff"):
         was, now = getattr(old, name), getattr(new, name)
         # A run that came to no comparison has neither.
         if was and now and was != now:
             yield departure(new, name, str(was), str(now))
+
+
+def _is_other_span(old: Verdict, new: Verdict) -> bool:
+    """Return True where the last time that was judged is another one: a longer run has larger errors."""
+    return old.until is not None and new.until is not None and old.until != new.until
 
 
 def _regressions(old: Verdict, new: Verdict) -> Iterator[Departure]:

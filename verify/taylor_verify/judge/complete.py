@@ -106,7 +106,7 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
     yield from (f"the {noun}" for noun in missing)
     span = f"the scene's span of {float(extent.end):g}"
     if extent.is_one_state:
-        yield f"the motion along {span} (one row is no trajectory)"
+        yield f"the motion along {span} (one row within it is no trajectory)"
         return
     if not extent.reaches_start:
         yield f"the first {float(extent.first):.6g} of {span}"

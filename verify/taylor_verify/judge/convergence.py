@@ -177,13 +177,21 @@ def _stop(points: Sequence[_Point]) -> int:
     """Where errors stop falling for good: the first point that no smaller step improves on.
 
     No improvement is one that is slower, from there to the end, than an order of a half: a step that
-    happens to do well stops nothing, nor does a start that is not falling yet.
+    happens to do well stops nothing, nor does a start that is not falling yet, or slowly.
     """
     for i, point in enumerate(points[:-1]):
         later = min(points[i + 1 :], key=lambda p: p.size)
-        if _local(point, replace(later, step=points[-1].step)) < _STALLED:
+        slow = _local(point, replace(later, step=points[-1].step)) < _STALLED
+        if slow and not _is_gaining(points[i:]):
             return i
     return len(points)
+
+
+def _is_gaining(points: Sequence[_Point]) -> bool:
+    """Return True for errors that fall faster from step to step: their steps were too large at first."""
+    orders = [_local(a, b) for a, b in pairwise(points)]
+    rises = all(before < after for before, after in pairwise(orders))
+    return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
 
 
 def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:

@@ -57,6 +57,9 @@ def diagnosed(
     """
     bounds = _bounds(verdict, attainable)
     too_large = np.flatnonzero(~(errors <= bounds))
+    if not np.isfinite(errors).all():
+        # What is no number comes first, whatever else is too large.
+        too_large = np.flatnonzero(~np.isfinite(errors))
     is_failed = verdict.verdict is Status.FAIL and len(too_large) > 0
     kind, exponent = None, None
     if verdict.verdict is not Status.UNDECIDED:

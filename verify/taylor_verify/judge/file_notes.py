@@ -38,7 +38,11 @@ def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
         for name in foreign
     ]
     if not faults:
-        wanted = " or ".join(" ".join(COLUMNS[name]) for name in _wanted(scene))
+        groups = [" ".join(COLUMNS[name]) for name in _wanted(scene)]
+        if scene.model == "kirchhoff":
+            # Whoever has velocities has no impulses.
+            groups.insert(0, " ".join(n for name in VELOCITIES for n in COLUMNS[name]))
+        wanted = " or ".join(groups)
         got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
         first = COLUMNS[_wanted(scene)[0]][0]
         notes = "; ".join((*file.notes, f"name other columns: --columns {first}=NAME,..."))

@@ -100,9 +100,7 @@ def _said(gate: Graded, error: float, finding: Finding, start: float) -> str:
         f"its {gate.verdict.quantity} is off by {error:.3g}",
     )
     if not error <= finding.bound:
-        return (
-            f"{row}, is not the scene's initial state: {off}, and everything after follows from it"
-        )
+        return f"{row}, is not the scene's initial state: {off}"
     if finding.is_rounding or finding.tolerance is None:
         return f"{row}, is the scene's initial state"
     return f"{row}, is the scene's initial state to within the tolerance: {off}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from math import sqrt
+from math import inf, sqrt
 from typing import Final
 
 from taylor_verify.judge.arithmetic import truth_digits
@@ -41,6 +41,8 @@ _CHANGED: Final = {
     "attitude": ("attitude", *_IN_SPACE),
     "centre": ("centre", "y_space"),
 }
+# A shift that leaves no more than so many times as much is the clock that was found.
+_AS_WELL: Final = 1e6
 # An error that its samples explain needs no other cause.
 _EXPLAINED: Final = (ErrorKind.ROUNDOFF, ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
 
@@ -56,7 +58,21 @@ def with_file_kinds(
     changed = {
         name for found in findings if found.is_certain for name in _CHANGED.get(found.subject, ())
     }
-    return tuple(_with_kind(verdict, stored, changed) for verdict in verdicts)
+    left = [found.after for found in findings if found.is_certain and found.subject == "time"]
+    return tuple(
+        _with_clock(_with_kind(verdict, stored, changed), *left[:1]) for verdict in verdicts
+    )
+
+
+def _with_clock(verdict: Verdict, left: float = inf) -> Verdict:
+    """Return the verdict with the clock that was found as its kind, where no shift explains as much.
+
+    ``left`` is the error that this clock leaves; infinite where none was found.
+    """
+    is_shifted = verdict.error_kind in (ErrorKind.TIME_SHIFT, ErrorKind.PHASE_DRIFT)
+    if not is_shifted or verdict.remains is None or verdict.remains <= _AS_WELL * left:
+        return verdict
+    return replace(verdict, error_kind=ErrorKind.CONVENTION)
 
 
 def storing(file: TrajectoryFile, rung: Rung) -> tuple[ErrorKind, float] | None:

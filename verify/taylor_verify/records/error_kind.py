@@ -20,7 +20,7 @@ class ErrorKind(StrEnum):
     # The file departs from the scene's conventions, which explains the error.
     CONVENTION = "convention"
     # About the same at every sample, the first one included.
-    OFFSET = "constant offset"
+    OFFSET = "constant size"
     # About as large in every quarter of the time.
     BOUNDED = "bounded"
     # Growing with a power of time, which is the exponent of the verdict.

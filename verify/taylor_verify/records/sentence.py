@@ -89,7 +89,7 @@ def _left(verdict: Verdict) -> Iterator[str]:
 def _course(verdict: Verdict) -> Iterator[str]:
     """Return the course of the error in time."""
     if verdict.error_kind is ErrorKind.OFFSET:
-        yield "the error is a constant offset, there from the first row on"
+        yield "the error has one size at all samples, the first one included"
     elif verdict.error_kind is ErrorKind.BOUNDED:
         yield "it hardly grows with time"
     elif verdict.exponent is not None:

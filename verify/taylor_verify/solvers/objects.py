@@ -177,10 +177,10 @@ class _Gathered:
             self._add(name + unit, array)
         elif group := self._group(name, array):
             shape = " x ".join(str(size) for size in array.shape)
-            self._own(group, array.reshape(len(array), -1), f"`{cut(name)}` ({shape})", unit)
+            self._own(group, _flat(array), f"`{cut(name)}` ({shape})", unit)
         elif array.ndim in (2, 3):
             places = list(product(*(range(size) for size in array.shape[1:])))
-            for index, values in zip(places, array.reshape(len(array), -1).T, strict=True):
+            for index, values in zip(places, _flat(array).T, strict=True):
                 label = "".join(_label(i, axis, labels) for axis, i in enumerate(index))
                 self._add(name + label + unit, values)
 
@@ -249,3 +249,8 @@ def _each(columns: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         )
     for ours, theirs in columns.items():
         yield str(ours), _written(theirs)
+
+
+def _flat(array: Any) -> Any:
+    """Return an array of rows of numbers, whatever the shape of a row."""
+    return array.reshape(len(array), int(np.prod(array.shape[1:])))

@@ -50,7 +50,7 @@ def exact(raw: object) -> Value:
     if isinstance(raw, Fraction):
         return raw
     if isinstance(raw, datetime | np.datetime64):
-        raise ValueError("a number, the time since the start")
+        raise ValueError("a number, the time since the start (subtract the first date)")
     if isinstance(raw, Decimal):
         return exact_number(raw) if raw.is_finite() else float(raw)
     raise ValueError("a number")

@@ -112,7 +112,7 @@ _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
     ),
     (
         "implicit gyroscopic step",
-        "a step is one of Newton's method for backward Euler on the gyroscopic term",
+        "a step is backward Euler on the gyroscopic term, or one of Newton's method for it",
         _implicit,
     ),
 )

@@ -24,6 +24,7 @@ _SCALES: Final = (
     (Fraction(1, 10**9), "1e-9 of the scene's unit (nanoseconds for seconds)"),
     (Fraction(60), "sixties of the scene's unit (minutes for seconds)"),
     (Fraction(3600), "3600 of the scene's unit (hours for seconds)"),
+    (Fraction(86400), "86400 of the scene's unit (days for seconds)"),
 )
 
 

@@ -181,7 +181,8 @@ class _Chooser:
             if unit is None:
                 name = GROUPS[choice.group][choice.columns.index(column)]
                 mend = (
-                    f"--columns {name}='{cut(column.name)}' takes its numbers in the scene's unit"
+                    f"convert its numbers; --columns {name}='{cut(column.name)}' takes them as they are, "
+                    "in the scene's unit"
                 )
                 expected = f"a unit of {known_units(choice.group)}"
                 place = f"{self.place}, column {cut(column.name)}"
