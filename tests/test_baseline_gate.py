@@ -14,10 +14,11 @@ import pytest
 from samples import THREE_INSTANTS
 from test_baseline import row
 
-from taylor_verify.batch.comparison import compare_with_baseline
+from taylor_verify.batch.comparison import Earlier, compare_with_baseline
 from taylor_verify.check import check
 from taylor_verify.cli import main
 from taylor_verify.judge.baseline import decided_alone, hold
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.publish.ci.annotations import annotation_lines
 from taylor_verify.publish.ci.case import Remark
 from taylor_verify.publish.ci.junit import junit
@@ -235,3 +236,21 @@ def test_of_several_files_the_one_with_the_same_name_counts(scene: str, capsys: 
         assert main(call) == status
     error = capsys.readouterr().err
     assert "its file is monday.csv, tuesday.csv, and this one sunday.csv" in error
+
+
+def test_another_span_is_not_comparable() -> None:
+    """An answer that ends early has smaller errors than the whole one: no row of it shows anything."""
+    assert status_alone([ordinary(until=40.0)], [ordinary(until=9.0)]) == 3
+    assert status_alone([ordinary(until=40.0)], [ordinary(until=40.0)]) == 0
+
+
+def test_none_of_several_files_may_be_left_out() -> None:
+    """The finest file of a series is gone: a regression, as long as the others have their names."""
+
+    def rows(*names: str) -> tuple[Verdict, ...]:
+        return tuple(row(solver="file", setting=name) for name in names)
+
+    before = Earlier("before.json", rows("a.csv", "b.csv", "c.csv"))
+    compared = before.compare_as_baseline(Judgement(rows("a.csv", "b.csv"), None))
+    assert [departure.setting for departure in compared.failures] == ["c.csv"]
+    assert before.compare_as_baseline(Judgement(rows("a.csv"), None)).exit_status == 0

@@ -136,7 +136,7 @@ def test_one_row_is_judged_and_no_trajectory(tmp_path: Path) -> None:
         found = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
         assert all_pass(found)
         assert rows(found)[COMPLETE].verdict is Status.UNDECIDED
-        assert "one row is no trajectory" in rows(found)[COMPLETE].because
+        assert "one row within it is no trajectory" in rows(found)[COMPLETE].because
 
 
 @pytest.mark.parametrize(

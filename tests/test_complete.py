@@ -40,7 +40,7 @@ def complete(file: str, scene: str = SCENE, partial: bool = False) -> Verdict | 
 
 
 LACKING = [
-    ([0], (), "one row is no trajectory"),
+    ([0], (), "one row within it is no trajectory"),
     (range(5), (), "the last 18 of the scene's span of 20"),
     (range(20, 41), (), "the first 10 of the scene's span of 20"),
     ([20, 40], (), "the first 10 of the scene's span of 20"),

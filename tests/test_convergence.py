@@ -296,3 +296,11 @@ def test_a_wrong_equation_converges_to_something_else() -> None:
     omega = sweep(short("euler/generic"), other, COARSE[2:], expected=4).quantities["omega"]
     assert not omega.is_expected
     assert "so not by rounding" in omega.reason
+
+
+def test_errors_that_fall_faster_and_faster_have_not_stalled() -> None:
+    """Steps that are too large for a method show a low order first: no error is left that none removes."""
+    found = convergence([0.2, 0.1, 0.05, 0.025], [0.233, 0.199, 0.14, 0.0838])
+    assert found.stalls_at is None
+    noise = convergence([0.2, 0.1, 0.05, 0.025], [1e-12, 1.1e-12, 0.9e-12, 1e-12])
+    assert noise.stalls_at == 0.2

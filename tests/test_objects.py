@@ -279,7 +279,7 @@ def test_units_of_a_data_set_are_used() -> None:
         ),
         (
             {"t": np.array(["2024-01-01"], dtype="datetime64[s]"), "omega": [[1, 2, 3]]},
-            "expected a number, the time since the start, got 2024-01-01",
+            r"expected a number, the time since the start \(subtract the first date\), got 2024-01-01",
         ),
         ({"omega": [[1, 2, 3]]}, "expected a column `t` of times, got none @ the dict"),
         (pd.DataFrame([[0, 1, 2]], columns=["t", "w1", "w1"]), "every column once, got `w1` again"),

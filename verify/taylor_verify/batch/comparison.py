@@ -114,13 +114,13 @@ def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> 
     if isinstance(results, Judgement):
         runs = {_run(verdict) for verdict in results.verdicts}
         files = {(v.scene, v.solver, v.rung) for v in results.verdicts if v.solver == Recorded.name}
-        shared = {_run(verdict) for verdict in before} & runs
+        # Of several files none may be left out, unless all have other names.
+        whole = len(runs) > 1 and not runs.isdisjoint(_run(verdict) for verdict in before)
         return tuple(
             verdict
             for verdict in before
-            # Of several files none may be left out, unless all have other names.
             if _run(verdict) in runs
-            or (shared and (verdict.scene, verdict.solver, verdict.rung) in files)
+            or (whole and (verdict.scene, verdict.solver, verdict.rung) in files)
         )
     asked = results.selection
     return tuple(v for v in before if v.solver == results.solver and asked.has(v.scene, v.rung))
