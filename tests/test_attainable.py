@@ -120,6 +120,7 @@ def test_what_cancels_in_the_data_alone_is_known() -> None:
 # How errors add up.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
 def test_one_error_is_carried_as_the_exact_motion_carries_it(asked: Scene) -> None:
     """A component moved by 10^-20 on the way, and the rest of the way by the Taylor route."""

@@ -101,6 +101,7 @@ def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
     assert {run.rung for run in missing(report).runs} == {"f64"}
 
 
+@pytest.mark.slow
 def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> None:
     """Somebody's own report lacks nothing that this package could make."""
     assert bulk.missing(made.small(), {}).data == ""

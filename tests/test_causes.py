@@ -356,6 +356,7 @@ def turned_body(scene: Scene, seed: int, spread: float) -> Scene:
 SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", [1e-2, 1.0])
 @pytest.mark.parametrize("scene", [FREE, FORCED])
 def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:

@@ -212,6 +212,7 @@ def test_place_moves_with_the_path() -> None:
     assert (np.diagonal(found.norms("centre", "linear_impulse")) == 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [LOADED_EULER, LOADED_KIRCHHOFF], ids=["euler", "kirchhoff"])
 def test_the_size_of_the_perturbation_does_not_matter(start: Scene) -> None:
     """Differences of relative size 10^-20 and 10^-25 agree to twenty digits, but for growth."""
@@ -299,6 +300,7 @@ def test_what_is_not_tracked_is_not_known() -> None:
         found.norms("attitude", "momentum")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "start",
     [

@@ -352,6 +352,7 @@ def test_of_many_runs_the_overview_comes_first(capsys: Captured) -> None:
     assert all(re.match(r"fail  euler/\S+ f64 (omega|T|H2): ", line) for line in rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [40, 60, 80, 100, 120])
 def test_no_number_is_cut_on_a_terminal(
     width: int, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch

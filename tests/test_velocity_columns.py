@@ -73,6 +73,7 @@ def only(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
     return {name: list(columns[name]) for name in ("t", *names)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [SCENE, "kirchhoff/remus-100", "kirchhoff/swimmer-vehicle"])
 def test_velocities_stand_for_the_impulses(scene: str, tmp_path: Path) -> None:
     """Everything that impulses determine has its row, nothing is missing, and all of it passes."""
@@ -226,6 +227,7 @@ def far_from_its_origin(offset: int) -> Scene:
     return replace(plain, body=ImmersedBody(A, B, C), initial=start, clock=clock, track=frozenset())
 
 
+@pytest.mark.slow
 def test_rounding_of_velocities_is_carried_through_the_inertia_matrix() -> None:
     """Where terms of M V cancel, doubles of V pass by the floor of velocities, and not by that of x, y."""
     scene = far_from_its_origin(1000)

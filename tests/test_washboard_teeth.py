@@ -172,6 +172,7 @@ def test_a_time_too_many_teeth_away_is_not_waited_for(route: str) -> None:
 # The judge.
 
 
+@pytest.mark.slow
 def test_a_scene_with_many_teeth_is_judged() -> None:
     """The shipped scene, and through its turning point and beyond: a verdict on float64, a pass."""
     scene = load("extremes/euler-washboard-many-teeth")
