@@ -69,6 +69,7 @@ def with_quartic() -> list[str]:
 # What is there
 
 
+@pytest.mark.slow
 def test_every_scene_has_its_portrait() -> None:
     """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
     files = {file.stem for file in (every_portrait() / portraits.FOLDER).glob("*.json")}
