@@ -103,7 +103,6 @@ def uncoupled(n: Numbers) -> None:
     n.tensor[:3, 3:] = n.tensor[3:, :3] = 0
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "change", "name"),
     [
