@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.judge.gates import bounds_of
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Kind
@@ -55,7 +56,7 @@ def diagnosed(
     ``errors`` and ``attainable`` are those of all samples, in the order of ``times``; ``start`` is the
     time of the initial state.
     """
-    bounds = _bounds(verdict, attainable)
+    bounds = bounds_of(attainable, verdict.tolerance)
     too_large = np.flatnonzero(~(errors <= bounds))
     if not np.isfinite(errors).all():
         # What is no number comes first, whatever else is too large.
@@ -72,12 +73,6 @@ def diagnosed(
         error_kind=kind,
         exponent=exponent,
     )
-
-
-def _bounds(verdict: Verdict, attainable: Floats) -> Floats:
-    """Return the bound of every sample: the caller's tolerance, or that of the arithmetic."""
-    tolerance = verdict.tolerance
-    return GATE_FACTOR * attainable if tolerance is None else np.full(len(attainable), tolerance)
 
 
 def _kind(

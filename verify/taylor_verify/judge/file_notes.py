@@ -6,8 +6,6 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Final
 
-import numpy as np
-
 from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent
 from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
@@ -17,8 +15,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.file import TrajectoryFile
 
 _FLOAT32_BITS: Final = 24
-# Numbers as narrow as this are small integers and simple fractions in any precision.
-_TELLING_BITS: Final = 18
 _MODELS: Final = {
     "euler": ("omega", "quaternion", "attitude"),
     "kirchhoff": tuple(COLUMNS),
@@ -121,23 +117,11 @@ def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[
 
 def single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
     """Yield a note if every number of a wider rung is one of float32, and not by chance."""
-    if rung.bits <= _FLOAT32_BITS:
-        return
-    values = np.concatenate([rows.doubles().ravel() for rows in file.rows.values()])
-    doubles = values[np.isfinite(values)]
-    with np.errstate(over="ignore"):
-        is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
-    if is_single and any(_width(double) >= _TELLING_BITS for double in doubles):
+    if rung.bits > _FLOAT32_BITS and file.is_single_precision:
         yield (
             f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
             "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
         )
-
-
-def _width(double: float) -> int:
-    """The bits of a number from its first to its last one."""
-    numerator = Fraction(double).numerator
-    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0
 
 
 def cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:

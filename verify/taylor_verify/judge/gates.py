@@ -59,7 +59,7 @@ def judge(
     everything. A tolerance is below 1, so that no gate that has one is vacuous.
     """
     roundings = GATE_FACTOR * attainable
-    bounds = roundings if tolerance is None else np.full(len(roundings), tolerance)
+    bounds = bounds_of(attainable, tolerance)
     worst = index_of_largest(errors.doubles)
     ratios = _ratios(errors.doubles, attainable)
     ratio_at = index_of_largest(ratios[: _asked(roundings) or None])
@@ -85,6 +85,11 @@ def judge(
         ratio_at=ratio_at,
         reason=reason,
     )
+
+
+def bounds_of(attainable: Floats, tolerance: float | None) -> Floats:
+    """Return the bound of every sample: the caller's tolerance, or that of the arithmetic."""
+    return GATE_FACTOR * attainable if tolerance is None else np.full(len(attainable), tolerance)
 
 
 def _status(errors: Errors, bounds: Floats) -> Status:

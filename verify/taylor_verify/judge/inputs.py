@@ -33,7 +33,6 @@ from taylor_verify.judge.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.attainable import looked_at
 from taylor_verify.judge.errors import exact_matrix, norms, state_errors
 from taylor_verify.records.quantities import VELOCITIES
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin, State
@@ -136,8 +135,8 @@ def velocities(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
 
 
 def impulses(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
-    """Return (x, y) = M (U, Omega) at every sample, M the exact inverse of [[A, B], [B^T, C]]."""
-    M = exact_matrix(tensors.inverse(body.energy_matrix))
+    """Return (x, y) = M (U, Omega) at every sample, by the exact mass matrix."""
+    M = exact_matrix(body.mass_matrix)
     velocities = np.concatenate([quantities[name] for name in VELOCITIES], axis=1)
     both = velocities @ M.T
     return {"linear_impulse": both[:, :3], "angular_impulse": both[:, 3:]}

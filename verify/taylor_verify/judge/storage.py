@@ -54,6 +54,9 @@ def with_file_kinds(
 
     ``findings`` are those conventions that were not corrected.
     """
+    verdicts = tuple(verdicts)
+    if not any(_is_open(verdict) for verdict in verdicts):
+        return verdicts
     stored = storing(file, rung)
     changed = {
         name for found in findings if found.is_certain for name in _CHANGED.get(found.subject, ())
@@ -85,10 +88,15 @@ def storing(file: TrajectoryFile, rung: Rung) -> tuple[ErrorKind, float] | None:
     return ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits)
 
 
+def _is_open(verdict: Verdict) -> bool:
+    """Return True for an error that roundoff does not explain."""
+    return verdict.is_compared and verdict.error_kind is not ErrorKind.ROUNDOFF
+
+
 def _with_kind(
     verdict: Verdict, stored: tuple[ErrorKind, float] | None, changed: set[str]
 ) -> Verdict:
-    if not verdict.is_compared or verdict.error_kind is ErrorKind.ROUNDOFF:
+    if not _is_open(verdict):
         return verdict
     if stored is not None:
         kind, u = stored

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, final
+from typing import Any, Final, final
 
 import numpy as np
 
@@ -36,6 +36,9 @@ from taylor_verify.solvers.rows import Rows, check_numbers, exact_times, packed,
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value
+
+# Numbers as narrow as this are small integers and simple fractions in any precision.
+_TELLING_BITS: Final = 18
 
 
 @final
@@ -79,6 +82,15 @@ class TrajectoryFile:
     def rows(self) -> Mapping[str, Rows]:
         """The groups with ways to many of their rows at once."""
         return {name: Rows.of(group) for name, group in self.groups.items()}
+
+    @cached_property
+    def is_single_precision(self) -> bool:
+        """True if every finite number is one of float32, and not by chance."""
+        values = np.concatenate([rows.doubles().ravel() for rows in self.rows.values()])
+        doubles = values[np.isfinite(values)]
+        with np.errstate(over="ignore"):
+            is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
+        return is_single and any(_width(double) >= _TELLING_BITS for double in doubles)
 
     @property
     def finite(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -196,3 +208,9 @@ def _word(rises: bool) -> str:
 
 def _time_text(time: Fraction) -> str:
     return f"{float(time):.17g}" if abs(time) < 10**300 else "a huge time"
+
+
+def _width(double: float) -> int:
+    """The bits of a number from its first to its last one."""
+    numerator = Fraction(double).numerator
+    return (numerator // (numerator & -numerator)).bit_length() if numerator else 0

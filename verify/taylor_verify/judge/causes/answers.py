@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import Conventions
+from taylor_verify.judge.inputs import impulses
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.records.answers import LikelyCause
@@ -75,7 +76,8 @@ def _of_file(
     values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
     columns = [file.rows[name].doubles() for name in values]
     if not values and isinstance(given.body, ImmersedBody) and set(VELOCITIES) <= set(file.groups):
-        values = _impulses(given.body, [_read(file, name, found, attitudes) for name in VELOCITIES])
+        own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
+        values = {name: rows.astype(float) for name, rows in impulses(given.body, own).items()}
     made = _material(given, values, _quaternions(attitudes), rung, verdicts)
     return replace(made, digits=file.digits, columns=np.hstack(columns) if columns else None)
 
@@ -120,13 +122,6 @@ def _material(
 
 def _momenta(file: TrajectoryFile, given: Scene) -> list[str]:
     return [name for name in MOMENTA[given.model] if name in file.groups]
-
-
-def _impulses(body: ImmersedBody, velocities: Sequence[Floats]) -> dict[str, Floats]:
-    """The impulses x and y of U and Omega, (x, y) = M (U, Omega)."""
-    M = np.array([[float(entry) for entry in row] for row in body.mass_matrix])
-    x, y = np.hsplit(np.hstack(velocities) @ M.T, 2)
-    return dict(zip(MOMENTA["kirchhoff"], (x, y), strict=True))
 
 
 def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
