@@ -81,7 +81,7 @@ clean:  ## Remove the environment, the caches and the local reports
 	find verify tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The stamp is written last: an environment that was only half made has none, and is made again.
-$(INSTALLED): requirements.txt pyproject.toml verify/taylor_verify/version.py
+$(INSTALLED): requirements.txt pyproject.toml verify/taylor_verify/records/version.py
 	@'$(PYTHON)' -c '$(FITS)' 2>/dev/null || { \
 		found="$$('$(or $(PYTHON),python3)' --version 2>&1 | tail -n 1)"; \
 		echo "expected Python 3.11 to 3.14 with venv (on Debian the package python3-venv)," \

@@ -24,9 +24,9 @@ from bench_check import judging
 from mpmath import mpf
 from two_runs import two_runs
 
+from taylor_verify.exact.conditioning.sensitivity import sensitivity
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.sensitivity import sensitivity
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
@@ -34,7 +34,7 @@ from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.library import EXTREMES, STANDARD_SET, WORST, names
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import exact_value, rung
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor import driver
 from taylor_verify.solvers.taylor.driver import Taylor

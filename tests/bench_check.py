@@ -16,14 +16,14 @@ from typing import Final
 
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.answer import judge_file
-from taylor_verify.judge.arithmetic import truth_digits
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import read
+from taylor_verify.solvers.files.file import read
 
 ROWS: Final = (1_000, 10_000)
 SCENES: Final = (

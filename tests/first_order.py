@@ -11,7 +11,7 @@ from trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
 
 Array = np.ndarray[Any, Any]
 # omega after a step of length h, from I, omega, the moment M and h.

@@ -20,26 +20,24 @@ from test_hunt import found_of
 from test_reach_page import study as reach_study
 from test_trade_page import NUMBERS_MADE, TIMES_MADE
 
-from taylor_verify import hunt
-from taylor_verify.controls import sight
 from taylor_verify.controls.defects import DEFECTS
-from taylor_verify.growth.published import Entry, followed
-from taylor_verify.portrait import portrait
-from taylor_verify.publish import (
-    claims,
-    extremes,
-    gallery,
-    growth,
-    portraits,
-    reach,
-    reference_files,
-    report,
-    worst,
-)
-from taylor_verify.reference import reference
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies import report
+from taylor_verify.studies.claims import page as claims
+from taylor_verify.studies.controls import measure as sight
+from taylor_verify.studies.extremes import page as extremes
+from taylor_verify.studies.gallery import page as gallery
+from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.growth.published import Entry, followed
+from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.measure import portrait
+from taylor_verify.studies.reach import page as reach
+from taylor_verify.studies.reference import page as reference_files
+from taylor_verify.studies.reference.measure import reference
+from taylor_verify.studies.worst import measure as hunt
+from taylor_verify.studies.worst import page as worst
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.

@@ -12,11 +12,11 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.inputs import angular_velocity
+from taylor_verify.judge.floor.inputs import angular_velocity
 from taylor_verify.models.problem import adopt
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 Columns = dict[str, list[float]]

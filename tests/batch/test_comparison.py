@@ -15,16 +15,16 @@ from taylor_verify.batch.comparison import compare_with_baseline, read_baseline
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     compare_with_published,
-    extremes_study,
     read_report,
     remarks,
     shown_verdicts,
     write_junit,
-    write_report,
 )
 from taylor_verify.batch.selection import select
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.status import Status
+from taylor_verify.studies.extremes.measure import extremes_study
+from taylor_verify.studies.report import write_report
 
 SCENES = ["euler/rest", "euler/generic"]
 LONG = "extremes/euler-separatrix-long"

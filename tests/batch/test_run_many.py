@@ -29,8 +29,8 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
-from taylor_verify.scenes.faults import Refused
-from taylor_verify.scenes.reader import load, read
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load, read
 
 SCENES = ["euler/rest", "kirchhoff/whole-motion", "euler/generic"]
 RUNGS = ["f32", "mp120"]
@@ -401,7 +401,7 @@ def test_a_report_that_cannot_be_written_costs_no_results(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("taylor_verify.publish.report.write", full)
+    monkeypatch.setattr("taylor_verify.studies.report.write", full)
     with pytest.raises(ReportNotWritten, match="No space left") as raised:
         taylor_verify.run_many(["euler/rest"], out=tmp_path / "out")
     assert raised.value.results.passed

@@ -22,11 +22,11 @@ from taylor_verify.check import check
 from taylor_verify.claims import claims
 from taylor_verify.exact import exact
 from taylor_verify.explain import explain
+from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
 from taylor_verify.run_many import run_many
 from taylor_verify.scenes import load
-from taylor_verify.tradeoff import recommend, tradeoff
-from taylor_verify.version import __version__
+from taylor_verify.studies.tradeoff import recommend, tradeoff
 
 __all__ = [
     "__version__",

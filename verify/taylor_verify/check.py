@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, overload
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from taylor_verify.judge.files import FilesJudgement
     from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.scenes.precision import Rung
@@ -111,9 +111,9 @@ def check(
     from taylor_verify.judge.answer import judge_file
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.scenes.precision import rung as rung_named
-    from taylor_verify.scenes.reader import as_scene
-    from taylor_verify.solvers.file import read
-    from taylor_verify.solvers.objects import pairs, trajectory
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.files.file import read
+    from taylor_verify.solvers.files.objects import pairs, trajectory
 
     scene, wanted = as_scene(scene), pairs(columns)
     asked = tolerances(tolerance, [scene])
@@ -129,8 +129,13 @@ def _check_files(
     *options: Any,
 ) -> FilesJudgement:
     """Judge each file of a list by itself with the same options, and all of them together."""
-    from taylor_verify.judge.files import checked_steps, files_judgement, judge_each, repeated
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.judge.series.files import (
+        checked_steps,
+        files_judgement,
+        judge_each,
+        repeated,
+    )
+    from taylor_verify.scenes.reading.reader import as_scene
 
     scene = as_scene(scene)
     if not files:

@@ -62,7 +62,7 @@ def run(
     from taylor_verify.records.reason import Cause
     from taylor_verify.records.status import Status
     from taylor_verify.scenes.precision import rung as rung_named
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
@@ -110,7 +110,7 @@ def solve(
         For a name that is no solver or no rung.
     """
     from taylor_verify.scenes.precision import rung as rung_named
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.trajectory import Trajectory
 

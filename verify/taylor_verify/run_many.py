@@ -95,10 +95,11 @@ def run_many(
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import judge_all
     from taylor_verify.batch.lock import alone_in
-    from taylor_verify.batch.report import ReportNotWritten, write_report
+    from taylor_verify.batch.report import ReportNotWritten
     from taylor_verify.batch.selection import Selection, select
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.solvers.registry import check_name
+    from taylor_verify.studies.report import write_report
 
     if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
         raise ValueError("\n".join(faults))
@@ -127,7 +128,7 @@ def _faults(
     """Yield a sentence for each argument of a wrong kind."""
     from os import PathLike
 
-    from taylor_verify.scenes.faults import brief
+    from taylor_verify.scenes.reading.faults import brief
 
     if not isinstance(solver, str):
         mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""

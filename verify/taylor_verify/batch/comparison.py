@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge import baseline, rounding_class
 from taylor_verify.judge.judgement import Judgement, NotPassed
-from taylor_verify.solvers.file import Recorded
+from taylor_verify.solvers.files.file import Recorded
 
 if TYPE_CHECKING:
     from taylor_verify.judge.rounding_class import Departure

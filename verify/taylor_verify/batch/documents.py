@@ -42,7 +42,7 @@ def documents(
 def document(make: Callable[[Scene], Document], name: str) -> Document:
     """Return ``make(scene)`` for one scene. Raises Failed with its name."""
     from taylor_verify.exact.solution import Unsettled
-    from taylor_verify.scenes.reader import load
+    from taylor_verify.scenes.reading.reader import load
 
     try:
         return make(load(name))

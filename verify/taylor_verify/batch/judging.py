@@ -100,8 +100,8 @@ def judge_all(
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
     from taylor_verify.run import run
-    from taylor_verify.scenes.faults import Refused
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.scenes.reading.reader import as_scene
 
     judgements, place = [], job.name
     try:
@@ -124,7 +124,7 @@ def _expense(job: Job) -> float:
     """
     from taylor_verify.scenes.bodies import RigidBody
     from taylor_verify.scenes.motion import Spin
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.reader import as_scene
 
     scene = as_scene(job.scene)
     body, start = scene.body, scene.initial

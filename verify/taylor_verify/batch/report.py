@@ -1,4 +1,4 @@
-"""What is written of many runs: a report folder, and a JUnit file. This module alone knows `publish`."""
+"""Many runs beside an earlier report, and as a JUnit file. This module of batch alone knows `publish`."""
 
 from __future__ import annotations
 
@@ -11,14 +11,8 @@ from taylor_verify.batch.comparison import Comparison, Earlier
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.rounding_class import Departure
-from taylor_verify.records.provenance import Machine
+from taylor_verify.records import store
 from taylor_verify.records.status import Status
-from taylor_verify.records.studies.extremes import (
-    Expected,
-    ExtremesStudy,
-    ExtremeVerdict,
-    Titled,
-)
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -33,26 +27,12 @@ class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the re
         self.results = results
 
 
-def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
-    """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
-
-    Returns the files. What an earlier run left there is replaced, as a whole or not at all. Raises
-    OSError for a folder that cannot be written, and ValueError for two unlike records of one run.
-    """
-    from taylor_verify.publish import report
-
-    stored = report.write(fspath(folder), results.verdicts, results.records)
-    return [*stored, *report.publish(fspath(folder))]
-
-
 def read_report(folder: str | PathLike[str]) -> Earlier:
     """Read the verdicts of a report folder.
 
     Raises FileNotFoundError where there are none, and ValueError for a file that holds something else.
     """
-    from taylor_verify.publish import report
-
-    return Earlier(fspath(folder), report.load(fspath(folder)))
+    return Earlier(fspath(folder), store.load(Path(folder)))
 
 
 def compare_with_published(
@@ -83,27 +63,6 @@ def write_junit(
     by_remarks = comparison is not None and comparison.decides
     text = junit(shown_verdicts(results), remarks(results, comparison), by_remarks)
     replace_files(place.parent, {place.name: text})
-
-
-def extremes_study(results: Judgements) -> ExtremesStudy:
-    """Return the document that the page of the extremes is made from.
-
-    Raises ValueError for verdicts of unlike versions.
-    """
-    from taylor_verify.records import store
-
-    agreement, verdicts = results.agreement, results.verdicts
-    expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}
-    return ExtremesStudy(
-        versions=store.versions(verdicts),
-        machine=Machine(**store.machine(verdicts[0])) if verdicts else Machine(),
-        scenes=tuple(Titled(scene.name, scene.title) for scene in results.selection.scenes_run),
-        left_out=results.left_out,
-        mismatches=tuple(str(mismatch) for mismatch in agreement.mismatches),
-        verdicts=tuple(
-            ExtremeVerdict.of(v, expected.get((v.scene, v.rung, v.quantity))) for v in verdicts
-        ),
-    )
 
 
 # What a CI is shown.

@@ -89,8 +89,8 @@ def select(
 
 def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     """Read scenes, each once. Raises Refused with the faults of all that cannot be read."""
-    from taylor_verify.scenes.faults import Refused
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.scenes.reading.reader import as_scene
 
     asked = [*scenes]
     read: dict[str, Scene] = {}
@@ -110,8 +110,8 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
 
 def _several(asked: Any, what: str) -> Sequence[Any]:
     """Return what was asked for as a sequence: a text is one name, and no row of letters."""
-    from taylor_verify.scenes.faults import brief
     from taylor_verify.scenes.precision import Rung
+    from taylor_verify.scenes.reading.faults import brief
     from taylor_verify.scenes.scene import Scene
 
     if isinstance(asked, str | PathLike | Scene | Rung):

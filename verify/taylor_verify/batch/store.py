@@ -75,7 +75,7 @@ class Unfinished:
 
     def _file(self, job: Job) -> Path:
         from taylor_verify.judge.provenance import versions
-        from taylor_verify.scenes.reader import as_scene
+        from taylor_verify.scenes.reading.reader import as_scene
 
         question = (as_scene(job.scene).digest, *_words(job))
         depends = (question, _programs(job.solver), versions(), _package())

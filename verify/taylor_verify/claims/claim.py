@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from taylor_verify.records.studies.claims import ClaimResiduals, ClaimRow
-from taylor_verify.records.studies.claims import Verdict as Verdict
+from taylor_verify.claims.document import ClaimResiduals, ClaimRow
+from taylor_verify.claims.document import Verdict as Verdict
 
 # What is called false must miss its bound by more than any carelessness in the bound could explain.
 _CLEARLY: Final = 1e6

@@ -69,7 +69,7 @@ def _told_of(interrupt: KeyboardInterrupt) -> str:
 
 def _told(error: Exception) -> str:
     """A message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
-    from taylor_verify.scenes.faults import Refused
+    from taylor_verify.scenes.reading.faults import Refused
 
     if isinstance(error, WrongCall | Refused):
         return str(error)

@@ -20,8 +20,8 @@ from taylor_verify.cli import (
     verbs,
 )
 from taylor_verify.cli.answer import Answer
+from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
-from taylor_verify.version import __version__
 
 _DEFAULT_DIGITS = 30
 # What may be meant as a rung, misspelt or not: a scene of such a name is written ./f64.

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from taylor_verify.judge.answer import FileJudgement
-    from taylor_verify.judge.files import FilesJudgement
+    from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.file import TrajectoryFile
+    from taylor_verify.solvers.files.file import TrajectoryFile
 
 
 def add_options(verb: argparse.ArgumentParser) -> None:
@@ -41,9 +41,9 @@ def check(options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.ci import outputs, tell
     from taylor_verify.cli.files_text import files_text
     from taylor_verify.cli.progress import working
-    from taylor_verify.judge.files import files_judgement, judge_each
+    from taylor_verify.judge.series.files import files_judgement, judge_each
     from taylor_verify.records.verdict import exit_status
-    from taylor_verify.scenes.faults import Refused
+    from taylor_verify.scenes.reading.faults import Refused
 
     (options.rung,) = known_rungs([options.rung])
     with working(f"check {', '.join(options.files)}"):
@@ -93,10 +93,10 @@ def _asked(
     options: argparse.Namespace,
 ) -> tuple[Scene, list[TrajectoryFile], Sequence[float] | None]:
     """Read scene, files and steps; the faults of all are reported at once."""
-    from taylor_verify.judge.files import repeated
-    from taylor_verify.scenes.faults import Refused
-    from taylor_verify.solvers.columns.request import request
-    from taylor_verify.solvers.file import read
+    from taylor_verify.judge.series.files import repeated
+    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.solvers.files.columns.request import request
+    from taylor_verify.solvers.files.file import read
 
     faults = repeated(options.files)
     steps: list[float] | None = None
@@ -120,7 +120,7 @@ def _asked(
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:
-    from taylor_verify.judge.files import checked_steps
+    from taylor_verify.judge.series.files import checked_steps
 
     if options.steps is None:
         return None
@@ -149,7 +149,7 @@ def _picture(
     from importlib.util import find_spec
 
     from taylor_verify.cli.ci import writable_file
-    from taylor_verify.judge.files import steps_of
+    from taylor_verify.judge.series.files import steps_of
     from taylor_verify.publish.pictures.picture import ENDINGS
 
     if options.picture is None:

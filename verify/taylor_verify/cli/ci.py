@@ -173,7 +173,7 @@ def _write_github(
 
 def _baseline(file: str) -> Earlier:
     from taylor_verify.batch.comparison import read_baseline
-    from taylor_verify.scenes.faults import Refused
+    from taylor_verify.scenes.reading.faults import Refused
 
     if Path(file).is_dir():
         raise WrongCall(

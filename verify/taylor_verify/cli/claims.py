@@ -12,7 +12,7 @@ from taylor_verify.cli.answer import FAIL, PASS, Answer, WrongCall, files_writte
 
 if TYPE_CHECKING:
     from taylor_verify.claims.claim import Claim
-    from taylor_verify.records.studies.claims import ClaimRow
+    from taylor_verify.claims.document import ClaimRow
 
 
 def claims(options: argparse.Namespace) -> Answer:
@@ -33,12 +33,12 @@ def claims(options: argparse.Namespace) -> Answer:
 
 def publish_claims(folder: Path) -> Answer:
     """The page of the whole ledger; one whose entries have left their verdicts is not written."""
+    from taylor_verify.claims.document import ClaimsStudy
     from taylor_verify.claims.ledger import claims as ledger
     from taylor_verify.claims.numbers import CITED
     from taylor_verify.judge.provenance import command, processor, versions
-    from taylor_verify.publish.claims import write
     from taylor_verify.records.provenance import Provenance
-    from taylor_verify.records.studies.claims import ClaimsStudy
+    from taylor_verify.studies.claims.page import write
 
     rows = _examined(ledger())
     missed = _missed(rows)

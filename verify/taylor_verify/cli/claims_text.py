@@ -8,8 +8,8 @@ from math import isfinite
 from rich.table import Table
 from rich.text import Text
 
+from taylor_verify.claims.document import ClaimRow, Verdict
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
-from taylor_verify.records.studies.claims import ClaimRow, Verdict
 
 _COLOURS = {
     Verdict.HOLDS: "green",

@@ -17,7 +17,7 @@ from taylor_verify.records.quantities import STATES
 
 if TYPE_CHECKING:
     from taylor_verify.judge.answer import FileJudgement
-    from taylor_verify.judge.files import FilesJudgement
+    from taylor_verify.judge.series.files import FilesJudgement
 
 
 def files_text(judged: FilesJudgement, scene: str, rung: str) -> str:

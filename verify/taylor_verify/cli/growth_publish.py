@@ -16,8 +16,8 @@ _PATIENCE = 10.0
 
 def publish_growth(folder: Path, periods: str | None, long: bool) -> Answer:
     """Follow what is published, or the long ensemble alone, and write data, picture and page."""
-    from taylor_verify.growth.published import LONG, PUBLISHED, followed, forget
-    from taylor_verify.publish import growth
+    from taylor_verify.studies.growth import page as growth
+    from taylor_verify.studies.growth.published import LONG, PUBLISHED, followed, forget
 
     entries, checkpoints = LONG if long else PUBLISHED, folder / _CHECKPOINTS
     most = _read(periods)
@@ -32,7 +32,7 @@ def publish_growth(folder: Path, periods: str | None, long: bool) -> Answer:
 
 
 def _read(periods: str | None) -> float | None:
-    from taylor_verify.scenes.table import exact_number
+    from taylor_verify.scenes.reading.table import exact_number
 
     if periods is None:
         return None

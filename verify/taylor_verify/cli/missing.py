@@ -11,9 +11,9 @@ from taylor_verify.cli.progress import advancing, counting
 from taylor_verify.cli.streams import say
 
 if TYPE_CHECKING:
-    from taylor_verify.publish.bulk import Missing
     from taylor_verify.records.record import Record
     from taylor_verify.records.runs import Run
+    from taylor_verify.studies.bulk import Missing
 
 _TIME: Final = "one to three minutes for all of them on two cores"
 _NAME: Final = "taylor-verify-data"
@@ -21,8 +21,10 @@ _NAME: Final = "taylor-verify-data"
 
 def make_missing(folder: Path) -> Answer:
     """Make the records, portraits, exact trajectories and tables of gates that ``folder`` lacks."""
-    from taylor_verify.publish import portraits, reference_files, report
     from taylor_verify.records import store
+    from taylor_verify.studies import report
+    from taylor_verify.studies.portraits import stored as portraits
+    from taylor_verify.studies.reference import page as reference_files
 
     lacking = _missing(folder)
     if lacking.data:
@@ -31,11 +33,11 @@ def make_missing(folder: Path) -> Answer:
     if lacking.runs:
         written += store.add_records(folder, _records(lacking.runs))
     if lacking.portraits:
-        from taylor_verify.portrait import portraits as made
+        from taylor_verify.studies.portraits.measure import portraits as made
 
         written += portraits.add(folder, made(lacking.portraits, counting(len(lacking.portraits))))
     if lacking.references:
-        from taylor_verify.reference import references
+        from taylor_verify.studies.reference.measure import references
 
         documents = references(lacking.references, counting(len(lacking.references)))
         written += reference_files.add_json(folder, documents)
@@ -44,8 +46,8 @@ def make_missing(folder: Path) -> Answer:
 
 def pack(folder: Path, target: Path) -> Answer:
     """Pack everything in ``folder``; refuse a folder that lacks something."""
-    from taylor_verify.publish.archive import pack
-    from taylor_verify.version import __version__
+    from taylor_verify.records.version import __version__
+    from taylor_verify.studies.archive import pack
 
     lacking = _missing(folder)
     if lacking.data or lacking.renderings:
@@ -69,9 +71,9 @@ def missing_from_pages(folder: Path) -> list[str]:
 
 
 def _missing(folder: Path) -> Missing:
-    from taylor_verify.publish import bulk
     from taylor_verify.scenes.library import names
-    from taylor_verify.scenes.reader import load
+    from taylor_verify.scenes.reading.reader import load
+    from taylor_verify.studies import bulk
 
     try:
         return bulk.missing(folder, {name: load(name).digest for name in names()})

@@ -139,7 +139,7 @@ def publish(options: argparse.Namespace) -> Answer:
     """Tables from stored verdicts, or the exact trajectories, or what each gate sees."""
     from taylor_verify.cli.claims import publish_claims
     from taylor_verify.cli.growth_publish import publish_growth
-    from taylor_verify.publish import report
+    from taylor_verify.studies import report
 
     anew: dict[str, Callable[[Path], Answer]] = {
         "reference": references,
@@ -200,9 +200,9 @@ def _require_heyoka(option: str) -> None:
 
 def references(folder: Path) -> Answer:
     """The exact trajectory of every shipped scene."""
-    from taylor_verify.publish import reference_files
-    from taylor_verify.reference import references
     from taylor_verify.scenes.library import names
+    from taylor_verify.studies.reference import page as reference_files
+    from taylor_verify.studies.reference.measure import references
 
     scenes = names()
     documents = references(scenes, counting(len(scenes)))
@@ -211,9 +211,9 @@ def references(folder: Path) -> Answer:
 
 def portraits(folder: Path) -> Answer:
     """What each shipped scene is and how it moves, for pages and pictures."""
-    from taylor_verify.portrait import portraits
-    from taylor_verify.publish import portraits as files
     from taylor_verify.scenes.library import names
+    from taylor_verify.studies.portraits import stored as files
+    from taylor_verify.studies.portraits.measure import portraits
 
     scenes = names()
     return files_written(files.write(folder, portraits(scenes, counting(len(scenes)))))
@@ -221,7 +221,7 @@ def portraits(folder: Path) -> Answer:
 
 def gallery(folder: Path) -> Answer:
     """Pictures of some motions and of their errors, from what the folder holds already."""
-    from taylor_verify.publish import gallery as pictures
+    from taylor_verify.studies.gallery import page as pictures
 
     try:
         return files_written(pictures.write(folder))
@@ -236,10 +236,11 @@ def gallery(folder: Path) -> Answer:
 
 def controls(folder: Path) -> Answer:
     """What each gate sees of broken solvers, and what heyoka does where nobody takes care."""
-    from taylor_verify.controls import sight
     from taylor_verify.controls.defects import DEFECTS
-    from taylor_verify.controls.traps import table
-    from taylor_verify.publish import report, traps
+    from taylor_verify.studies import report
+    from taylor_verify.studies.controls import measure as sight
+    from taylor_verify.studies.traps import page as traps
+    from taylor_verify.studies.traps import table
 
     finished = counting(len(DEFECTS) + len(table.TRAPS))
     seen = sight.study(sight.sights(DEFECTS, finished))
@@ -249,24 +250,24 @@ def controls(folder: Path) -> Answer:
 
 def enclosure(folder: Path) -> Answer:
     """The width of an enclosure beside its true error, stored and drawn."""
-    from taylor_verify.exact.widths import study
-    from taylor_verify.publish import widths
+    from taylor_verify.studies.enclosure import page as widths
+    from taylor_verify.studies.enclosure.measure import study
 
     return files_written(widths.write(folder, study()))
 
 
 def prices(folder: Path) -> Answer:
     """What each thing that a scene may ask for costs, measured."""
-    from taylor_verify.publish import prices as pages
-    from taylor_verify.trade.prices import RUNGS, study
+    from taylor_verify.studies.prices import page as pages
+    from taylor_verify.studies.prices.measure import RUNGS, study
 
     return files_written(pages.write(folder, study(counting(len(RUNGS)))))
 
 
 def tradeoff(folder: Path, outside: bool) -> Answer:
     """Speed against accuracy on the published scenes, measured in fresh processes."""
-    from taylor_verify.publish import report
-    from taylor_verify.trade.measurement import measurement
+    from taylor_verify.studies import report
+    from taylor_verify.studies.tradeoff.measurement import measurement
 
     found = measurement(with_outside=outside, finished=say)
     return files_written(report.publish_tradeoff(folder, found.numbers(), found.times()))
@@ -274,20 +275,20 @@ def tradeoff(folder: Path, outside: bool) -> Answer:
 
 def reach(folder: Path) -> Answer:
     """How far each precision carries in every family of extremes."""
-    from taylor_verify.publish import reach as pages
-    from taylor_verify.trade.reach import members, study
+    from taylor_verify.studies.reach import page as pages
+    from taylor_verify.studies.reach.measure import members, study
 
     return files_written(pages.write(folder, study(counting(members()))))
 
 
 def extremes(folder: Path) -> Answer:
     """Run the extremes on float64; fail where an answer is not the expected one."""
-    from taylor_verify.batch.report import extremes_study
     from taylor_verify.batch.selection import select
     from taylor_verify.cli.progress import advancing
-    from taylor_verify.publish import extremes as pages
     from taylor_verify.run_many import run_many
     from taylor_verify.scenes.library import EXTREMES
+    from taylor_verify.studies.extremes import page as pages
+    from taylor_verify.studies.extremes.measure import extremes_study
 
     with advancing() as progress:
         results = run_many(select([EXTREMES], [_ON]), progress=progress)
@@ -299,7 +300,7 @@ def extremes(folder: Path) -> Answer:
 
 def paper(folder: Path) -> Answer:
     """The pages that are there, as LaTeX and HTML."""
-    from taylor_verify.publish.paper import files
+    from taylor_verify.studies import paper as files
 
     try:
         return files_written(files.write(folder))
@@ -313,9 +314,9 @@ def paper(folder: Path) -> Answer:
 
 def worst(folder: Path, seconds: float, seed: int) -> Answer:
     """The worst error over attainable in each family; its scenes take the place of those kept."""
-    from taylor_verify.hunt import FAMILIES, hunt, study
-    from taylor_verify.publish import worst as pages
     from taylor_verify.scenes.library import WORST, cases_directory
+    from taylor_verify.studies.worst import page as pages
+    from taylor_verify.studies.worst.measure import FAMILIES, hunt, study
 
     if not 0 < seconds < inf:
         raise WrongCall(f"expected a time in seconds above 0, got {seconds:g} @ --seconds")
@@ -330,7 +331,7 @@ def site(folder: str, target: str) -> Answer:
     from taylor_verify.records import store
 
     try:
-        from taylor_verify.publish.site.builder import build
+        from taylor_verify.studies.site.builder import build
 
         answer = files_written(build(folder, target))
         return answer._replace(messages=missing_from_pages(Path(folder)))

@@ -18,7 +18,7 @@ def question(options: argparse.Namespace) -> Answer:
     """The question as JSON, or the header and the times of a trajectory file as CSV."""
     from taylor_verify.models.problem import NotRepresentable, pose
     from taylor_verify.scenes.precision import rung
-    from taylor_verify.solvers import protocol
+    from taylor_verify.solvers.process import protocol
 
     if options.csv and options.json:
         raise WrongCall("expected one of --csv and --json, got both @ question")
@@ -43,7 +43,7 @@ def _json(document: dict[str, Any]) -> str:
 def _csv(problem: Problem) -> str:
     """A header, and for each sample its time and a cell for every other column."""
     from taylor_verify.scenes.precision import shortest_decimal
-    from taylor_verify.solvers.protocol import column_names
+    from taylor_verify.solvers.process.protocol import column_names
 
     names, bits = column_names(problem), problem.rung.bits
     cells = "," * (len(names) - 1)

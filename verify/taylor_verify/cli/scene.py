@@ -23,9 +23,9 @@ def add_options(verb: Any) -> None:
 
 def scene(options: argparse.Namespace) -> Answer:
     """Write a scene from a URDF, SDF or MJCF file, to be read and edited."""
-    from taylor_verify.scenes.faults import Refused
     from taylor_verify.scenes.imported import import_scene
-    from taylor_verify.scenes.reader import read
+    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.scenes.reading.reader import read
 
     try:
         found = import_scene(Path(options.file), options.link)

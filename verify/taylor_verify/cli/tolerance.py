@@ -51,7 +51,7 @@ def _by_name(text: str) -> dict[str, Any]:
 
 def _number(text: str) -> float | str:
     """Return the number in a text as a double; the text itself, to be refused as it is, for any other."""
-    from taylor_verify.scenes.table import exact_number
+    from taylor_verify.scenes.reading.table import exact_number
 
     try:
         return float(exact_number(text)) or text

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from taylor_verify.scenes.scene import Scene
-    from taylor_verify.trade.setting import Setting
-    from taylor_verify.trade.trade_off import TradeOff
+    from taylor_verify.studies.tradeoff.setting import Setting
+    from taylor_verify.studies.tradeoff.trade_off import TradeOff
 
 
 def tradeoff(options: argparse.Namespace) -> Answer:
     """Speed against accuracy, and with a target the cheapest setting that reaches it."""
     from taylor_verify.cli.progress import working
     from taylor_verify.cli.tradeoff_text import tradeoff_text
-    from taylor_verify.trade.setting import RUNGS
-    from taylor_verify.trade.timing import cold_caches
-    from taylor_verify.trade.trade_off import trade_off
+    from taylor_verify.studies.tradeoff.setting import RUNGS
+    from taylor_verify.studies.tradeoff.timing import cold_caches
+    from taylor_verify.studies.tradeoff.trade_off import trade_off
 
     if not options.scenes:
         raise WrongCall("expected a scene, such as euler/generic, got none")
@@ -61,8 +61,8 @@ def _draw(found: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     """The pictures of each scene and the document itself, whole or not at all."""
     import json
 
-    from taylor_verify.publish.pictures import trade
     from taylor_verify.records.replacement import replace_files
+    from taylor_verify.studies.tradeoff.pictures import trade
 
     sound = [one for one in found if any(row["standing"] == "sound" for row in one["points"])]
     drawn = [path for one in sound for path in trade.draw(one, place)]
@@ -85,7 +85,7 @@ def _asked(
     options: argparse.Namespace, rungs: Sequence[str]
 ) -> Callable[[Scene], Sequence[Setting]]:
     """Of a scene the settings to be measured: all there are, or those of --solver and --outside."""
-    from taylor_verify.trade.setting import chosen, outside, settings
+    from taylor_verify.studies.tradeoff.setting import chosen, outside, settings
 
     try:
         named = chosen(options.solver, rungs) if options.solver else ()
@@ -102,8 +102,8 @@ def _make_environments() -> None:
     from contextlib import suppress
 
     from taylor_verify.cli.streams import say
-    from taylor_verify.solvers.entrant import entrants, prepare
-    from taylor_verify.solvers.environment import NotMade
+    from taylor_verify.solvers.entrants.entrant import entrants, prepare
+    from taylor_verify.solvers.entrants.environment import NotMade
 
     for one in entrants():
         if not one.unavailable:
@@ -113,8 +113,8 @@ def _make_environments() -> None:
 
 def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
     """Put into each point that is sound what its first solve takes in a process of its own."""
-    from taylor_verify.trade.cold import cold
-    from taylor_verify.trade.front import sound_points
+    from taylor_verify.studies.tradeoff.cold import cold
+    from taylor_verify.studies.tradeoff.front import sound_points
 
     asked = [p.timed.setting for p in sound_points(trade.points)]
     taken = {setting.label: one.row() for setting, one in cold(trade.scene, asked).items()}
@@ -123,7 +123,7 @@ def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
 
 
 def _target(text: str | None) -> float | None:
-    from taylor_verify.trade.recommend import check_target
+    from taylor_verify.studies.tradeoff.recommend import check_target
 
     if text is None:
         return None
@@ -137,7 +137,7 @@ def _target(text: str | None) -> float | None:
 
 def _recommended(trade: TradeOff, target: float) -> tuple[dict[str, Any] | None, list[str]]:
     """The document of a recommendation, or none and the reason."""
-    from taylor_verify.trade.recommend import OutOfReach, recommended
+    from taylor_verify.studies.tradeoff.recommend import OutOfReach, recommended
 
     try:
         return recommended(trade, target).document(), []

@@ -26,8 +26,8 @@ def list_all(options: argparse.Namespace) -> Answer:
     from taylor_verify.records.quantities import LADDER
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
-    from taylor_verify.scenes.reader import load
-    from taylor_verify.solvers.formats.listing import formats
+    from taylor_verify.scenes.reading.reader import load
+    from taylor_verify.solvers.files.formats.listing import formats
     from taylor_verify.solvers.registry import NAMES
 
     del options
@@ -187,7 +187,7 @@ def explain(options: argparse.Namespace) -> Answer:
     """The arithmetic of one run."""
     from taylor_verify.cli.progress import working
     from taylor_verify.cli.terminal import explanation_text
-    from taylor_verify.explanation import explanation
+    from taylor_verify.explain.explanation import explanation
 
     (rung,) = known_rungs([options.rung])
     (scene,) = read_scenes([options.scene], warn=False)
@@ -225,7 +225,7 @@ def _known_solver(name: str) -> None:
 def read_scenes(names: Sequence[str], warn: bool = True) -> list[Scene]:
     """Read every scene before any work begins; the faults of all of them are reported at once."""
     from taylor_verify.batch.selection import read_all
-    from taylor_verify.scenes.faults import Refused
+    from taylor_verify.scenes.reading.faults import Refused
 
     try:
         scenes = read_all(names)
@@ -243,7 +243,7 @@ def read_time(text: str) -> Fraction:
 
 def read_number(text: str, option: str) -> Fraction:
     """Return the decimal or a/b of an option. Raises WrongCall for any other text."""
-    from taylor_verify.scenes.table import exact_number
+    from taylor_verify.scenes.reading.table import exact_number
 
     try:
         return exact_number(text.strip())

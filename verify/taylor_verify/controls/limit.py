@@ -14,8 +14,8 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.errors import state_errors
+from taylor_verify.judge.errors.state import state_errors
+from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.bodies import RigidBody

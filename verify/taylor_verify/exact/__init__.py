@@ -65,7 +65,7 @@ def exact(
     from taylor_verify.exact.ellipsoid import formed_to
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
-    from taylor_verify.scenes.reader import as_scene
+    from taylor_verify.scenes.reading.reader import as_scene
 
     scene, digits = as_scene(scene), check_digits(digits)
     elapsed = [time - scene.clock.start for time in exact_times(times)]

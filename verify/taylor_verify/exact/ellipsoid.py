@@ -25,7 +25,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import ball, balls, midpoint, upper
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Ellipsoid, ImmersedBody
-from taylor_verify.scenes.faults import shown
+from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.scene import Scene
 
 Three = tuple[arb, arb, arb]

@@ -11,8 +11,8 @@ from typing import Final, final
 from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes.faults import brief
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.scenes.scene import Scene
 
 # Two doublings of the precision: more are needed only where an integral is hard.

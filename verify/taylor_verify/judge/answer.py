@@ -18,7 +18,6 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.causes.answers import causes_of_file
 from taylor_verify.judge.complete import Extent, complete_verdict, not_judged
 from taylor_verify.judge.conventions.readings import Reading
@@ -35,10 +34,11 @@ from taylor_verify.judge.file_notes import (
     single_precision,
     tracked,
 )
+from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.floor.inputs import impulses, input_rounding
+from taylor_verify.judge.floor.partial import partial_judgement
 from taylor_verify.judge.initial import initial_verdict
-from taylor_verify.judge.inputs import impulses, input_rounding
 from taylor_verify.judge.judgement import Judgement, unjudged
-from taylor_verify.judge.partial import partial_judgement
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.judge.storage import with_file_kinds
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
@@ -52,7 +52,7 @@ from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import Recorded, TrajectoryFile
+from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 from taylor_verify.solvers.trajectory import ByRows
 
 Array = np.ndarray[Any, Any]

@@ -51,8 +51,8 @@ from taylor_verify.records.json_text import parsed
 from taylor_verify.records.quantities import COMPLETE, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.scenes.limit import Limit
-from taylor_verify.scenes.regular_file import read_bytes
+from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.scenes.reading.regular_file import read_bytes
 
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
 # From the best: 0 all passed, 3 nothing shown, 1 failed.

@@ -21,7 +21,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import Recorded
+from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
 
 # A clock that adds up its step errs by a roundoff of the span in each of them: steps of 1e-4 up to 100.

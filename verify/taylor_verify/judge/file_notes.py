@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.complete import Extent
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
-from taylor_verify.scenes.faults import Refused
 from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import TrajectoryFile
+from taylor_verify.solvers.files.file import TrajectoryFile
 
 _FLOAT32_BITS: Final = 24
 _MODELS: Final = {

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from taylor_verify.judge.errors import Errors, Floats
+from taylor_verify.judge.errors.state import Errors, Floats
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import AskedTolerance, Cause, Reason, shown
 from taylor_verify.records.status import Status

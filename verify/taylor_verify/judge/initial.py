@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.regraded import Graded

@@ -12,21 +12,21 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.attainable import Floats, Floor, floor
-from taylor_verify.judge.balances import ClockWork, clock_work
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
-from taylor_verify.judge.errors import Errors
+from taylor_verify.judge.errors.balances import ClockWork, clock_work
+from taylor_verify.judge.errors.shift import Shift
+from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
+from taylor_verify.judge.floor.attainable import Floats, Floor, floor
+from taylor_verify.judge.floor.steps import Steps, count_steps
+from taylor_verify.judge.floor.unit_quaternion import unit_quaternion
 from taylor_verify.judge.four_digits import four_digits
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.measured import Comparison
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.judge.shift import Shift
 from taylor_verify.judge.showing import counts, dataframe, html_table
-from taylor_verify.judge.steps import Steps, count_steps
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
-from taylor_verify.judge.unit_quaternion import unit_quaternion
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.doubles import Doubles

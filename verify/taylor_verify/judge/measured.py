@@ -16,14 +16,15 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.invariants import Invariant
-from taylor_verify.exact.looks import evenly
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge import series
-from taylor_verify.judge.arithmetic import MORE_DIGITS
+from taylor_verify.judge import accumulated as series
+from taylor_verify.judge.accumulated import States, joined
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
-from taylor_verify.judge.drifts import Drifts
-from taylor_verify.judge.errors import (
+from taylor_verify.judge.errors.drifts import Drifts
+from taylor_verify.judge.errors.shift import Shift, time_shifts
+from taylor_verify.judge.errors.state import (
     Arc,
     Distances,
     Errors,
@@ -32,9 +33,8 @@ from taylor_verify.judge.errors import (
     norms,
     state_distances,
 )
+from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
-from taylor_verify.judge.series import States, joined
-from taylor_verify.judge.shift import Shift, time_shifts
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import motion_of, rows_at

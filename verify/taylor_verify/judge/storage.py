@@ -12,14 +12,14 @@ from dataclasses import replace
 from math import inf, sqrt
 from typing import Final
 
-from taylor_verify.judge.arithmetic import truth_digits
 from taylor_verify.judge.conventions.search import Finding
 from taylor_verify.judge.file_notes import single_precision
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import CONSERVED, INITIAL, STATES, UNIT_QUATERNION
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
-from taylor_verify.solvers.file import TrajectoryFile
+from taylor_verify.solvers.files.file import TrajectoryFile
 
 _FLOAT32: Final = 2.0**-24
 # A file with two digits less than the rung has is cut off.

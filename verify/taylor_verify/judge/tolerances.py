@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.records.quantities import STATES, UNIT_QUATERNION
-from taylor_verify.scenes.faults import brief
-from taylor_verify.scenes.positive import positive
+from taylor_verify.scenes.reading.faults import brief
+from taylor_verify.scenes.reading.positive import positive
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene

@@ -28,6 +28,6 @@ def load(scene: str | os.PathLike[str]) -> Scene:
     scenes.faults.Refused
         With every fault of the file at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
-    from taylor_verify.scenes import reader
+    from taylor_verify.scenes.reading import reader
 
     return reader.load(scene)

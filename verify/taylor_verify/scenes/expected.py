@@ -25,9 +25,9 @@ from typing import Any, Final
 
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.scenes import library
-from taylor_verify.scenes.faults import Faults, Refused, near, shown
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.table import Table
+from taylor_verify.scenes.reading.faults import Faults, Refused, near, shown
+from taylor_verify.scenes.reading.table import Table
 
 FILE: Final = "EXPECTED.toml"
 # `fail` is not among them: what fails is mended, and not expected.

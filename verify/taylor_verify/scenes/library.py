@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.scenes.faults import Refused, brief
+from taylor_verify.scenes.reading.faults import Refused, brief
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
 
-from taylor_verify.scenes.table import exact_number
+from taylor_verify.scenes.reading.table import exact_number
 
 # Below the roundoff of every rung, and beyond every span of time.
 _LEAST = Fraction(sys.float_info.min)

@@ -64,7 +64,7 @@ def solver_named(name: str) -> Solver:
 
         return driver.named(name)
     if name.startswith(PROCESS):
-        from taylor_verify.solvers import process
+        from taylor_verify.solvers.process import process
 
         return process.named(name)
     if name.startswith(GEOMETRIC):
@@ -84,11 +84,11 @@ def solver_named(name: str) -> Solver:
 
         return closed_form.named(name)
     if name.startswith(OUTSIDE):
-        from taylor_verify.solvers import entrant
+        from taylor_verify.solvers.entrants import entrant
 
         return entrant.named(name)
     if name.startswith(FMU):
-        from taylor_verify.solvers import fmu
+        from taylor_verify.solvers.fmu import fmu
 
         return fmu.named(name)
     raise ValueError(unknown_solver(name))
@@ -96,7 +96,7 @@ def solver_named(name: str) -> Solver:
 
 def as_solver(solver: Solver | str) -> Solver:
     """Return a Solver as it is, and that of a name; ValueError for anything else."""
-    from taylor_verify.scenes.faults import brief
+    from taylor_verify.scenes.reading.faults import brief
     from taylor_verify.solvers.solver import Solver
 
     if isinstance(solver, str):

@@ -19,8 +19,8 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.positive import positive
 from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.solver import Lack, Solver
 from taylor_verify.solvers.straight_line import straight_line

@@ -17,7 +17,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.scenes.precision import held_exactly
-from taylor_verify.scenes.table import LARGEST_EXPONENT, exact_number
+from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
 
 # A rational, or the NaN or infinity that the file has in its place.
 Value = Fraction | float

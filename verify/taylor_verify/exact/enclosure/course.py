@@ -32,8 +32,8 @@ from taylor_verify.exact.enclosure.tube import (
     tube,
 )
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.faults import shown
 from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.reading.faults import shown
 
 # Steps of the radius of convergence over e^2, bits ln 2/2 orders, are the cheapest where the cost of a step
 # is that of its convolutions; what is done once in an order, or in a step, asks for more.

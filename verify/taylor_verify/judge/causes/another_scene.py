@@ -17,7 +17,7 @@ from taylor_verify.judge.causes.material import Material
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.reader import load
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 # A start that is off by more than the one is another start, and one within the other is the same.

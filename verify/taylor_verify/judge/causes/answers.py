@@ -15,7 +15,7 @@ from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import Conventions
-from taylor_verify.judge.inputs import impulses
+from taylor_verify.judge.floor.inputs import impulses
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.records.answers import LikelyCause
@@ -26,7 +26,7 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import TrajectoryFile
+from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.trajectory import Trajectory
 
 _DIGITS: Final = 20

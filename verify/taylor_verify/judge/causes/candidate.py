@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from taylor_verify.judge.shift import LEAVES
+from taylor_verify.judge.errors.shift import LEAVES
 from taylor_verify.records.answers import LikelyCause
 
 # Two candidates explain equally well if the better one leaves at least a third of what the other leaves,

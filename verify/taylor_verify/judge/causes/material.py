@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.looks import evenly
+from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.records.verdict import Verdict

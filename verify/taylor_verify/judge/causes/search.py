@@ -21,7 +21,7 @@ from taylor_verify.judge.causes.space import space_loads, space_readings
 from taylor_verify.judge.causes.start import attitude_reading
 from taylor_verify.judge.causes.tensor import another_body, other_tensors
 from taylor_verify.judge.causes.terms import fluid_terms, loads
-from taylor_verify.judge.shift import LEAVES
+from taylor_verify.judge.errors.shift import LEAVES
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.scenes.scene import Scene
 

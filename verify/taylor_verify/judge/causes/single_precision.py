@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.exact.looks import evenly
+from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs

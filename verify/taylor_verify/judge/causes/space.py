@@ -12,7 +12,7 @@ from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, bilinear, flow
 from taylor_verify.judge.causes.material import Material
-from taylor_verify.judge.shift import LEAVES
+from taylor_verify.judge.errors.shift import LEAVES
 
 # An omega at the start that is off by more than the one, and by no more than the other in other axes.
 _OFF: Final = 1e-3

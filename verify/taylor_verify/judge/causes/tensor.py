@@ -14,7 +14,7 @@ from taylor_verify.judge.causes.fit import fitted
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
 from taylor_verify.judge.causes.terms import tried_equations
-from taylor_verify.judge.shift import LEAVES
+from taylor_verify.judge.errors.shift import LEAVES
 
 # Two tensors nearer than this are one.
 _SAME: Final = 1e-13

@@ -18,7 +18,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.judge.conventions.axes import Frames
-from taylor_verify.judge.errors import norms
+from taylor_verify.judge.errors.state import norms
 
 Array = np.ndarray[Any, Any]
 # The columns of one group, shaped (n, k), and the exact R at the same times, (n, 3, 3).

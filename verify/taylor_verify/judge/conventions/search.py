@@ -28,12 +28,12 @@ from taylor_verify.exact.solution import Quantities, Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
 from taylor_verify.judge.conventions.readings import Reading, readings, rotations, vector_columns
 from taylor_verify.judge.conventions.worlds import World, worlds
-from taylor_verify.judge.inputs import velocities
+from taylor_verify.judge.floor.inputs import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.file import TrajectoryFile
+from taylor_verify.solvers.files.file import TrajectoryFile
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]

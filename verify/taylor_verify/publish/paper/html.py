@@ -109,7 +109,7 @@ def _seen_from_tables(token: Token, page: Page, pages: Collection[str]) -> Token
 
 def _formula(tokens: Sequence[Token], place: int, *_: Any) -> str:
     """Mathematics as MathML; what it says in words is words, which can be broken at their spaces."""
-    from taylor_verify.publish.site.mathml import mathml
+    from taylor_verify.publish.mathml import mathml
 
     return "".join(
         escape(part) if is_text or not part.strip() else _spaced(part, mathml(_apart(part)))

@@ -19,7 +19,7 @@ from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
 from taylor_verify.publish.pictures.panels import Frame, Panel, columns, width_of
 from taylor_verify.publish.pictures.series import Row, Series, amount, front_of
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, Look
-from taylor_verify.records.studies.tradeoff import Standing
+from taylor_verify.records.standing import Standing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

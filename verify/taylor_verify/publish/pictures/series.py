@@ -9,7 +9,7 @@ from math import isfinite
 from typing import Any, Final
 
 from taylor_verify.publish.pictures.style import Look, kind_of, look_of, place
-from taylor_verify.records.studies.tradeoff import Standing
+from taylor_verify.records.standing import Standing
 
 Row = Mapping[str, Any]
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Final
 from xml.parsers import expat
 
-from taylor_verify.scenes.faults import Refused
-from taylor_verify.scenes.limit import Limit
-from taylor_verify.scenes.regular_file import read_bytes
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.scenes.reading.regular_file import read_bytes
 
 MOST_BYTES: Final = Limit(2**24, "bytes", "a description of a robot has its meshes in other files")
 MOST_ELEMENTS: Final = Limit(200_000, "elements", "a robot of a thousand links has a fifth of them")

@@ -13,13 +13,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.scenes.faults import shown
 from taylor_verify.scenes.imported import rotation
 from taylor_verify.scenes.imported.angles import remarks_on
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 # Elements that hold bodies without being one.

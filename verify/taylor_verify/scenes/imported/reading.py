@@ -8,8 +8,8 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.faults import Faults, shown
 from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.reading.faults import Faults, shown
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 _DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")

@@ -13,7 +13,6 @@ from itertools import combinations_with_replacement
 from typing import Final
 
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.faults import cut, near, shown
 from taylor_verify.scenes.imported import rotation
 from taylor_verify.scenes.imported.angles import remarks_on
 from taylor_verify.scenes.imported.document import Node
@@ -21,6 +20,7 @@ from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.imported.urdf import COMPONENTS
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.reading.faults import cut, near, shown
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 _ROWS: Final = "xyzpqr"

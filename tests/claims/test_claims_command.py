@@ -1,0 +1,160 @@
+"""The verb `claims`: a table, JSON, exit statuses, and the page with the errata in front."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from taylor_verify.claims import ledger
+from taylor_verify.claims.claim import Claim, Residual, Verdict
+from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy
+from taylor_verify.claims.ledger import claims, examined
+from taylor_verify.claims.numbers import CITED
+from taylor_verify.cli import main
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.studies.claims.page import CLAIMS, PAGE, SHEET, load, page, pages, write
+
+QUICK = "hydromechanics 49 (11)"
+KEYS = {"id", "statement", "verdict", "correction", "residual"}
+
+Captured = pytest.CaptureFixture[str]
+
+
+def row(claim: Claim) -> ClaimRow:
+    (finding,) = examined([claim])
+    return finding.row()
+
+
+def without_checks(claim: Claim) -> ClaimRow:
+    """The row that the recorded verdict asks for, with no check run."""
+    fine = lambda: Residual(0.0, 0.0, "")  # noqa: E731
+    missed = (lambda: Residual(1.0, 0.0, "")) if claim.transcribed else None
+    return row(replace(claim, check=fine, transcribed=missed))
+
+
+ROWS = tuple(without_checks(claim) for claim in claims())
+STUDY = ClaimsStudy(Provenance({"taylor-verify": "1"}, "A chip", "a command"), dict(CITED), ROWS)
+
+
+def test_json_is_a_list_of_entries(capsys: Captured) -> None:
+    """Id, LaTeX, verdict, correction and residuals of what was asked for, and nothing else on stdout."""
+    assert main(["claims", QUICK, "hydromechanics 49 (2)", "--json"]) == 0
+    second, eleventh = json.loads(capsys.readouterr().out)
+    assert (second["id"], eleventh["id"]) == ("hydromechanics 49 (2)", QUICK)
+    assert set(second) >= KEYS
+    assert second["correction"] is None
+    assert second["residual"] == {"statement": 0.0}
+    assert eleventh["verdict"] == "false as transcribed"
+    assert "(x_1 + x_2i) +" in eleventh["correction"]
+    assert eleventh["residual"]["statement"] == 0.0
+    assert eleventh["residual"]["transcribed"] == pytest.approx((12**2 + 4**2) ** 0.5)
+
+
+def test_the_table_tells_an_entry_in_full(capsys: Captured) -> None:
+    """Statement, correction and counterexample of an entry that was asked for, and the counts."""
+    assert main(["claims", QUICK]) == 0
+    text = capsys.readouterr().out
+    for told in (
+        "false as transcribed",
+        "statement",
+        "correct",
+        "fails for",
+        "36 + 4 i",
+        "checked by",
+    ):
+        assert told in text
+    assert text.rstrip().endswith("1 false as transcribed")
+
+
+def test_an_unknown_id_is_a_wrong_call(capsys: Captured) -> None:
+    """Exit status 2, and what may have been meant."""
+    assert main(["claims", "hydromechanic 49 (17)"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "got 'hydromechanic 49 (17)'; did you mean 'hydromechanics 49 (17)'?" in captured.err
+
+
+def test_an_entry_that_lost_its_verdict_fails(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit status 1, and which verdict was expected; the row is told all the same."""
+    changed = tuple(replace(c, verdict=Verdict.HOLDS) if c.id == QUICK else c for c in claims())
+    monkeypatch.setattr(ledger, "claims", lambda: changed)
+    assert main(["claims", QUICK, "--json"]) == 1
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)[0]["recorded"] == "holds"
+    assert f"expected the verdict 'holds', got 'false as transcribed' @ {QUICK}" in captured.err
+
+
+def test_the_page_has_the_errata_in_front() -> None:
+    """Every false entry with its correction before anything else, and every entry in the ledger."""
+    text = page(STUDY)
+    assert text.startswith(MADE_BY)
+    errata, _, rest = text.partition("## True on a condition")
+    for entry in ROWS:
+        is_false = entry.verdict is Verdict.FALSE
+        assert (f"**`{entry.id}`**" in errata) == is_false
+        assert f"| `{entry.id}`" in rest
+        if is_false:
+            assert f"correct: $`{entry.correction}`$" in errata
+    for number in CITED:
+        assert number in rest
+
+
+def test_the_page_is_put_in_place(tmp_path: Path) -> None:
+    """The rows, the page and its sheet, in the folder given."""
+    names = ("data/claims.json", "claims.md", "tables/claims.csv")
+    assert write(tmp_path / "new", STUDY) == [tmp_path / "new" / name for name in names]
+
+
+def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+    """The ledger is read as it was written, and page and sheet are made of it anew."""
+    texts = {path: path.read_text(encoding="utf-8") for path in write(tmp_path, STUDY)}
+    assert load(tmp_path) == STUDY
+    again = pages(tmp_path)
+    assert {tmp_path / name: text for name, text in again.items()} == {
+        path: text for path, text in texts.items() if path != tmp_path / CLAIMS
+    }
+    assert set(again) == {PAGE, SHEET}
+    write(tmp_path, load(tmp_path))
+    assert {path: path.read_text(encoding="utf-8") for path in texts} == texts
+
+
+def test_a_number_that_is_not_finite_is_null(tmp_path: Path) -> None:
+    """A residual that came to no number is null in the file and in words on the page, and never zero."""
+    lost = replace(ROWS[0], bound=float("nan"), residual=ClaimResiduals(float("inf"), float("nan")))
+    write(tmp_path, replace(STUDY, claims=(lost,)))
+    (stored,) = json.loads((tmp_path / CLAIMS).read_text(encoding="utf-8"))["claims"]
+    assert stored["bound"] is None
+    assert stored["residual"] == {"statement": None, "transcribed": None}
+    ledger = pages(tmp_path)[PAGE].partition("## The ledger")[2]
+    (line,) = (line for line in ledger.splitlines() if line.startswith(f"| `{lost.id}`"))
+    assert "within not finite" in line
+
+
+def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
+    """The message names the key, the entry and the file; so does a verdict that there is not."""
+    write(tmp_path, STUDY)
+    document = json.loads((tmp_path / CLAIMS).read_text(encoding="utf-8"))
+    document["claims"][2]["verdict"] = "plausible"
+    (tmp_path / CLAIMS).write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"'plausible' @ claims\[2\]\.verdict @ .*claims\.json"):
+        pages(tmp_path)
+    (tmp_path / CLAIMS).write_text('{"provenance": {}}', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a key cited, got none.*claims\.json"):
+        pages(tmp_path)
+
+
+def test_a_ledger_that_lost_a_verdict_is_not_published(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Exit status 1, and no page."""
+    (quick,) = (c for c in claims() if c.id == QUICK)
+    monkeypatch.setattr(ledger, "claims", lambda: (replace(quick, verdict=Verdict.HOLDS),))
+    assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
+    assert f"@ {QUICK}" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

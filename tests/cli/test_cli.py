@@ -1,0 +1,693 @@
+"""The command line: verbs, JSON, exit statuses, and one clear message for whatever is wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp
+from samples import LISTED_INSTANTS
+
+import taylor_verify
+from taylor_verify.batch.job import Job
+from taylor_verify.cli import main
+from taylor_verify.models.form import Form
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.guide import GUIDE
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.solvers import registry
+from taylor_verify.solvers.files.formats.reading import PART_READERS, READERS
+
+ROOT = Path(__file__).resolve().parents[2]
+GENERIC = library.cases_directory() / "euler" / "generic.toml"
+REFUSED = sorted((library.cases_directory() / "refused").glob("*.toml"))
+# Two instants that no double tells apart.
+TOO_CLOSE = LISTED_INSTANTS.replace('["0.5", 1, 2]', '[1, "1.000000000000000000000001"]')
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> Path:
+    """A scene file that is judged in a moment."""
+    file = tmp_path / "short.toml"
+    file.write_text(LISTED_INSTANTS)
+    return file
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "taylor_verify", *arguments]
+
+
+def environment(**changed: str) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT / "verify"), **changed}
+
+
+# What is asked without a scene.
+
+
+def test_list_names_what_there_is(capsys: Captured) -> None:
+    """The shipped scenes, the solvers and the rungs, as JSON and as text."""
+    assert main(["list", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found == {
+        "scenes": list(library.names()),
+        "extremes": list(library.names("extremes")),
+        "solvers": list(registry.NAMES),
+        "rungs": list(LADDER),
+        "guide": dict(GUIDE),
+        "formats": [*READERS, *PART_READERS],
+    }
+    assert main(["list"]) == 0
+    text = capsys.readouterr().out
+    assert all(name in text for names in found.values() for name in names)
+
+
+def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) -> None:
+    """`list` begins with at most ten lines on which scene tells what, each shipped."""
+    assert len(GUIDE) <= 10
+    assert all(
+        set(library.named(name))
+        <= {
+            *library.names(),
+            *library.named(library.EXTREMES),
+        }
+        for name in GUIDE
+    )
+    assert main(["list"]) == 0
+    first, *rest = capsys.readouterr().out.splitlines()
+    assert first == "which scene tells what"
+    for line, (name, purpose) in zip(rest, GUIDE.items(), strict=False):
+        assert line.split(maxsplit=1) == [name, purpose]
+
+
+@pytest.mark.parametrize("verb", [[], ["list"], ["run"], ["exact"], ["explain"], ["publish"]])
+def test_every_verb_has_help_with_an_example(capsys: Captured, verb: list[str]) -> None:
+    """`--help` ends with status 0, and names a call that can be copied."""
+    with pytest.raises(SystemExit) as ended:
+        main([*verb, "--help"])
+    assert ended.value.code == 0
+    text = capsys.readouterr().out
+    assert "example" in text
+    if verb:
+        assert f"taylor-verify {verb[0]} " in text
+        assert "--json" in text
+
+
+def test_help_imports_nothing_heavy() -> None:
+    """`--help` answers before numpy, mpmath, heyoka or rich are imported."""
+    script = (
+        "import sys\nfrom taylor_verify.cli import main\n"
+        "try: main(['run', '--help'])\nexcept SystemExit: pass\n"
+        "print(sorted({'numpy', 'mpmath', 'heyoka', 'rich', 'flint', 'multiprocessing'}"
+        " & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+# run
+
+
+def test_run_prints_one_document_with_every_key_of_the_contract(
+    capsys: Captured, short: Path
+) -> None:
+    """stdout holds {"verdicts", "summary"} and nothing else; the counts add up."""
+    assert main(["run", str(short), "--rung", "f32", "f64", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == {"verdicts", "summary"}
+    names = {
+        *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
+        *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
+        *("evaluations", "seconds", "provenance"),
+    }
+    for row in found["verdicts"]:
+        assert names <= set(row)
+        assert row["scene"] == str(short)
+        assert row["max"] <= row["bound"]
+        assert {"versions", "processor", "command", "scene"} <= set(row["provenance"])
+    assert {row["quantity"] for row in found["verdicts"]} == {"omega", "T", "H2"}
+    assert [row["rung"] for row in found["verdicts"]] == ["f32"] * 3 + ["f64"] * 3
+    words = {"pass", "fail", "undecided", "vacuous", "refused", "unavailable"}
+    assert set(found["summary"]) == words
+    assert found["summary"]["pass"] == len(found["verdicts"]) == 6
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["{scene}", "--rung", "f32", "f64"],
+        ["--rung", "f32", "f64", "{scene}"],
+        ["--rung", "f32,f64", "{scene}"],
+        ["--rung", "f32", "--rung", "f64", "--json", "{scene}"],
+        ["--rung", "f32", "{scene}", "--rung=f64"],
+        ["--json", "--rung", "f32", "f64", "f32", "--solver", "taylor", "{scene}"],
+    ],
+)
+def test_rungs_and_scenes_stand_in_any_order(
+    capsys: Captured, short: Path, arguments: list[str]
+) -> None:
+    """`--rung` takes the rungs that follow it and no scene; a rung named twice is run once."""
+    words = [word.format(scene=short) for word in arguments if word != "--json"]
+    assert main(["run", "--json", *words]) == 0
+    rows = json.loads(capsys.readouterr().out)["verdicts"]
+    assert {row["scene"] for row in rows} == {str(short)}
+    assert [row["rung"] for row in rows if row["quantity"] == "omega"] == ["f32", "f64"]
+
+
+def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
+    capsys: Captured, short: Path
+) -> None:
+    """By name and by path one scene is two; a scene named twice is run once."""
+    scenes = ["euler/separatrix", str(short), str(library.find("euler/separatrix"))]
+    assert main(["run", scenes[0], "--json", *scenes[1:], scenes[0]]) == 0
+    out, error = capsys.readouterr()
+    rows = json.loads(out)["verdicts"]
+    assert [row["scene"] for row in rows if row["quantity"] == "omega"] == scenes
+    *progress, costs = error.splitlines()
+    assert len(progress) == len(scenes)
+    assert "processor time" in costs
+    numbers = [[row["max"] for row in rows if row["scene"] == scene] for scene in scenes]
+    assert numbers[0] == numbers[2] != numbers[1]
+
+
+def test_the_number_of_processes_is_that_of_jobs(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """`--jobs` reaches the pool; what is below one is a wrong call."""
+    asked: list[object] = []
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all",
+        lambda jobs, progress, workers, *_: asked.append(workers) or [],
+    )
+    assert main(["run", "euler/rest", "euler/generic", "--jobs", "3"]) == 3
+    assert main(["run", "euler/rest", "--jobs", "0"]) == 2
+    assert asked == [3]
+    assert "expected a number of at least 1, got 0 @ --jobs" in capsys.readouterr().err
+
+
+def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """`run` alone asks for every shipped scene on f32 f64 f80 f128 mp237, a named one for f64."""
+    asked: list[Any] = []
+
+    def judge(jobs: list[Job], progress: object, *others: object) -> list[Any]:
+        # No number of processes, no executor, nothing resumed, and no folder to write to.
+        assert not any(others)
+        (how,) = {(job.solver, job.rungs) for job in jobs}
+        asked.append((tuple(job.name for job in jobs), *how))
+        return []
+
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judge)
+    # Nothing is judged here, and that is no pass.
+    assert main(["run", "--json"]) == 3
+    assert main(["run", "--json", "euler/generic"]) == 3
+    assert asked == [
+        (library.names(), "taylor", LADDER),
+        (("euler/generic",), "taylor", ("f64",)),
+    ]
+    assert sum(json.loads(capsys.readouterr().out.split("}\n{")[0] + "}")["summary"].values()) == 0
+
+
+@pytest.mark.parametrize(
+    ("status", "code"),
+    [("pass", 0), ("fail", 1), ("undecided", 3), ("vacuous", 3), ("unavailable", 0)],
+)
+def test_the_exit_status_is_that_of_the_gravest_verdict(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path, status: str, code: int
+) -> None:
+    """One such verdict among passes decides."""
+    from dataclasses import replace
+
+    found = taylor_verify.run(str(short))
+    marred = replace(found.verdicts[0], verdict=Status(status))
+    judgement = replace(found, verdicts=(*found.verdicts, marred))
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [judgement])
+    assert main(["run", str(short)]) == code
+    assert status in capsys.readouterr().out
+
+
+def test_a_scene_that_a_rung_cannot_hold_is_refused_there_and_shown(
+    capsys: Captured, tmp_path: Path
+) -> None:
+    """The rung's verdict is `refused` with its reason and no numbers; other rungs still pass."""
+    file = tmp_path / "close.toml"
+    file.write_text(TOO_CLOSE)
+    assert main(["run", str(file), "--rung", "f64", "f128"]) == 3
+    text = capsys.readouterr().out
+    assert "refused" in text
+    assert "two sample times" in text
+    assert "3 pass, 1 refused" in text
+    assert main(["explain", str(file)]) == 0
+    assert "two sample times" in capsys.readouterr().out
+
+
+def test_the_table_fits_a_hundred_columns(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """A row for each scene and rung, not folded, with the longest of the shipped names."""
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setenv("TERM", "xterm")
+    name = max(library.names(), key=len)
+    assert main(["run", name, "--rung", "f32", "f64"]) == 0
+    text = re.sub(r"\x1b\[[0-9;]*m", "", capsys.readouterr().out)
+    rows = [line for line in text.splitlines() if name in line and "pass" in line]
+    assert len(rows) == 2
+    assert all(len(row) <= 100 for row in rows)
+    assert all("pass" in row for row in rows)
+
+
+def test_names_are_shown_as_they_are(capsys: Captured, tmp_path: Path) -> None:
+    """Brackets, colons and spaces of a path are no markup."""
+    folder = tmp_path / "a [bold]folder"
+    folder.mkdir()
+    file = folder / ":smile: x.toml"
+    file.write_text(LISTED_INSTANTS)
+    for arguments in (["run"], ["exact", "--at", "1"], ["explain"]):
+        assert main([arguments[0], str(file), *arguments[1:]]) == 0
+        assert str(file) in capsys.readouterr().out
+
+
+def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
+    monkeypatch: pytest.MonkeyPatch, capfd: Captured
+) -> None:
+    """What is printed during the work, by Python or below it, goes to stderr."""
+
+    def noisy(*_: Any) -> list[Any]:
+        os.write(1, b"noise from below\n")
+        print("noise from Python")
+        return []
+
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", noisy)
+    assert main(["run", "euler/generic", "--json"]) == 3
+    out, error = capfd.readouterr()
+    assert set(json.loads(out)) == {"verdicts", "summary"}
+    assert "noise from below" in error
+    assert "noise from Python" in error
+
+
+@pytest.mark.parametrize("state", ["corrupt", "not a folder", "no home"])
+def test_a_broken_cache_neither_stops_a_run_nor_spoils_the_document(
+    short: Path, tmp_path: Path, state: str
+) -> None:
+    """Compiled code is kept where possible; where not, stdout still holds JSON alone."""
+    cache = tmp_path / "cache"
+    changed = {"HEYOKA_CACHE_DIR": str(cache)}
+    if state == "corrupt":
+        subprocess.run(
+            command("run", str(short)), env=environment(**changed), check=True, capture_output=True
+        )
+        stored = [file for file in cache.rglob("*") if file.is_file()]
+        assert stored
+        for file in stored:
+            file.write_bytes(b"garbage" * 100)
+    elif state == "not a folder":
+        cache.write_text("a file")
+    else:
+        changed = {"HOME": str(cache / "nowhere"), "XDG_CACHE_HOME": "/proc/nowhere"}
+    done = subprocess.run(
+        command("run", str(short), "--json"), env=environment(**changed), capture_output=True
+    )
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["summary"]["pass"] == 3
+
+
+# --out and publish
+
+
+def test_out_makes_the_folder_and_publish_rebuilds_its_tables(
+    capsys: Captured, short: Path, tmp_path: Path
+) -> None:
+    """`run --out` leaves data and tables in a new folder; `publish` makes the same tables."""
+    folder = tmp_path / "new" / "nested"
+    assert main(["run", str(short), "--out", str(folder), "--json"]) == 0
+    out, error = capsys.readouterr()
+    assert json.loads(out)["summary"]["pass"] == 3
+    assert str(folder) in error
+    made = [folder / "README.md", *(folder / "tables").iterdir()]
+    tables = {file: file.read_bytes() for file in made}
+    assert len(tables) > 1
+    assert (folder / "data" / "verdicts.json").is_file()
+    for file in tables:
+        file.unlink()
+    assert main(["publish", "--from", str(folder), "--json"]) == 0
+    written = json.loads(capsys.readouterr().out)["written"]
+    assert {Path(file) for file in written} == set(tables)
+    assert all(file.read_bytes() == text for file, text in tables.items())
+
+
+@pytest.mark.parametrize("place", ["a-file", "a-file/below", ""])
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured, tmp_path: Path, place: str
+) -> None:
+    """Exit 2 with one line that names --out; no run is started, nothing is made."""
+    (tmp_path / "a-file").write_text("mine")
+    monkeypatch.setattr(
+        "taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("the work was begun")
+    )
+    folder = str(tmp_path / place) if place else ""
+    assert main(["run", "euler/generic", "--out", folder]) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.count("\n") == 1
+    assert "--out" in error
+    assert [file.name for file in tmp_path.iterdir()] == ["a-file"]
+    assert (tmp_path / "a-file").read_text() == "mine"
+
+
+def test_reports_that_fail_at_the_end_cost_no_results(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path, tmp_path: Path
+) -> None:
+    """A disk that is full after the run ends with status 2 and a message, and shows the table."""
+
+    def full(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("taylor_verify.studies.report.write", full)
+    assert main(["run", str(short), "--out", str(tmp_path / "out")]) == 2
+    out, error = capsys.readouterr()
+    assert "3 pass" in out
+    assert "No space left" in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_publish_without_data_says_what_it_needs(capsys: Captured, tmp_path: Path) -> None:
+    """Exit 2, one line, and no folder made."""
+    assert main(["publish", "--from", str(tmp_path / "nothing")]) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert "run --out" in error
+    assert error.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+# explain
+
+
+@pytest.mark.parametrize("scene", ["euler/generic", "kirchhoff/planar-swing", "euler/separatrix"])
+def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, scene: str) -> None:
+    """The text and the document tell the same; each bound comes with its reason."""
+    assert main(["explain", scene, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert main(["explain", scene]) == 0
+    text = capsys.readouterr().out
+    assert all(line in text for line in found["equations"])
+    assert found["regime"] in text
+    for gate in found["gates"]:
+        assert gate["max"] <= gate["bound"]
+        assert gate["because"].split(";")[-1].strip() in text
+    assert {gate["verdict"] for gate in found["gates"]} == {"pass"}
+    cost = found["cost"]
+    assert cost["states"] == len(found["equations"])
+    assert cost["evaluations"] >= cost["steps"] > 0
+
+
+def test_the_cost_counts_each_operation_once() -> None:
+    """Of a' = (a k) b - a k and b' = (a k) b / b, a k and (a k) b are formed once."""
+
+    def equations(n: Any) -> dict[str, Any]:
+        a, b, k = n["a"], n["b"], n["k"]
+        return {"a": a * k * b - a * k, "b": (a * k * b) / b}
+
+    form = Form(equations, ("a", "b"), ("k",))
+    assert form.operations() == {"sums": 1, "products": 2, "quotients": 1}
+
+
+# What is wrong.
+
+
+@pytest.mark.parametrize("file", REFUSED, ids=lambda file: file.stem)
+@pytest.mark.parametrize("verb", [["run"], ["exact", "--at", "1"], ["explain"]], ids=lambda v: v[0])
+def test_a_scene_that_is_refused_ends_with_2_and_a_message(
+    capsys: Captured, verb: list[str], file: Path
+) -> None:
+    """Every fault is named on stderr; stdout stays empty."""
+    assert main([verb[0], str(file), *verb[1:], "--json"]) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.startswith("taylor-verify: expected ")
+    assert "Traceback" not in error
+
+
+def test_the_faults_of_all_scenes_are_told_at_once(capsys: Captured, tmp_path: Path) -> None:
+    """A misspelt name is answered with near ones, beside the faults of another scene."""
+    (tmp_path / "bad.toml").write_bytes(b"\xff\xfe")
+    assert main(["run", "euler/genric", str(tmp_path / "bad.toml"), "euler/generic"]) == 2
+    error = capsys.readouterr().err
+    assert "euler/generic" in error
+    assert "not UTF-8" in error
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "euler/generic", "--rung", "f65"],
+        ["run", "--rung", "f64x", "euler/generic"],
+        ["run", "euler/generic", "--solver", "tailor"],
+        ["run", "x" * 5000],
+        ["run", ""],
+        ["run", "."],
+        ["explain", "euler/generic", "--rung", "mp3"],
+    ],
+)
+def test_a_name_that_means_nothing_is_a_wrong_call(capsys: Captured, arguments: list[str]) -> None:
+    """Exit 2, one line, nothing on stdout."""
+    assert main(arguments) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.startswith("taylor-verify: expected ")
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["bogus"],
+        ["run", "--rung"],
+        ["run", "euler/generic", "--bogus"],
+        ["exact", "euler/generic"],
+        ["exact", "--at", "1"],
+        ["exact", "euler/generic", "euler/backward", "--at", "1"],
+        ["exact", "euler/generic", "--at", "1", "--digits", "ten"],
+        ["exact", "euler/generic", "--at", "1", "--dig", "5"],
+        ["explain"],
+    ],
+)
+def test_a_call_that_cannot_be_read_ends_with_2(capsys: Captured, arguments: list[str]) -> None:
+    """argparse says what is missing or too much; an abbreviated option is not understood."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert "usage: taylor-verify" in error
+
+
+def test_an_error_nobody_foresaw_is_one_line_with_its_place(
+    monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
+) -> None:
+    """It names the scene, the rung, the error and the file it rose in."""
+    monkeypatch.setattr("taylor_verify.models.problem.pose", lambda *_: 1 // 0)
+    assert main(["run", str(short)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    for part in (str(short), "f64", "ZeroDivisionError", "run.py:"):
+        assert part in error
+
+
+# Pipes, signals and lost workers.
+
+
+def test_a_reader_that_goes_away_is_no_error() -> None:
+    """`| head -1` ends without a word on stderr and with the status of the run."""
+    for arguments in (["list"], ["list", "--json"], ["--help"]):
+        with subprocess.Popen(
+            command(*arguments),
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        ) as process:
+            assert process.stdout is not None
+            assert process.stderr is not None
+            process.stdout.close()
+            assert process.stderr.read() == b""
+            assert process.wait(timeout=30) == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
+def test_a_full_disk_under_stdout_is_one_message() -> None:
+    """Exit 2 and the system's reason."""
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            command("list", "--json"), env=environment(), stdout=full, stderr=subprocess.PIPE
+        )
+    assert done.returncode == 2
+    assert done.stderr.count(b"\n") == 1
+    assert b"No space left" in done.stderr
+
+
+def children(pid: int) -> list[int]:
+    """The worker processes of a process, by Linux's own account."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parent = int(status.read_text().rpartition(")")[2].split()[1])
+            words = (status.parent / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if parent == pid and b"spawn_main" in words:
+            found.append(int(status.parent.name))
+    return found
+
+
+@pytest.fixture
+def working(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """A run in two worker processes that would take many seconds, and its process group."""
+    scenes = ["kirchhoff/whole-motion", "kirchhoff/general-body"]
+    with subprocess.Popen(
+        command("run", *scenes, "--rung", "mp1000", "--json", "--out", str(tmp_path / "out")),
+        env=environment(),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        deadline = time.monotonic() + 30
+        while len(children(process.pid)) < 2 and time.monotonic() < deadline:
+            time.sleep(0.02)
+        yield process
+        process.kill()
+
+
+needs_processes = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists() or len(os.sched_getaffinity(0)) < 2,
+    reason="needs two cores and Linux's list of processes",
+)
+
+
+@needs_processes
+@pytest.mark.parametrize("after", [0.0, 0.2, 1.5])
+def test_an_interrupt_ends_run_and_workers_with_one_line(
+    working: subprocess.Popen[str], tmp_path: Path, after: float
+) -> None:
+    """Ctrl-C goes to the whole group; status 130, no traceback, no report, no process left."""
+    time.sleep(after)
+    workers = children(working.pid)
+    os.killpg(working.pid, signal.SIGINT)
+    # A second is the aim; the machine may be busy.
+    out, error = working.communicate(timeout=5)
+    assert working.returncode == 130
+    assert out == ""
+    assert re.fullmatch(r"taylor-verify: interrupted(: \d+ of \d+ scenes .* --resume .*)?\n", error)
+    assert not (tmp_path / "out").exists()
+    assert not any(is_running(worker) for worker in workers)
+
+
+@needs_processes
+def test_a_worker_that_is_killed_ends_the_run_with_one_line(
+    working: subprocess.Popen[str], tmp_path: Path
+) -> None:
+    """Exit 2 and a message; nothing is written."""
+    os.kill(children(working.pid)[0], signal.SIGKILL)
+    out, error = working.communicate(timeout=10)
+    assert working.returncode == 2
+    assert out == ""
+    assert error.count("\n") == 1
+    assert "worker" in error
+    assert not (tmp_path / "out").exists()
+
+
+@needs_processes
+def test_workers_do_not_outlive_a_run_that_is_killed(working: subprocess.Popen[str]) -> None:
+    """After kill -9 of the run its workers are gone as soon as they notice."""
+    workers = children(working.pid)
+    time.sleep(1.0)
+    working.kill()
+    deadline = time.monotonic() + 10
+    while any(is_running(worker) for worker in workers) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not any(is_running(worker) for worker in workers)
+
+
+def is_running(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+# From Python.
+
+
+def by_mpmath(problem: Problem) -> list[list[Any]]:
+    """A solver of one's own: mpmath's odefun on I omega' = (I omega) x omega."""
+    scene = problem.given
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    inertia, inverse = scene.body.inertia, tensors.inverse(scene.body.inertia)
+
+    def rate(_: Any, omega: Any) -> Any:
+        h = [sum(mp.convert(a) * w for a, w in zip(row, omega, strict=True)) for row in inertia]
+        torque = [
+            h[1] * omega[2] - h[2] * omega[1],
+            h[2] * omega[0] - h[0] * omega[2],
+            h[0] * omega[1] - h[1] * omega[0],
+        ]
+        return [sum(mp.convert(k) * m for k, m in zip(row, torque, strict=True)) for row in inverse]
+
+    with mp.workdps(25):
+        motion = mp.odefun(rate, 0, [mp.convert(w) for w in scene.initial.omega])
+        return [[float(w) for w in motion(mp.convert(t))] for t in scene.clock.elapsed]
+
+
+def test_a_solver_of_ones_own_is_judged_by_its_numbers(short: Path) -> None:
+    """mpmath's own integrator passes every gate; the same numbers one part in 10^9 off do not."""
+    good = taylor_verify.check(str(short), by_mpmath)
+    assert {v.quantity for v in good.verdicts} == {"omega", "T", "H2"}
+    assert {v.verdict for v in good.verdicts} == {Status.PASS}
+    off = taylor_verify.check(str(short), lambda problem: np.array(by_mpmath(problem)) * (1 + 1e-9))
+    assert {v.verdict for v in off.verdicts} == {Status.FAIL}
+
+
+@pytest.mark.parametrize(
+    ("solve", "outcome"),
+    [
+        (lambda problem: np.zeros((len(problem.times), 4)), "wrong shape"),
+        (lambda problem: [[0.0] * 3] * (len(problem.times) - 1), "wrong shape"),
+        (lambda problem: [[1.0], [2.0, 3.0], [4.0]], "error"),
+        (lambda problem: 1 // 0, "error"),
+        (lambda problem: None, "wrong shape"),
+        (lambda problem: [[float("nan")] * 3] * len(problem.times), "last sample"),
+        (lambda problem: [[float("inf")] * 3] * len(problem.times), "last sample"),
+    ],
+    ids=["too wide", "too few", "ragged", "raising", "nothing", "nan", "infinite"],
+)
+def test_a_solver_that_fails_has_a_verdict(short: Path, solve: Any, outcome: str) -> None:
+    """Whatever a stranger's code does, the judgement is `fail` and its outcome says how."""
+    found = taylor_verify.check(str(short), solve)
+    assert {v.verdict for v in found.verdicts} == {Status.FAIL}
+    assert outcome in found.verdicts[0].outcome
+    json.dumps([v.row() for v in found.verdicts], allow_nan=False)

@@ -1,0 +1,163 @@
+"""Names that mean harm: no terminal is steered, no runner commanded and no spreadsheet made to compute."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import pty
+import re
+import sys
+from pathlib import Path
+from subprocess import run
+
+import pytest
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+from samples import LISTED_INSTANTS
+
+from taylor_verify.cli import main
+from taylor_verify.cli.console import EscapingConsole, new_console, print_line, text_of
+from taylor_verify.scenes.names import escaped
+from taylor_verify.studies.accuracy import sheet as sheets
+
+ROOT = Path(__file__).resolve().parents[2]
+# Clear the screen, ring, a title for the window, the same in C1, and a turn of the direction.
+STEERING = "\x1b[2J\x07\x1b]0;x\x07\x9b31m\u202e"
+CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2028\u2029]")
+
+Captured = pytest.CaptureFixture[str]
+
+
+def printed(capsys: Captured) -> str:
+    found = capsys.readouterr()
+    return found.out + found.err
+
+
+@pytest.fixture
+def steering_scene(tmp_path: Path) -> Path:
+    """A scene whose file, title and source are hostile."""
+    file = tmp_path / f"a{STEERING}b.toml"
+    title = json.dumps(f"title {STEERING}")
+    text = re.sub(r"title = .*", lambda _: f"title = {title}\nsource = {title}", LISTED_INSTANTS)
+    file.write_text(text)
+    return file
+
+
+@pytest.mark.parametrize("verb", ["run", "explain", "exact"])
+def test_no_name_reaches_the_terminal_raw(
+    verb: str, steering_scene: Path, capsys: Captured
+) -> None:
+    """Scene, title and source are shown, with an escape for each control character."""
+    main([verb, str(steering_scene), *(["--at", "1"] if verb == "exact" else [])])
+    shown = printed(capsys)
+    assert r"\x1b[2J" in shown
+    assert not CONTROL.search(shown)
+
+
+def test_no_file_or_column_reaches_the_terminal_raw(tmp_path: Path, capsys: Captured) -> None:
+    """So are the name of a file and of its columns, judged or refused."""
+    file = tmp_path / f"a{STEERING}.csv"
+    for content in ("t,w1,w2,w3\n0,1,2,3\n", f"t,w1,w2,w3,{STEERING}\n0,1,2,3,4\n"):
+        file.write_text(content)
+        main(["check", str(file), "--scene", "euler/generic"])
+        shown = printed(capsys)
+        assert r"\x1b[2J" in shown
+        assert not CONTROL.search(shown)
+
+
+def test_json_holds_no_control_character(steering_scene: Path, capsys: Captured) -> None:
+    """The document has the name as it is shown everywhere."""
+    named = steering_scene.rename(steering_scene.with_name("a\x7f\x1bb.toml"))
+    main(["exact", str(named), "--at", "1", "--json"])
+    document = capsys.readouterr().out
+    assert not CONTROL.search(document)
+    assert json.loads(document)["scene"] == escaped(str(named))
+
+
+def test_words_of_the_call_are_escaped_when_repeated(capsys: Captured) -> None:
+    """What argparse says of a word that it does not know is harmless too."""
+    with pytest.raises(SystemExit):
+        main(["run", "euler/generic", "--bogus", STEERING])
+    assert not CONTROL.search(printed(capsys))
+
+
+def test_styles_are_the_consoles_own() -> None:
+    """The console colours its own words, and escapes those of a text, a table and a status alike."""
+    table = Table(STEERING)
+    table.add_row(Text(STEERING))
+    stream = io.StringIO()
+    console = EscapingConsole(
+        file=stream, force_terminal=True, color_system="standard", markup=False
+    )
+    console.print(Text(STEERING, "bold red"), table, STEERING)
+    own = re.sub(r"\x1b\[[0-9;]*m", "", stream.getvalue())
+    assert "\x1b[1;31m" in stream.getvalue()
+    assert not CONTROL.search(own)
+
+
+def test_a_plain_console_would_let_it_through() -> None:
+    """rich alone drops the bell and keeps the escape: what the test above sees can be there."""
+    stream = io.StringIO()
+    Console(file=stream, force_terminal=True, color_system=None, markup=False).print(STEERING)
+    assert "\x1b[2J" in stream.getvalue()
+
+
+def test_text_without_control_characters_is_left_alone() -> None:
+    """Tabs, line breaks, accents and mathematics stay as they are."""
+    text = "ω = 1\tε\nfin d'été"
+    assert escaped(text) == text
+    console = new_console()
+    print_line(console, text)
+    assert text_of(console).startswith("ω = 1")
+
+
+@pytest.mark.slow
+def test_a_terminal_gets_styles_and_no_commands(steering_scene: Path) -> None:
+    """On a terminal of its own the answer has colours, and no control sequence beside them."""
+    leader, follower = pty.openpty()
+    ended = run(
+        [sys.executable, "-m", "taylor_verify", "explain", str(steering_scene)],
+        stdout=follower,
+        stderr=follower,
+        cwd=ROOT,
+        check=False,
+    )
+    shown = b""
+    with open(leader, "rb", buffering=0) as terminal:
+        import os
+
+        os.close(follower)
+        while True:
+            try:
+                more = terminal.read(4096)
+            except OSError:  # the other end is closed
+                break
+            if not more:
+                break
+            shown += more
+    assert ended.returncode == 0
+    text = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", shown.decode().replace("\r", ""))
+    assert r"\x1b[2J" in text
+    assert not CONTROL.search(text)
+
+
+# Spreadsheets.
+
+
+@pytest.mark.parametrize(
+    "name", ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1+1", "=cmd|' /C calc'!A0"]
+)
+def test_no_cell_begins_a_formula(name: str) -> None:
+    """A name that a spreadsheet would compute has an apostrophe before it."""
+    (heading, cells) = csv.reader(io.StringIO(sheets.sheet(["scene"], [{"scene": name}])))
+    assert heading == ["scene"]
+    assert cells == ["'" + name.strip()]
+
+
+@pytest.mark.parametrize("value", [-1.5, "-1.5", "+2e-3", "-inf", "a=b", "euler/generic", None])
+def test_numbers_and_plain_names_stay_as_they_are(value: object) -> None:
+    """A number begins with its sign, and means no formula."""
+    _, *rows = csv.reader(io.StringIO(sheets.sheet(["v", "w"], [{"v": value, "w": 1}])))
+    assert rows == [["" if value is None else str(value), "1"]]

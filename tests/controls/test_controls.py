@@ -1,0 +1,332 @@
+"""Every gate has a broken solver that it catches, and the published table says what the rows say."""
+
+import json
+from dataclasses import replace
+from functools import lru_cache
+from math import nextafter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from taylor_verify.controls.answers import ANSWERS
+from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.defects import DEFECTS
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies import report
+from taylor_verify.studies.controls import page as controls
+from taylor_verify.studies.controls import proof
+from taylor_verify.studies.controls import stored as stored
+from taylor_verify.studies.controls.document import ControlsStudy, Sight
+from taylor_verify.studies.controls.measure import RUNG, Twins, sights, study
+
+NAMED = {defect.name: defect for defect in DEFECTS}
+STATE = {"omega", "impulse", "attitude", "centre"}
+TWINS: Twins = {}
+COMPARED = [pytest.param(d, id=d.name) for d in DEFECTS if not d.honest]
+
+
+@lru_cache
+def sight_of(name: str) -> Sight:
+    """One run of a defect and its twin, shared by the tests."""
+    (found,) = sights([NAMED[name]], twins=TWINS)
+    return found
+
+
+@lru_cache
+def read_back() -> ControlsStudy:
+    """All defects as they are read back, by way of a file."""
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory() as folder:
+        stored.write(Path(folder), study(sight_of(defect.name) for defect in DEFECTS))
+        return stored.load(Path(folder))
+
+
+def rows() -> tuple[Sight, ...]:
+    return read_back().sights
+
+
+# The defects.
+
+
+@pytest.mark.parametrize("defect", COMPARED)
+def test_defect_is_seen_by_the_gates_that_physics_says_and_by_no_other(defect: Defect) -> None:
+    """What a defect conserves passes, everything else fails, the gate named for it among that."""
+    verdicts = sight_of(defect.name).verdicts
+    start = set() if defect.wrong_start else {INITIAL}
+    assert {
+        v.quantity for v in verdicts.values() if v.verdict is Status.PASS
+    } == defect.passes | start
+    assert {v.verdict for v in verdicts.values()} <= {Status.PASS, Status.FAIL}
+    assert verdicts[defect.gate].verdict is Status.FAIL
+
+
+@pytest.mark.parametrize("defect", COMPARED)
+def test_defect_is_off_by_more_than_any_rounding(defect: Defect) -> None:
+    """The named gate fails by a thousand floors, so that no choice of its factor could hide it."""
+    caught = sight_of(defect.name).verdicts[defect.gate]
+    if defect.name == "one-ulp-over":
+        # This one is as close as it can be.
+        assert caught.max == pytest.approx(caught.bound, rel=1e-15)
+    elif defect.name == "one-nan":
+        assert caught.ratio is None or np.isnan(caught.ratio)
+    else:
+        assert caught.ratio is not None
+        assert caught.ratio >= 1000
+
+
+@pytest.mark.parametrize("defect", COMPARED)
+def test_sound_twin_passes_every_gate(defect: Defect) -> None:
+    """What fails is the defect, not the scene and not the step: the twin passes all gates there."""
+    found = sight_of(defect.name)
+    assert {v.verdict for v in found.sound.values()} == {Status.PASS}
+    # A quaternion has a row of its own only where it is no unit quaternion.
+    assert set(found.sound) == set(found.verdicts) - {UNIT_QUATERNION}
+
+
+def test_honest_failure_is_scored_as_its_outcome() -> None:
+    """A solver that says it stopped has one failed row, its outcome, and no error in numbers."""
+    (verdict,) = sight_of("stopped-and-said-so").verdicts.values()
+    assert (verdict.verdict, verdict.max, verdict.at) == (Status.FAIL, None, None)
+    assert verdict.outcome.startswith("stopped")
+    assert [defect.name for defect in DEFECTS if defect.honest] == ["stopped-and-said-so"]
+
+
+def test_every_gate_catches_a_defect() -> None:
+    """No gate on any scene used here is only for show."""
+    asked = {name for row in rows() for name in row.quantities}
+    assert INITIAL in asked
+    caught = {name for row in rows() for name in row.seen_by}
+    assert asked == caught
+    assert asked >= {"omega", "impulse", "attitude", "centre", "T", "H2", "F2", "FG", "y3"}
+    assert asked >= {"H_space", "x_space", "y_space"}
+
+
+def test_names_are_unique_and_everything_is_told_in_words() -> None:
+    """Each defect has one name and says what is wrong and why it shows where it does."""
+    assert len(NAMED) == len(DEFECTS)
+    assert all(defect.what and defect.why for defect in DEFECTS)
+
+
+@pytest.mark.parametrize(
+    ("name", "sign"), [("explicit-gyroscopic-update", 1), ("implicit-gyroscopic-update", -1)]
+)
+def test_energy_rises_or_falls_in_every_step(name: str, sign: int) -> None:
+    """The explicit update gains energy from sample to sample, its implicit mirror loses it."""
+    scene = load(NAMED[name].scene)
+    problem = pose(scene, rung(RUNG))
+    motion = NAMED[name].solve(problem).motion(100)
+    (energy,) = (i for i in invariants(problem.given) if i.name == "T")
+    assert np.all(sign * np.diff(energy.value(motion)) > 0)
+
+
+def test_shift_is_found_with_its_size_and_sign() -> None:
+    """States half a millisecond early are found to be so, to what the gates would let pass."""
+    verdict = sight_of("half-a-millisecond-early").verdicts["omega"]
+    assert verdict.shift == "constant"
+    assert verdict.time_shift is not None
+    assert verdict.residual is not None
+    assert verdict.bound is not None
+    assert verdict.max is not None
+    # An error of the bound is as much time as the bound is of this error.
+    assert abs(verdict.time_shift + 0.0005) <= 0.0005 * verdict.bound / verdict.max
+    assert verdict.residual <= verdict.bound
+
+
+def test_one_ulp_decides() -> None:
+    """The least double above the bound fails and the greatest below it passes, at one sample."""
+    found = sight_of("one-ulp-over")
+    over, within = found.verdicts["omega"], found.sound["omega"]
+    assert over.bound == within.bound
+    assert over.bound is not None
+    assert (over.verdict, within.verdict) == (Status.FAIL, Status.PASS)
+    # The error is an mpf, rounded once more to be shown.
+    assert over.max in {over.bound, nextafter(over.bound, 1)}
+    assert within.max in {over.bound, nextafter(over.bound, 0)}
+
+
+def test_defects_of_an_answer_change_nothing_where_they_say_nothing() -> None:
+    """A quantity whose numbers a defect leaves alone keeps them bit by bit: T of a conjugate, say."""
+    spoilt = sight_of("conjugate-quaternion").verdicts
+    twin = sight_of("conjugate-quaternion").sound
+    assert all(spoilt[q].max == twin[q].max for q in NAMED["conjugate-quaternion"].passes)
+    assert NAMED["conjugate-quaternion"] in ANSWERS
+
+
+# What the table says.
+
+
+def test_energy_alone_misses_what_it_is_said_to_miss() -> None:
+    """Every defect that conserves T by its physics is one that the page says the energy misses."""
+    (sentence,) = (s for s in proof.proven(rows()) if "gate of the energy" in s)
+    named = sentence.partition(": ")[2].partition(".")[0].replace(" and ", ", ").split(", ")
+    finished = [row for row in rows() if row.is_finished]
+    blind = [row for row in finished if "T" in NAMED[row.defect.name].passes]
+    assert f"{len(blind)} of {len(finished)} defects" in sentence
+    assert sorted(named) == sorted(proof.title(row) for row in blind)
+
+
+def test_conservation_altogether_misses_a_wrong_motion() -> None:
+    """Late, early and frozen bodies pass every conserved quantity, and fail the state."""
+    expected = {d.name for d in DEFECTS if not d.honest and set(d.passes) >= conserved_by(d)}
+    found = {row.defect.name for row in proof.conserving(rows())}
+    assert found == expected
+    assert found >= {"half-a-millisecond-early", "success-after-failure", "one-sample-late"}
+
+
+def conserved_by(defect: Defect) -> set[str]:
+    return {v.quantity for v in sight_of(defect.name).sound.values() if v.is_conserved}
+
+
+def test_sentences_follow_the_rows() -> None:
+    """With the verdicts of one gate turned round, the sentences on it change: none is typed."""
+    changed = [with_energy_failed(row) for row in rows()]
+    before, after = proof.proven(rows()), proof.proven(changed)
+    assert not any("gate of the energy" in sentence for sentence in after)
+    assert "Every defect shows in some conserved quantity." in after
+    assert "Every defect shows in some conserved quantity." not in before
+
+
+def with_energy_failed(row: Sight) -> Sight:
+    if "T" not in row.verdicts:
+        return row
+    failed = replace(row.verdicts["T"], verdict=Status.FAIL)
+    return replace(row, verdicts={**row.verdicts, "T": failed})
+
+
+def test_faulty_twin_takes_the_gate_out_of_the_count() -> None:
+    """A gate that fails the sound twin too has not seen the defect, and the page says so."""
+    row = next(row for row in rows() if row.defect.name == "angular-damping")
+    assert row.is_seen_by("T")
+    failed = replace(row.sound["T"], verdict=Status.FAIL)
+    faulty = replace(row, sound={**row.sound, "T": failed})
+    assert not faulty.is_seen_by("T")
+    assert any("sound twin fails" in sentence for sentence in proof.proven([faulty]))
+
+
+def test_rows_come_back_as_they_were_stored() -> None:
+    """What is read is what was run: status, error over bound, and the shift of every failed row."""
+    for row, defect in zip(rows(), DEFECTS, strict=True):
+        run = sight_of(defect.name).verdicts
+        assert {q: v.verdict for q, v in row.verdicts.items()} == {
+            q: v.verdict for q, v in run.items()
+        }
+        for name, verdict in run.items():
+            if verdict.max is not None and np.isfinite(verdict.max):
+                assert verdict.ratio is not None
+                assert row.over_bound(name) == verdict.ratio / GATE_FACTOR
+            if verdict.verdict is Status.FAIL:
+                assert row.verdicts[name].shift == verdict.shift
+
+
+def test_table_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
+    """A number changed in controls.json is changed in the tables, and no solver runs for it."""
+    report.publish_controls(tmp_path, study([sight_of("energy-restored")]))
+    file = tmp_path / "data" / "controls.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    for row in content["verdicts"]:
+        if row["solver"] == "energy-restored" and row["quantity"] == "omega":
+            row["ratio"] = 1.25e7 * content["factor"]
+    file.write_text(json.dumps(content), encoding="utf-8")
+    changed = stored.load(tmp_path)
+    assert "**1.2e7**" in controls.page(changed)
+    assert ",12500000.0," in controls.sheet(changed)
+
+
+def test_report_remakes_the_table_from_what_is_stored(tmp_path: Path) -> None:
+    """`run --out` and `publish` keep the table of controls: it is remade, and linked in front."""
+    made = report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    assert [path.name for path in made] == ["controls.json", "controls.md", "controls.csv"]
+    before = made[1].read_text(encoding="utf-8")
+    report.write(tmp_path, sight_of("one-ulp-over").sound.values(), [])
+    report.publish(tmp_path)
+    assert made[1].read_text(encoding="utf-8") == before
+    for page in ("README.md", "tables/README.md"):
+        assert "controls.md" in (tmp_path / page).read_text(encoding="utf-8")
+
+
+def test_stored_rows_that_are_none_are_refused(tmp_path: Path) -> None:
+    """A file without the verdicts of a defect is a fault that names the file, not an empty table."""
+    report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    file = tmp_path / "data" / "controls.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    file.write_text(json.dumps({**content, "verdicts": []}), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"one-ulp-over.*controls\.json"):
+        stored.load(tmp_path)
+
+
+def test_what_is_read_is_written_the_same(tmp_path: Path) -> None:
+    """A stored run, read and stored again, is the same document."""
+    study_of_one = study([sight_of("one-ulp-over")])
+    first = json.loads(stored.write(tmp_path, study_of_one).read_text(encoding="utf-8"))
+    again = json.loads(stored.write(tmp_path, stored.load(tmp_path)).read_text(encoding="utf-8"))
+    assert again == first
+    assert list(again) == list(first)
+    assert [list(row) for row in again["verdicts"]] == [list(row) for row in first["verdicts"]]
+    assert list(first["machine"]) == ["python", "processor", "command"]
+    assert "python" not in first["versions"]
+
+
+def test_a_row_without_a_reason_has_its_sentence(tmp_path: Path) -> None:
+    """In a file of an earlier version a row says its reason in a sentence alone; it is kept as a remark."""
+    report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    file = tmp_path / "data" / "controls.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    sentences = [row["because"] for row in content["verdicts"]]
+    for row in content["verdicts"]:
+        del row["reason"]
+    file.write_text(json.dumps(content), encoding="utf-8")
+    found = stored.load(tmp_path).verdicts
+    assert [verdict.reason.conclusion for verdict in found] == sentences
+
+
+def test_a_page_whose_table_has_no_rows_keeps_it(tmp_path: Path) -> None:
+    """Where no controls are stored, the table between the marks stays as it is."""
+    kept = f"{controls.BEGIN}\n\na table\n\n{controls.END}\n"
+    (tmp_path / "README.md").write_text(kept, encoding="utf-8")
+    report.write(tmp_path / "reports", sight_of("one-ulp-over").sound.values(), [])
+    report.publish(tmp_path / "reports")
+    assert (tmp_path / "README.md").read_text(encoding="utf-8") == kept
+
+
+def test_every_cell_says_what_the_verdict_says() -> None:
+    """In the tables a bold number is a gate that fails the defect, a dash one that passes it."""
+    text = controls.page(read_back())
+    for row in rows():
+        (line,) = table_lines(text, proof.title(row))
+        seen = sum(cell.startswith("**") for cell in line)
+        shift, stopped = proof.constant_shift(row) is not None, not row.is_finished
+        assert seen == len(row.seen_by) + shift + stopped
+
+
+def table_lines(text: str, title: str) -> list[list[str]]:
+    """The cells of the lines on one defect in the tables of figures."""
+    figures = text.partition("## What each gate sees and misses")[0]
+    lines = [line for line in figures.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    return [row for row in cells if row[0] == title]
+
+
+def test_short_table_is_short() -> None:
+    """Some fifteen defects in four columns, with some that conservation does not see at all."""
+    lines = [line for line in controls.short(read_back()).splitlines() if line.startswith("|")]
+    assert 10 <= len(lines) - 2 <= 16
+    assert all(line.count(" | ") == 3 for line in lines)
+    assert sum(line.count("not seen") == 2 for line in lines) >= 2
+
+
+def test_short_table_tells_the_defects_that_are_made_most() -> None:
+    """Every one that has been met in a published simulator or in a textbook is in the README."""
+    met = {
+        *("no-gyroscopic-term", "diagonal-tensor", "averaged-exponential", "angular-damping"),
+        *("explicit-gyroscopic-update", "implicit-gyroscopic-update", "float32-state"),
+        *("no-added-mass-acceleration", "munk-moment-sign", "half-a-millisecond-early"),
+        *("last-point-interpolated", "success-after-failure"),
+    }
+    assert met <= {defect.name for defect in DEFECTS if defect.told}

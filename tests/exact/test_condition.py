@@ -1,0 +1,338 @@
+"""The transition norms are those of the linearised equations, from any instant to any later one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import libmp, mp, mpf
+from samples import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
+
+from taylor_verify.exact.conditioning import condition
+from taylor_verify.exact.conditioning.condition import Derivatives, derivatives, transition
+from taylor_verify.exact.conditioning.variation import transition_table
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import (
+    Matrix,
+    Vector,
+    apply,
+    diagonal,
+    inverse,
+    product,
+    scaled,
+    transpose,
+)
+
+Array = np.ndarray[Any, Any]
+
+
+EULER_BLOCKS = ("momentum", "attitude")
+KIRCHHOFF_BLOCKS = ("linear_impulse", "angular_impulse", "attitude", "centre")
+
+
+def scene(
+    body: RigidBody | ImmersedBody, *track: str, start: Spin | Impulse | None = None
+) -> Scene:
+    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
+    initial = start or (SPIN if model == "euler" else IMPULSE)
+    clock = Clock(Fraction(0), (Fraction(1),))
+    return Scene("test", "test", model, frozenset(track), body, initial, clock)
+
+
+LOADED_EULER = scene(RigidBody(TENSOR, MOMENT), "attitude")
+LOADED_KIRCHHOFF = scene(LOADED, "attitude", "centre")
+
+
+def times(*entries: float | str) -> list[Fraction]:
+    return list(vector(*entries))
+
+
+def largest(values: Array) -> mpf:
+    return max(abs(value) for value in np.asarray(values).flat)
+
+
+def matrix(rows: Matrix) -> Array:
+    return np.array([[mp.convert(entry) for entry in row] for row in rows], dtype=object)
+
+
+def test_axisymmetric_body() -> None:
+    """For moments (J, J, S) the transition matrix is a rotation and a shear, known exactly."""
+    body = RigidBody(diagonal(vector(1, 1, 2)))
+    spinning = scene(body, start=Spin(vector("0.6", "0.8", "0.5")))
+    instants = times(0, "0.7", 3, 40)
+    found = transition(spinning, instants)
+    momentum = TaylorSolution(spinning).motion(instants, 30)["omega"].astype(float) * [1, 1, 2]
+    expected = np.zeros((4, 4))
+    for k, start in enumerate(momentum):
+        for i in range(k, 4):
+            expected[i, k] = np.linalg.norm(_shear(start, float(instants[i] - instants[k])), 2)
+    # float64 sines of angles of some tens, and differences that hold far more digits.
+    assert (
+        np.abs(
+            found.norms("momentum", "momentum") / np.where(expected, expected, 1) - (expected > 0)
+        ).max()
+        <= 1e-13
+    )
+
+
+def _shear(momentum: Array, time: float) -> Array:
+    """H_perp turns by -s t with s = (1/S - 1/J) H_3 ... the derivative by (H_1, H_2, H_3)."""
+    rate = 1 / 2 - 1 / 1
+    angle = rate * momentum[2] * time
+    cosine, sine = np.cos(angle), np.sin(angle)
+    h1, h2 = momentum[0] * cosine + momentum[1] * sine, momentum[1] * cosine - momentum[0] * sine
+    return np.array(
+        [[cosine, sine, h2 * rate * time], [-sine, cosine, -h1 * rate * time], [0, 0, 1]]
+    )
+
+
+@pytest.mark.parametrize("loaded", [LOADED_EULER, LOADED_KIRCHHOFF], ids=["euler", "kirchhoff"])
+def test_derivatives_obey_the_linearised_equations(loaded: Scene) -> None:
+    """D' = J D, the attitude's theta' = R dOmega, the centre's c' = R dU + theta x R U."""
+    step = Fraction(1, 2**14)
+    found = derivatives(loaded, [1 - step, Fraction(1), 1 + step], 20, 60)
+    motion = TaylorSolution(loaded).motion([Fraction(1)], 30)
+    with mp.workdps(30):
+        slopes = {
+            name: (rows[2] - rows[0]) / (2 * mp.convert(step))
+            for name, rows in {"momentum": found.momentum, **found.others}.items()
+        }
+        for name, rate in _linearised(loaded, motion, found).items():
+            # A central difference is off by step^2/6 = 6e-10 times a third derivative of some tens.
+            assert largest(slopes[name] - rate) <= mpf("1e-7")
+
+
+def _linearised(scene: Scene, motion: Motion, found: Derivatives) -> dict[str, Array]:
+    """The variational equations at the middle row, column by column."""
+    units = matrix((found.units,))[0]
+    deviation = found.momentum[1] * units[:, None]
+    turn = motion["attitude"][0]
+    if isinstance(scene.body, RigidBody):
+        inverse_inertia = matrix(scene.body.inverse_inertia)
+        h = matrix(scene.body.inertia) @ motion["omega"][0]
+        spin = inverse_inertia @ deviation
+        rate = _cross(deviation, inverse_inertia @ h) - _cross(spin, h)
+        return {"momentum": rate / units[:, None], "attitude": turn @ spin}
+    energy = matrix(scene.body.energy_matrix)
+    x, y = motion["linear_impulse"][0], motion["angular_impulse"][0]
+    both = energy @ np.concatenate([x, y])
+    velocity, omega = both[:3], both[3:]
+    glide, spin = (energy @ deviation)[:3], (energy @ deviation)[3:]
+    dx, dy = deviation[:3], deviation[3:]
+    rate = np.concatenate(
+        [
+            _cross(dx, omega) - _cross(spin, x),
+            _cross(dy, omega) - _cross(spin, y) + _cross(dx, velocity) - _cross(glide, x),
+        ]
+    )
+    return {
+        "momentum": rate / units[:, None],
+        "attitude": turn @ spin,
+        "centre": turn @ glide + _cross(found.others["attitude"][1], turn @ velocity),
+    }
+
+
+def _cross(columns: Array, v: Array) -> Array:
+    """Every column x v."""
+    return np.stack([np.cross(column, v) for column in columns.T], axis=1)
+
+
+@pytest.mark.parametrize(
+    ("start", "names"),
+    [
+        (LOADED_EULER, ("omega", *EULER_BLOCKS)),
+        (LOADED_KIRCHHOFF, KIRCHHOFF_BLOCKS),
+        (scene(CLEBSCH, "attitude", "centre"), KIRCHHOFF_BLOCKS),
+    ],
+    ids=["euler", "kirchhoff", "clebsch"],
+)
+def test_a_restarted_orbit_has_the_same_norms(start: Scene, names: tuple[str, ...]) -> None:
+    """What happens between two instants does not depend on where the clock was started."""
+    instants = times("0.5", "1.25", 3)
+    whole = transition(start, instants)
+    for k in range(3):
+        later = replace(start, initial=_state(start, instants[k]))
+        rest = transition(later, [instant - instants[k] for instant in instants[k:]])
+        for out in names:
+            for into in names:
+                if into == "omega":
+                    continue
+                measured = rest.norms(out, into)[:, 0]
+                expected = whole.norms(out, into)[k:, k]
+                # Differences are right to a dozen digits, variational equations to four.
+                assert np.abs(measured - expected).max() <= 1e-4 * (1 + expected.max())
+
+
+def _state(scene: Scene, time: Fraction) -> Spin | Impulse:
+    """The state at that time, to 40 digits, as an initial state."""
+    motion = solution(scene, "taylor").motion([time], 40)
+    rows = {name: _rational(rows[0]) for name, rows in motion.quantities.items()}
+    turn = tuple(rows["attitude"][i : i + 3] for i in (0, 3, 6))
+    quaternion: Quaternion = (
+        1 + turn[0][0] + turn[1][1] + turn[2][2],
+        turn[2][1] - turn[1][2],
+        turn[0][2] - turn[2][0],
+        turn[1][0] - turn[0][1],
+    )
+    if scene.model == "euler":
+        return Spin(rows["omega"], quaternion)
+    return Impulse(rows["linear_impulse"], rows["angular_impulse"], quaternion, rows["centre"])
+
+
+def _rational(values: Array) -> Vector:
+    return tuple(
+        Fraction(*(int(part) for part in libmp.to_rational(value._mpf_))) for value in values.flat
+    )
+
+
+def test_place_moves_with_the_path() -> None:
+    """A turn stays a turn, a shift a shift, and a turn at t_k swings c_i by |c_i - c_k|."""
+    instants = times(0, "0.5", 2, 5)
+    found = transition(LOADED_KIRCHHOFF, instants)
+    path = TaylorSolution(LOADED_KIRCHHOFF).motion(instants, 30)["centre"].astype(float)
+    distances = np.tril(np.linalg.norm(path[:, None] - path[None], axis=2))
+    alone = np.tril(np.ones((4, 4)))
+    assert (found.norms("attitude", "attitude") == alone).all()
+    assert (found.norms("centre", "centre") == alone).all()
+    # float64 differences of a path of ten units.
+    assert np.abs(found.norms("centre", "attitude") - distances).max() <= 1e-13
+    for out, into in (
+        ("linear_impulse", "attitude"),
+        ("angular_impulse", "centre"),
+        ("attitude", "centre"),
+    ):
+        assert not found.norms(out, into).any()
+    assert (np.diagonal(found.norms("centre", "linear_impulse")) == 0).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", [LOADED_EULER, LOADED_KIRCHHOFF], ids=["euler", "kirchhoff"])
+def test_the_size_of_the_perturbation_does_not_matter(start: Scene) -> None:
+    """Differences of relative size 10^-20 and 10^-25 agree to twenty digits, but for growth."""
+    coarse, fine = (
+        derivatives(start, times(1, 4), exponent, digits)
+        for exponent, digits in ((20, 50), (25, 60))
+    )
+    with mp.workdps(50):
+        # The neglected second derivative is some tens after four units of time.
+        bound = mpf(10) ** -17
+        assert largest(coarse.momentum - fine.momentum) <= bound
+        for name, rows in coarse.others.items():
+            assert largest(rows - fine.others[name]) <= bound
+
+
+def test_flows_conserve_volume() -> None:
+    """det D = 1 with and without loads, and not if a column is wrong by one part in a million."""
+    found = derivatives(LOADED_KIRCHHOFF, times(2, -3), 20, 50)
+    assert found.volume_error() <= mpf("1e-15")
+    with mp.workdps(50):
+        wrong = found.momentum.copy()
+        wrong[:, :, 4] *= 1 + mpf("2e-6")
+        assert replace(found, momentum=wrong).volume_error() >= mpf("1e-6")
+
+
+def test_growth_beside_an_unstable_rotation() -> None:
+    """About the intermediate axis an error grows as cosh of the classical rate, for 10^20 too."""
+    body = RigidBody(diagonal(vector(1, 2, 3)))
+    steady = scene(body, start=Spin(vector(0, 1, 0)))
+    # H2 = 2; H1' = H2 (K3 - K2) H3, H3' = H2 (K2 - K1) H1, so rate^2 = 4 (1/6)(1/2) = 1/3.
+    rate = np.sqrt(1 / 3)
+    found = transition(steady, times(0, 10, 80)).norms("momentum", "momentum")
+    for i, time in ((1, 10.0), (2, 80.0)):
+        block = [
+            [np.cosh(rate * time), -np.sinh(rate * time) / (3 * rate)],
+            [-np.sinh(rate * time) * rate * 3, np.cosh(rate * time)],
+        ]
+        expected = np.linalg.norm(block, 2)
+        # The matrix is held to conserve volume to 10^-6; with errors of 10^-25 grown 10^20 times,
+        # the orbits compared are 10^-5 apart, and what is neglected is its square.
+        assert abs(found[i, 0] / expected - 1) <= 1e-6
+
+
+def test_a_body_at_rest() -> None:
+    """At rest momentum stays as it is, and turns the body by K per unit of momentum and time."""
+    resting = scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0), QUATERNION))
+    found = transition(resting, times(0, 2, 6))
+    inverse_inertia = np.array(inverse(TENSOR), dtype=float)
+    stiffest = np.linalg.norm(inverse_inertia, 2)
+    # Perturbed by 10^-12 of a unit, the body turns by as much, and the norms are off by as much.
+    assert np.abs(found.norms("momentum", "momentum") - np.tril(np.ones((3, 3)))).max() <= 1e-10
+    assert abs(found.norms("attitude", "momentum")[2, 1] / (4 * stiffest) - 1) <= 1e-10
+    assert abs(found.norms("omega", "momentum")[2, 2] / stiffest - 1) <= 1e-10
+
+
+def test_norms_follow_the_units() -> None:
+    """In another unit of impulse, a million times larger, each norm scales as its units do."""
+    solid = scene(CLEBSCH, "attitude", "centre")
+    body = CLEBSCH
+    factor = Fraction(2**20)
+    # x, y -> factor x, y; the same motion needs T's coefficients divided by the factor.
+    blocks = (body.linear, body.coupling, body.angular)
+    heavy = ImmersedBody(*(tuple(scaled(1 / factor, row) for row in block) for block in blocks))
+    start = replace(
+        IMPULSE,
+        linear=tuple(factor * e for e in IMPULSE.linear),
+        angular=tuple(factor * e for e in IMPULSE.angular),
+    )
+    light_norms = transition(solid, times(0, 2))
+    heavy_norms = transition(scene(heavy, "attitude", "centre", start=start), times(0, 2))
+    for out, into, scale in (
+        ("linear_impulse", "angular_impulse", 1.0),
+        ("attitude", "linear_impulse", 2.0**-20),
+        ("centre", "angular_impulse", 2.0**-20),
+        ("centre", "attitude", 1.0),
+    ):
+        expected = light_norms.norms(out, into)[1, 0] * scale
+        assert abs(heavy_norms.norms(out, into)[1, 0] - expected) <= 1e-12 * expected
+
+
+def test_what_is_not_tracked_is_not_known() -> None:
+    """Asking for the attitude of a scene that tracks omega alone raises KeyError."""
+    found = transition(scene(RigidBody(TENSOR)), times(0, 1))
+    with pytest.raises(KeyError, match="attitude"):
+        found.norms("attitude", "momentum")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "start",
+    [
+        LOADED_EULER,
+        LOADED_KIRCHHOFF,
+        scene(CLEBSCH, "attitude", "centre"),
+        scene(RigidBody(TENSOR)),
+    ],
+    ids=["loaded euler", "loaded kirchhoff", "clebsch", "full tensor"],
+)
+def test_variational_equations_agree_with_differences(start: Scene) -> None:
+    """The two routes to the condition, float64 steps and differences of the truth, give the same norms.
+
+    To four digits: that is what the variational equations are integrated to.
+    """
+    instants = times(0, "0.5", "1.25", 3, 10)
+    units = condition._units(start)
+    by_steps = transition_table(start, TaylorSolution(start), units, instants)
+    assert by_steps is not None
+    by_differences = dict(condition._norms(derivatives(start, instants, 12, 36)))
+    assert set(by_steps) == set(by_differences)
+    for names, expected in by_differences.items():
+        assert np.abs(by_steps[names] - expected).max() <= 1e-4 * max(expected.max(), 1e-12)
+
+
+def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
+    """A turn 1e-40 from the middle axis in a rotated tensor is out of reach of float64: no answer."""
+    c, s = Fraction(3, 5), Fraction(4, 5)
+    turn: Matrix = ((c, -s, Fraction(0)), (s, c, Fraction(0)), vector(0, 0, 1))
+    turned = product(product(turn, diagonal(vector(1, 2, 3))), transpose(turn))
+    near = vector("1e-40", 1, "1e-40")
+    saddle = scene(RigidBody(turned), start=Spin(apply(turn, near)))
+    units = condition._units(saddle)
+    spans = times(0, 400)
+    assert transition_table(saddle, solution(saddle), units, spans) is None

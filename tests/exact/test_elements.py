@@ -1,0 +1,521 @@
+"""The elements of an orbit against the motion by Taylor series, and the linearised equations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.euler.elements import disturbance
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.kirchhoff.elements import discriminant, stability
+from taylor_verify.exact.kirchhoff.quartic import Nutation, value
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.judge.floor.carrying import Carrying, carrying
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
+
+DIGITS = 30
+# A number of 30 digits, times rates of some units, moves a motion by less than this.
+CLOSE = mpf("1e-26")
+CLOCK = Clock(Fraction(0), (Fraction(1),))
+
+
+def vector(*entries: str) -> Vector:
+    return tuple(Fraction(entry) for entry in entries)
+
+
+def rigid(inertia: Vector, omega: Vector) -> Scene:
+    body = RigidBody(tensors.diagonal(inertia))
+    return Scene("drawn", "drawn", "euler", frozenset(), body, Spin(omega), CLOCK)
+
+
+def immersed(body: Clebsch, linear: Vector, angular: Vector) -> Scene:
+    start = Impulse(linear, angular)
+    return Scene("drawn", "drawn", "kirchhoff", frozenset(), body.body(), start, CLOCK)
+
+
+def nutation(scene: Scene) -> Nutation:
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    assert scene.body.clebsch is not None
+    return Nutation.of(scene.body.clebsch, scene.initial)
+
+
+def number(scene: Scene, name: str, digits: int = DIGITS) -> mpf:
+    return elements(scene, digits)[name].value
+
+
+def moved(scene: Scene, quantity: str, *times: mpf) -> list[Any]:
+    """The quantity by Taylor series at these times since the start."""
+    alone = replace(scene, track=scene.track & {"attitude"})
+    return list(TaylorSolution(alone).motion([exact_value(t) for t in times], DIGITS)[quantity])
+
+
+def distance(a: Any, b: Any) -> mpf:
+    return mp.norm(list((a - b).flat))
+
+
+# Every orbit.
+
+
+@pytest.mark.parametrize("name", [n for n in names() if n.startswith(("euler/", "kirchhoff/"))])
+def test_the_digits_asked_for_are_right(name: str) -> None:
+    """Fifteen digits agree with forty, name by name, and every number says what it is."""
+    scene = load(name)
+    few, many = elements(scene, 15), elements(scene, 40)
+    assert list(few) == list(many)
+    with mp.workdps(40):
+        for element, better in zip(few.values(), many.values(), strict=True):
+            # Rounding to fifteen digits in binary is one unit of the last one.
+            room = mpf(10) ** -14 * max(abs(better.value), better.size)
+            assert abs(element.value - better.value) <= room
+            assert element.meaning
+    assert few.sentences
+
+
+@pytest.mark.parametrize("name", ["generic", "full-tensor", "axisymmetric", "backward"])
+def test_omega_recurs_after_the_period_and_not_after_half(name: str) -> None:
+    """The period of omega in body axes is its least one."""
+    scene = load(f"euler/{name}")
+    with mp.workdps(DIGITS):
+        period = number(scene, "period")
+        start, half, whole = moved(scene, "omega", mpf(0), period / 2, period)
+        assert distance(start, whole) <= CLOSE
+        assert distance(start, half) >= mpf("0.01")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
+        *("beside-a-stable-spin", "planar-turn"),
+    ],
+)
+def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) -> None:
+    """The shape recurs: x3 and dx3/dt = r (x1 y2 - x2 y1) are those of the start."""
+    scene = load(f"kirchhoff/{name}")
+    with mp.workdps(DIGITS):
+        period = number(scene, "period")
+        shapes = [
+            np.array([x[2], x[0] * y[1] - x[1] * y[0]])
+            for x, y in zip(
+                moved(scene, "linear_impulse", mpf(0), period / 2, period),
+                moved(scene, "angular_impulse", mpf(0), period / 2, period),
+                strict=True,
+            )
+        ]
+        assert distance(shapes[0], shapes[2]) <= CLOSE
+        assert distance(shapes[0], shapes[1]) >= mpf("0.01")
+
+
+@pytest.mark.parametrize("name", ["euler-top", "zero-impulse", "steady-precession"])
+def test_a_steady_motion_recurs_after_its_turn(name: str) -> None:
+    """Where x3 is constant the period is that of x and y about axis 3."""
+    scene = load(f"kirchhoff/{name}")
+    with mp.workdps(DIGITS):
+        period = number(scene, "period")
+        start, half, whole = moved(scene, "angular_impulse", mpf(0), period / 2, period)
+        assert distance(start, whole) <= CLOSE
+        assert distance(start, half) >= mpf("0.01")
+
+
+# Euler.
+
+
+def test_the_middle_component_vanishes_once_in_every_flip_time() -> None:
+    """Two zero crossings of omega_2, found by the secant rule on the Taylor motion."""
+    scene = load("euler/tennis-racket")
+    with mp.workdps(DIGITS):
+        flip = number(scene, "flip_time")
+        first = _crossing(scene, mpf("7.8"), mpf("8"))
+        second = _crossing(scene, first + mpf("16.5"), first + mpf("16.7"))
+        assert abs(second - first - flip) <= mpf("1e-24")
+        between = moved(scene, "omega", *(first + flip * k / 8 for k in range(1, 8)))
+        assert len({mp.sign(omega[1]) for omega in between}) == 1
+
+
+def _crossing(scene: Scene, a: mpf, b: mpf) -> mpf:
+    at_a, at_b = (omega[1] for omega in moved(scene, "omega", a, b))
+    for _ in range(12):
+        if abs(b - a) <= mpf("1e-25") or at_a == at_b:
+            return b
+        a, b, at_a = b, b - at_b * (b - a) / (at_b - at_a), at_b
+        (omega,) = moved(scene, "omega", b)
+        at_b = omega[1]
+    raise AssertionError(f"expected a zero of omega_2 near {mp.nstr(b)}")
+
+
+@pytest.mark.parametrize("off", ["0.1", "0.01", "1e-4", "1e-8", "1e-15"])
+def test_the_laws_of_the_flip_close_in_on_it(off: str) -> None:
+    """The leading law is off by m'/4 (1 - 1/L) of itself, and the next by 9/64 m'^2 at most."""
+    found = elements(rigid(vector("1", "2", "3"), vector(off, "1", "0")), 100)
+    with mp.workdps(100):
+        m_prime, flip = found["m_prime"].value, found["flip_time"].value
+        L = mp.log(16 / m_prime) / 2
+        leading = (flip - found["flip_law"].value) / flip / (m_prime / 4)
+        # K = L + (L - 1) m'/4 + O(m'^2 L)
+        assert abs(leading - (1 - 1 / L)) <= m_prime
+        assert abs(flip - found["flip_law_2"].value) <= flip * m_prime**2 * 9 / 64
+
+
+@pytest.mark.parametrize("off", ["1", "0.01", "1e-10", "1e-25"])
+def test_the_distance_to_the_separatrix_is_relatively_accurate(off: str) -> None:
+    """|H^2 - 2T J2|/H^2 and m' as exact fractions, for moments 1 < 2 < 3 and omega_1 small."""
+    small = Fraction(off)
+    scene = rigid(vector("1", "2", "3"), (small, Fraction(1), small / 3))
+    H2, T2 = small**2 + 4 + small**2, small**2 + 2 + small**2 / 3
+    A, D = abs(H2 - T2 * (1 if H2 > 2 * T2 else 3)), abs(H2 - 2 * T2)
+    found = elements(scene, DIGITS)
+    with mp.workdps(DIGITS):
+        expected = {"separation": D / H2, "m_prime": 2 * D / A}
+        for name, exactly in expected.items():
+            assert abs(found[name].value / mp.convert(exactly) - 1) <= mpf("1e-28")
+
+
+def test_a_small_parameter_is_relatively_accurate() -> None:
+    """Beside the steady spin about the largest moment m = (J2-J3) C/((J1-J2) A) is 1e-40."""
+    small = Fraction(1, 10**20)
+    found = elements(rigid(vector("1", "2", "4"), (small, small, Fraction(1))), DIGITS)
+    H2, T2 = small**2 + 4 * small**2 + 16, small**2 + 2 * small**2 + 4
+    m = (T2 * 4 - H2) / (2 * (H2 - T2))
+    with mp.workdps(DIGITS):
+        assert abs(found["m"].value / mp.convert(m) - 1) <= mpf("1e-28")
+        assert abs(found["k"].value ** 2 / mp.convert(m) - 1) <= mpf("1e-28")
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_disturbance_of_a_steady_rotation_has_the_linearised_spectrum(
+    axis: int, turned: bool
+) -> None:
+    """Growth rate or wobble are the eigenvalues of the Jacobian of H' = H x K H."""
+    inertia, spin = vector("1.5", "2", "3.25"), Fraction(7, 5)
+    omega = tuple(spin if i == axis else Fraction(0) for i in range(3))
+    tensor = tensors.diagonal(inertia)
+    if turned:
+        c, s = Fraction(3, 5), Fraction(4, 5)
+        zero, one = Fraction(0), Fraction(1)
+        P = ((c, -s, zero), (c * s, c * c, -s), (s * s, c * s, c))
+        assert tensors.product(P, tensors.transpose(P)) == tensors.diagonal((one, one, one))
+        tensor = tensors.product(tensors.product(P, tensor), tensors.transpose(P))
+        omega = tensors.apply(P, omega)
+    body = RigidBody(tensor)
+    scene = Scene("drawn", "drawn", "euler", frozenset(), body, Spin(omega), CLOCK)
+    K, H = np.array(body.inverse_inertia, dtype=float), tensors.apply(tensor, omega)
+    eigenvalues = np.linalg.eigvals(_euler_jacobian(K, np.array(H, dtype=float)))
+    largest = max(eigenvalues, key=abs)
+    found = elements(scene, 15)
+    assert found.regime == "steady"
+    if axis == 1:
+        # Eigenvalues of a 3x3 matrix of doubles of size 1.
+        assert abs(float(found["growth_rate"].value) - abs(largest.real)) <= 1e-12
+        assert "unstable" in found.sentences[0]
+    else:
+        assert abs(float(found["wobble_rate"].value) - abs(largest.imag)) <= 1e-12
+        assert ", stable" in found.sentences[0]
+
+
+def _euler_jacobian(K: Any, H: Any) -> Any:
+    """Of H x K H: column j is e_j x K H + H x K e_j."""
+    unit = np.eye(3)
+    return np.array([np.cross(unit[j], K @ H) + np.cross(H, K @ unit[j]) for j in range(3)]).T
+
+
+def test_a_spin_across_the_axis_of_symmetry_is_neutral() -> None:
+    """s^2 = 0 exactly: neither growth nor wobble, and the words say that omega drifts."""
+    scene = rigid(vector("2", "2", "1/3"), vector("0.6", "0.8", "0"))
+    assert disturbance(FreeSpin(scene.body.inertia, scene.initial.omega)) == 0
+    found = elements(scene, 15)
+    assert "drift" in found.sentences[0]
+    assert {"growth_rate", "wobble_rate"}.isdisjoint(found)
+
+
+def test_the_separatrix_falls_away_at_the_rate_of_its_saddle() -> None:
+    """On the separatrix lam is the growth rate of the spin that the orbit comes from."""
+    found = elements(load("euler/separatrix-full-tensor"), DIGITS)
+    with mp.workdps(DIGITS):
+        ratio = found["rate"].value / found["saddle_rate"].value
+        assert abs(ratio - 1) <= mpf("1e-28")
+    assert found["separation"].value == 0
+    assert "period" not in found
+
+
+def test_an_axis_of_symmetry_precesses_about_H() -> None:
+    """In space the axis recurs after precession_period, always at precession_angle from H."""
+    scene = replace(load("euler/axisymmetric"), track=frozenset({"attitude"}))
+    found = elements(scene, DIGITS)
+    inertia = [scene.body.inertia[i][i] for i in range(3)]
+    axis = next(i for i in range(3) if inertia.count(inertia[i]) == 1)
+    with mp.workdps(DIGITS):
+        period = found["precession_period"].value
+        frames = moved(scene, "attitude", mpf(0), period / 2, period)
+        axes = [frame[:, axis] for frame in frames]
+        assert distance(axes[0], axes[2]) <= CLOSE
+        assert distance(axes[0], axes[1]) >= mpf("0.01")
+        momentum = [mp.convert(J * w) for J, w in zip(inertia, scene.initial.omega, strict=True)]
+        H = frames[0] @ np.array(momentum, dtype=object)
+        for e in axes:
+            cosine = abs(mp.fdot(list(e), list(H))) / mp.norm(list(H))
+            assert abs(mp.cos(found["precession_angle"].value) - cosine) <= CLOSE
+
+
+# Clebsch's body.
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
+        *("beside-a-stable-spin", "onto-the-axis", "algebraic", "half-turn"),
+    ],
+)
+def test_x3_stays_between_two_roots_and_reaches_them(name: str) -> None:
+    """f vanishes at both ends and is positive between, and the Taylor motion keeps inside."""
+    scene = load(f"kirchhoff/{name}")
+    found, of = elements(scene, DIGITS), nutation(scene)
+    with mp.workdps(DIGITS):
+        low, high = found["x3_low"].value, found["x3_high"].value
+        for end in (low, high):
+            # f'(z) times an error of z: coefficients and F are of size 1.
+            assert abs(mp.polyval([mp.convert(c) for c in of.f[::-1]], end, asc=True)) <= CLOSE
+        for part in range(1, 8):
+            assert value(of.f, exact_value(low + (high - low) * part / 8)) > 0
+        seen = [x[2] for x in moved(scene, "linear_impulse", *(mpf(k) / 2 for k in range(20)))]
+        assert all(low - CLOSE <= z <= high + CLOSE for z in seen)
+
+
+@pytest.mark.parametrize("name", ["four-real-roots", "two-real-roots", "backward", "planar-swing"])
+def test_the_discriminant_is_that_of_the_roots(name: str) -> None:
+    """g2 and the discriminant of a quartic as symmetric functions of its four roots."""
+    of = nutation(load(f"kirchhoff/{name}"))
+    with mp.workdps(DIGITS):
+        a0 = mp.convert(of.f[0])
+        roots = mp.polyroots(
+            [mp.convert(c) for c in of.f[::-1]], maxsteps=200, extraprec=200, asc=True
+        )
+        p, q, r, s = roots
+        squares = [(p - q) * (r - s), (p - r) * (q - s), (p - s) * (q - r)]
+        g2 = mp.re(a0**2 * sum(square**2 for square in squares) / 24)
+        product = mp.re(mp.fprod((b - c) ** 2 for b, c in combinations(roots, 2)))
+        delta = a0**6 * product / 256
+        expected = delta / (abs(g2) ** 3 + g2**3 - delta)
+        assert abs(mp.convert(discriminant(of)) - expected) <= mpf("1e-24")
+
+
+def drawn_bodies(count: int) -> list[tuple[Clebsch, Fraction, Fraction]]:
+    """Clebsch's bodies with F and G, of both signs."""
+    random = Random(20261121)
+
+    def decimal(low: int, high: int) -> Fraction:
+        return Fraction(random.randint(low, high), 100)
+
+    return [
+        (
+            Clebsch(
+                *(decimal(50, 200), decimal(50, 200), decimal(-40, 40), decimal(-40, 40)),
+                *(decimal(50, 200), decimal(50, 200)),
+            ),
+            decimal(50, 150),
+            decimal(-250, 250),
+        )
+        for _ in range(count)
+    ]
+
+
+@pytest.mark.parametrize("pole", [1, -1])
+@pytest.mark.parametrize("drawn", drawn_bodies(12), ids=str)
+def test_the_axial_spin_has_the_linearised_spectrum(
+    drawn: tuple[Clebsch, Fraction, Fraction], pole: int
+) -> None:
+    """Eigenvalues i c +- (r/2) sqrt A: a growth rate, or two frequencies r sqrt(-A) apart."""
+    body, F, G = drawn
+    zero = Fraction(0)
+    scene = immersed(body, (zero, zero, pole * F), (zero, zero, pole * G))
+    found = elements(scene, 15)
+    state = np.array([0, 0, pole * F, 0, 0, pole * G], dtype=float)
+    eigenvalues = np.linalg.eigvals(_kirchhoff_jacobian(body.body(), state))
+    # A is a square root away from the eigenvalues: half of the digits of a double near A = 0.
+    room = 1e-6
+    if found["A"].value > 0:
+        assert abs(float(found["axial_growth"].value) - max(eigenvalues.real)) <= room
+        assert "unstable" in found.sentences[-1]
+    else:
+        assert max(eigenvalues.real) <= room
+        upper = sorted(abs(eigenvalues.imag))[2:]  # the two zeros are along F and G
+        apart = 2 * np.pi * float(found["axial_nutations"].value)
+        either = (abs(upper[-1] - upper[0]), upper[-1] + upper[0])
+        assert min(abs(apart - candidate) for candidate in either) <= room
+        assert "is stable" in found.sentences[-1]
+
+
+def _kirchhoff_jacobian(body: ImmersedBody, state: Any) -> Any:
+    """Of (x x Omega, y x Omega + x x U): central differences are exact for a quadratic field."""
+    energy = np.array(body.energy_matrix, dtype=float)
+
+    def field(z: Any) -> Any:
+        velocities = energy @ z
+        U, Omega = velocities[:3], velocities[3:]
+        x, y = z[:3], z[3:]
+        return np.concatenate([np.cross(x, Omega), np.cross(y, Omega) + np.cross(x, U)])
+
+    unit = np.eye(6)
+    return np.array([(field(state + e) - field(state - e)) / 2 for e in unit]).T
+
+
+def tilted(body: Clebsch, G: Fraction, tilt: Fraction) -> Scene:
+    """F = 1, with x turned off the axis by 2 atan(tilt), and y still along the axis."""
+    zero, size = Fraction(0), 1 + tilt**2
+    linear = (2 * tilt / size, zero, (1 - tilt**2) / size)
+    return immersed(body, linear, (zero, zero, G))
+
+
+def test_nutations_of_small_tilt_are_counted_whole() -> None:
+    """The exact period of nutation tends to 1/axial_nutations, with an error as tilt^2."""
+    body = Clebsch(*vector("1", "2", "0", "0.1", "1", "0.5"))
+    misses = []
+    for tilt in (Fraction(1, 100), Fraction(1, 1000)):
+        scene = tilted(body, Fraction(3), tilt)
+        count = number(
+            immersed(body, vector("0", "0", "1"), vector("0", "0", "3")), "axial_nutations"
+        )
+        with mp.workdps(DIGITS):
+            misses.append(number(scene, "period") * count - 1)
+    # A hundred times less for a tenth of the tilt, but for the next order, tilt^2.
+    assert abs(misses[0] / misses[1] - 100) <= 1
+    assert abs(misses[1]) <= mpf("1e-4")
+
+
+def test_the_homoclinic_axis_is_left_at_twice_the_growth_of_its_tilt() -> None:
+    """x3 - F goes as the square of the tilt: r sqrt A against r sqrt(A)/2."""
+    found = elements(load("kirchhoff/onto-the-axis"), DIGITS)
+    with mp.workdps(DIGITS):
+        ratio = found["approach_rate"].value / found["axial_growth"].value
+        assert abs(ratio - 2) <= mpf("1e-27")
+
+
+# F = 1 and A = 0: kappa = 1/4, lambda = 0, G = 1, B = 1/2; kappa = -3/4, lambda = -1, G = -1, B = -1/2.
+BORDER = {
+    "B > 0": (Clebsch(*vector("1", "1.25", "0.125", "0.125", "1", "0.5")), Fraction(1)),
+    "B < 0": (Clebsch(*vector("2", "1.25", "0.5", "-0.5", "1", "1")), Fraction(-1)),
+}
+
+
+@pytest.mark.parametrize(("case", "power"), [("B > 0", 0.5), ("B < 0", 0)])
+def test_at_the_border_of_stability_B_decides(case: str, power: float) -> None:
+    """The widest tilt goes as the root of a small one where B > 0, and stays large where B < 0."""
+    body, G = BORDER[case]
+    assert stability(nutation(tilted(body, G, Fraction(0))))[0] == 0
+    words = elements(tilted(body, G, Fraction(0)), 15).sentences[-1]
+    assert case in words
+    assert ("unstable" in words) is (power == 0)
+    widest = []
+    for tilt in (Fraction(1, 10**8), Fraction(1, 10**10)):
+        with mp.workdps(DIGITS):
+            widest.append(mp.acos(number(tilted(body, G, tilt), "x3_low")))
+    # The next order of the law is relative to sqrt(tilt) = 1e-4.
+    assert abs(widest[0] / widest[1] / 100**power - 1) <= mpf("0.01")
+    assert (widest[1] >= 1) is (power == 0)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_sign_of_A_is_exact(sign: int) -> None:
+    """G^2 beside 4 kappa F^2 by a relative 1e-60, which no rounding would show."""
+    body, G = BORDER["B > 0"]
+    near = G * (1 - sign * Fraction(1, 10**60))
+    zero = Fraction(0)
+    scene = immersed(body, (zero, zero, Fraction(1)), (zero, zero, near))
+    found = elements(scene, 15)
+    assert mp.sign(found["A"].value) == sign
+    assert ("unstable" in found.sentences[-1]) is (sign > 0)
+
+
+# Without a closed form.
+
+
+def test_a_body_under_an_oblique_moment_has_no_elements() -> None:
+    """Nothing is invented: no number, and the words say that there is no closed form."""
+    found = elements(load("euler/constant-moment"), 15)
+    assert found.regime == "no closed form"
+    assert len(found) == 0
+    assert "no closed form" in found.sentences[0]
+
+
+def test_a_general_body_has_its_three_invariants_alone() -> None:
+    """T, F and G, as the Taylor motion keeps them; a loaded one has not even those."""
+    scene = load("kirchhoff/general-body")
+    found = elements(scene, DIGITS)
+    assert list(found) == ["T", "F", "G"]
+    with mp.workdps(DIGITS):
+        (x,), (y,) = (
+            moved(scene, quantity, mpf(3)) for quantity in ("linear_impulse", "angular_impulse")
+        )
+        energy = np.array([[mp.convert(e) for e in row] for row in scene.body.energy_matrix])
+        state = np.concatenate([x, y])
+        F = mp.norm(list(x))
+        now = {"T": state @ energy @ state / 2, "F": F, "G": x @ y / F}
+        assert all(abs(now[name] - found[name].value) <= CLOSE for name in now)
+    assert len(elements(load("kirchhoff/constant-loads"), 15)) == 0
+
+
+# How an error is carried, and what `explain` says.
+
+
+def test_a_steady_unstable_spin_carries_an_error_by_its_matrix_exponential() -> None:
+    """The factor at the end is the norm of K exp(J t), relative to |H| and |omega|."""
+    scene = load("euler/steady-middle-axis")
+    found = carrying(scene)
+    assert found is not None
+    omega = np.array(scene.initial.omega, dtype=float)
+    K = np.array(scene.body.inverse_inertia, dtype=float)
+    H = np.linalg.solve(K, omega)
+    rates, modes = np.linalg.eig(_euler_jacobian(K, H))
+    flow = (modes * np.exp(rates * (found.times[-1] - found.times[0]))) @ np.linalg.inv(modes)
+    expected = np.linalg.norm(K @ flow.real, 2) * np.linalg.norm(H) / np.linalg.norm(omega)
+    # Doubles, and an exponential of some thousands.
+    assert abs(found.factors[-1] / expected - 1) <= 1e-9
+    assert found.pace is None
+
+
+def test_growth_in_proportion_to_time_is_told_from_other_growth() -> None:
+    """Factors as t have a pace; as t^2, exp t, a constant, or beyond float64 they have none."""
+    times = tuple(float(k) for k in range(41))
+
+    def pace(law: Any) -> float | None:
+        return Carrying(times, tuple(law(t) for t in times)).pace
+
+    assert pace(lambda t: 1 + 3 * t) == pytest.approx(121 / 40)
+    assert pace(lambda t: 1 + 3 * t**2) is None
+    assert pace(lambda t: np.exp(t)) is None
+    assert pace(lambda t: 1 + np.sin(t) / 10) is None
+    assert pace(lambda t: float("inf")) is None
+
+
+@pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/euler-top", "euler/rest"])
+def test_explain_holds_the_elements_and_the_condition(name: str) -> None:
+    """The document has every element as text, its words, and the carried error; null at rest."""
+    scene = load(name)
+    document, found = explanation(scene, "f64"), elements(scene, 15)
+    assert list(document["orbit"]) == list(found)
+    assert [e["name"] for e in document["elements"]] == list(found)
+    assert all(mpf(text) == mpf(text) for text in document["orbit"].values())
+    assert document["sentences"] == list(found.sentences)
+    if name == "euler/rest":
+        assert document["condition"] is None
+    else:
+        assert document["condition"]["worst"] >= document["condition"]["end"] > 0
+        assert f"{document['condition']['worst']:.3g}" in document["condition"]["sentence"]

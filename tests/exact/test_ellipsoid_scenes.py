@@ -1,0 +1,129 @@
+"""What a scene makes of an ellipsoid: which body is solved, how it moves, what is told of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from mpmath import mp, mpf
+
+import taylor_verify
+from taylor_verify.exact.ellipsoid import deviation, formed_to, told
+from taylor_verify.exact.route import solution
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.scenes import library
+from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.tensors import cross, dot
+
+BITS = COEFFICIENT_BITS
+# Rounding to nearest is off by 2^-BITS of the number at most; the rest is for what precedes it.
+ROUNDING = mpf(2) ** -BITS * (1 + mpf(2) ** -30)
+
+SCENES = [
+    name for name in library.names("kirchhoff") if "/ellipsoid-" in name or "-about-axis-" in name
+]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_shipped_ellipsoids_are_what_their_files_say(name: str) -> None:
+    """Every shipped ellipsoid holds its shape, is proven near it, and is told with its bits."""
+    body = load(name).body
+    assert isinstance(body, ImmersedBody)
+    assert deviation(body, BITS + 40) <= ROUNDING
+    sentences = " ".join(told(body))
+    assert f"rounded to {BITS} bits" in sentences
+    assert "the one that is solved" in sentences
+
+
+SPHEROIDS = {
+    "kirchhoff/ellipsoid-prolate": 3,
+    "kirchhoff/ellipsoid-disc": 3,
+    "kirchhoff/oblate-about-axis-1": 1,
+    "kirchhoff/prolate-about-axis-2": 2,
+    "kirchhoff/ellipsoid-needle": 1,
+}
+
+
+@pytest.mark.parametrize("name", SPHEROIDS)
+def test_a_spheroid_is_clebschs_body_on_every_rung(name: str) -> None:
+    """Rounding leaves the axis of symmetry, the closed form and the motion's regime what they are."""
+    scene = load(name)
+    regime = solution(scene, "arb").regime
+    for rung_name in LADDER:
+        given_to_solver = pose(scene, rung(rung_name)).given
+        assert isinstance(given_to_solver.body, ImmersedBody)
+        assert given_to_solver.body.axis_of_symmetry == SPHEROIDS[name]
+        assert given_to_solver.body.ellipsoid is None
+        assert solution(given_to_solver, "arb").regime == regime
+
+
+def test_in_a_sphere_y_stays_and_x_turns_about_it() -> None:
+    """x(t) is x(0) turned about y by the angle -r |y| t, and y does not change."""
+    scene = load("kirchhoff/ellipsoid-sphere")
+    x, y, t = scene.initial.linear, scene.initial.angular, Fraction(19, 4)
+    found = solution(scene).motion([t], 40)
+    with mp.workdps(50):
+        size = mp.sqrt(mp.convert(dot(y, y)))
+        turn = -mp.convert(scene.body.angular[0][0] * t) * size
+        share, across = mp.convert(dot(x, y)) / size**2, cross(y, x)
+        for i in range(3):
+            along = share * mp.convert(y[i])
+            rest, aside = mp.convert(x[i]) - along, mp.convert(across[i]) / size
+            expected = along + mp.cos(turn) * rest + mp.sin(turn) * aside
+            # 40 digits of vectors of size one were asked for, and 2 are given for their sizes.
+            assert abs(found["linear_impulse"][0][i] - expected) <= mpf(10) ** -38
+            assert abs(found["angular_impulse"][0][i] - mp.convert(y[i])) <= mpf(10) ** -38
+
+
+def test_all_faults_of_an_ellipsoid_are_told_at_once() -> None:
+    """Two axes, a density and an unknown key give four lines, and no coefficients are formed."""
+    text = (library.cases_directory() / "kirchhoff/ellipsoid-neutral.toml").read_text()
+    wrong = "{ semi_axes = [0, 2, -1], density = -1, fluid_density = 1, mass = 3 }"
+    right = "{ semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }"
+    assert right in text
+    with pytest.raises(Refused) as caught:
+        read(text.replace(right, wrong), "wrong")
+    assert [fault.rpartition(" @ ")[2].partition(" ")[0] for fault in caught.value.faults] == [
+        "body.ellipsoid.mass",
+        "body.ellipsoid.semi_axes[0]",
+        "body.ellipsoid.semi_axes[2]",
+        "body.ellipsoid.density",
+    ]
+
+
+def test_both_routes_read_the_same_rationals() -> None:
+    """More digits than ninety form the coefficients anew; fewer leave the scene as it was read."""
+    scene = load("kirchhoff/ellipsoid-prolate")
+    assert formed_to(scene, 90) is scene
+    formed = formed_to(scene, 200)
+    assert isinstance(formed.body, ImmersedBody)
+    assert formed.body.axis_of_symmetry == 3
+    # 230 digits are 764.05 bits.
+    assert deviation(formed.body, 800) <= mpf(2) ** -764
+    assert formed_to(load("kirchhoff/cubic"), 200) == load("kirchhoff/cubic")
+
+
+def test_the_exact_motion_is_that_of_the_ellipsoid_to_any_digits() -> None:
+    """At 150 digits the motion is that of the shape, which the body of 120 digits no longer is."""
+    scene = replace(load("kirchhoff/ellipsoid-prolate"), track=frozenset())
+    best = taylor_verify.exact(formed_to(scene, 250), [3], 160)["linear_impulse"][0]
+    found = taylor_verify.exact(scene, [3], 150)["linear_impulse"][0]
+    coarse = replace(scene, body=replace(scene.body, ellipsoid=None))
+    other = taylor_verify.exact(coarse, [3], 150)["linear_impulse"][0]
+    with mp.workdps(170):
+        assert mp.norm(list(found - best)) <= mpf(10) ** -149 * mp.norm(list(best))
+        assert mp.norm(list(other - best)) > mpf(10) ** -130
+
+
+def test_explain_says_which_body_is_solved() -> None:
+    """The explanation tells masses, the rounding and the symmetry; of a body by coefficients nothing."""
+    sphere = explanation("kirchhoff/ellipsoid-sphere", "f64")
+    assert "semi-axes 3/4, 3/4, 3/4" in sphere["body"][0]
+    assert "y is constant in body axes" in sphere["body"][-1]
+    assert told(load("kirchhoff/cubic").body) == []

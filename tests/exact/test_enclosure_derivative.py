@@ -1,0 +1,132 @@
+"""The derivative that an enclosure carries along is that of exact.condition, by ways that share nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import arb, arb_mat, ctx
+
+from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.conditioning.condition import derivatives, transition
+from taylor_verify.exact.enclosure.box import Box, carried, identity
+from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+Array = np.ndarray[Any, Any]
+
+BITS = 140
+# The start is a box of this half width, so that there is something to carry.
+SMALL = Fraction(1, 10**38)
+# Differences of 10^-30 units err by less than this part of the largest derivative.
+OF_DIFFERENCES = Fraction(1, 10**20)
+# Norms are wanted to a digit or two.
+OF_NORMS = arb("0.01")
+
+# One scene of every kind, and a time of its own.
+BY_DIFFERENCES = {
+    "euler/generic": 10,
+    "euler/tennis-racket": 12,
+    "euler/axisymmetric": 10,
+    "euler/full-tensor": 10,
+    "euler/moment-oblique": 3,
+    "kirchhoff/whole-motion": 5,
+    "kirchhoff/weber": 1,
+    "kirchhoff/chaplygin": 2,
+    "kirchhoff/general-body": 3,
+    "extremes/kirchhoff-nearly-clebsch": 3,
+}
+BY_STEPS = (
+    "euler/constant-moment",
+    "kirchhoff/general-body",
+    "kirchhoff/constant-loads",
+    "kirchhoff/steklov",
+    "manufactured/euler-from-rest",
+    "manufactured/kirchhoff-path",
+    "extremes/kirchhoff-nearly-clebsch",
+)
+
+
+def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
+    """The derivatives at the times of the state by its start: products of those of the steps."""
+    system, found, pending = posed(scene), [], list(times[::-1])
+    with ctx.workprec(BITS):
+        start = [ball(value) + arb(0, ball(SMALL).upper()) for value in system.start]
+        run = Course.of(system, start, None, BITS, 10_000)
+        box, now, length, total = Box.about(start), Fraction(0), times[-1], identity(system.size)
+        while pending:
+            step = run._step(box, length, times[-1] - now)
+            assert step.flow is not None
+            while pending and abs(pending[-1] - now) <= abs(step.length):
+                found.append(step.flow.at(ball((pending.pop() - now) / step.length)) * total)
+            total = step.flow.at(arb(1)) * total
+            box = carried(box, step.state, step.tube, step.flow, system.spans)
+            now, length = now + step.length, 2 * step.length
+        return [in_momenta(scene, matrix) for matrix in found]
+
+
+def in_momenta(scene: Scene, matrix: arb_mat) -> arb_mat:
+    """The derivative of H by H for a rigid body, and of the impulses without any clock."""
+    size = 3 if scene.model == "euler" else 6
+    block = arb_mat([[matrix[i, j] for j in range(size)] for i in range(size)])
+    if not isinstance(scene.body, RigidBody):
+        return block
+    inertia, inverse = in_balls(scene.body.inertia), in_balls(scene.body.inverse_inertia)
+    return inertia * block * inverse
+
+
+def in_balls(matrix: Matrix) -> arb_mat:
+    return arb_mat([[ball(entry) for entry in row] for row in matrix])
+
+
+def in_units(units: Vector, matrix: arb_mat) -> arb_mat:
+    """The derivatives between momenta that are counted in these powers of two."""
+    n = len(units)
+    factors = [[ball(units[j] / units[i]) for j in range(n)] for i in range(n)]
+    return arb_mat([[matrix[i, j] * factors[i][j] for j in range(n)] for i in range(n)])
+
+
+@pytest.mark.parametrize("name", BY_DIFFERENCES)
+def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> None:
+    """Each derivative, a difference of exact motions, is in its ball, whose width no norm would notice."""
+    scene = replace(load(name), track=frozenset())
+    times = [Fraction(BY_DIFFERENCES[name], 3), Fraction(BY_DIFFERENCES[name])]
+    differences = derivatives(scene, times, 30, 110)
+    for by_steps, sharp in zip(enclosed(scene, times), differences.momentum, strict=True):
+        with ctx.workprec(BITS):
+            counted = in_units(differences.units, by_steps)
+            size = max(abs(exact_value(entry)) for entry in sharp.flat)
+            slack = ball(size * OF_DIFFERENCES).upper()
+            for i, row in enumerate(sharp):
+                for j, entry in enumerate(row):
+                    assert counted[i, j].overlaps(ball(exact_value(entry)) + arb(0, slack))
+                    assert counted[i, j].rad() <= ball(size) * OF_NORMS
+
+
+@pytest.mark.parametrize("name", BY_STEPS)
+def test_norms_of_variational_steps_are_those_of_the_enclosed_derivative(name: str) -> None:
+    """What float64 makes of the variational equations agrees to the four digits that it is asked for."""
+    scene = replace(load(name), track=frozenset())
+    last = scene.clock.elapsed[-1] / 4
+    times = [last / 2, last]
+    found = transition(scene, [Fraction(0), *times])
+    for i, matrix in enumerate(enclosed(scene, times), start=1):
+        floats = np.array([[float(midpoint(e)) for e in row] for row in matrix.tolist()])
+        for (out, into), rows in blocks(scene).items():
+            expected = np.linalg.norm(floats[rows], 2)
+            assert abs(found.norms(out, into)[i, 0] - expected) <= 1e-3 * expected
+
+
+def blocks(scene: Scene) -> dict[tuple[str, str], tuple[slice, slice]]:
+    names = ("momentum",) if scene.model == "euler" else ("linear_impulse", "angular_impulse")
+    places = {name: slice(3 * k, 3 * k + 3) for k, name in enumerate(names)}
+    return {(a, b): (places[a], places[b]) for a in names for b in names}

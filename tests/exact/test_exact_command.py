@@ -1,0 +1,363 @@
+"""`taylor-verify exact`: decimal text of the exact motion, and a radius that holds for it."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from taylor_verify.cli import main
+from taylor_verify.exact.printed import decimal_text
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
+
+SCENE = """
+title = "A body of one's own"
+model = "{model}"
+track = {track}
+[body]
+{body}
+[initial]
+{initial}
+[time]
+start = "1/2"
+end = 3
+samples = 2
+"""
+AT_REST = SCENE.format(
+    model="kirchhoff",
+    track='["impulse"]',
+    body="clebsch = { p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 3 }",
+    initial="linear_impulse = [0, 0, 0]\nangular_impulse = [0, 0, 0]",
+)
+TINY = SCENE.format(
+    model="euler",
+    track='["omega"]',
+    body="inertia = [1, 2, 3]",
+    initial='omega = ["1e-9", "-2e-12", "1/3"]',
+)
+UNREAL = SCENE.format(
+    model="euler", track='["omega"]', body="inertia = [1, 2, 9]", initial="omega = [1, 2, 3]"
+)
+
+
+class Asked:
+    """The command, asked for JSON; ``status`` and ``error`` are those of the last call."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self.capsys = capsys
+        self.status, self.error = -1, ""
+
+    def __call__(self, *arguments: str) -> Any:
+        self.status = main(["exact", *arguments, "--json"])
+        out, self.error = self.capsys.readouterr()
+        return json.loads(out) if out else None
+
+
+@pytest.fixture
+def exact(capsys: pytest.CaptureFixture[str]) -> Asked:
+    return Asked(capsys)
+
+
+def vectors(row: dict[str, Any]) -> dict[str, list[Fraction]]:
+    """Every vector and matrix of a row as one list of exact numbers."""
+    return {
+        name: [Fraction(text) for entry in value for text in _texts(entry)]
+        for name, value in row.items()
+        if name not in ("t", "radius")
+    }
+
+
+def _texts(entry: Any) -> list[str]:
+    return entry if isinstance(entry, list) else [entry]
+
+
+def squared(vector: list[Fraction]) -> Fraction:
+    return sum((v * v for v in vector), Fraction(0))
+
+
+def agree(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Whether two rows for one time can both hold what their radii promise."""
+    # A norm known to a relative radius r of its own is within (1 + r) of the true one.
+    width = sum(Fraction(row["radius"]) for row in (one, other)) * Fraction(1001, 1000)
+    ones, others = vectors(one), vectors(other)
+    return one["t"] == other["t"] and all(
+        squared([a - b for a, b in zip(ones[name], others[name], strict=True)])
+        <= width**2 * (squared(others[name]) or 1)
+        for name in {**ones, **others}
+    )
+
+
+def significant(text: str) -> int:
+    """How many significant digits a decimal text writes."""
+    return len(re.sub(r"e.*|[-.]", "", text).lstrip("0"))
+
+
+# Numbers as text.
+
+
+@given(
+    st.fractions().filter(bool),
+    st.integers(-4000, 4000),
+    st.integers(1, 60),
+)
+def test_a_number_is_printed_to_half_a_unit_in_its_last_digit(
+    value: Fraction, power: int, digits: int
+) -> None:
+    """The text has exactly the digits asked for and is the nearest such number, however large."""
+    value *= Fraction(10) ** power
+    text = decimal_text(value, digits)
+    assert re.fullmatch(r"-?\d+(\.\d+)?(e[+-]\d+)?", text)
+    assert significant(text) == digits
+    assert abs(Fraction(text) - value) <= abs(value) / (2 * 10 ** (digits - 1))
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (Fraction(0), 9, "0"),
+        (Fraction(1, 2), 4, "0.5000"),
+        (Fraction(-10), 2, "-10"),
+        (Fraction(10), 1, "1e+1"),
+        (Fraction(999), 2, "1.0e+3"),
+        (Fraction(1, 10**5), 2, "0.000010"),
+        (Fraction(1, 10**6), 2, "1.0e-6"),
+    ],
+)
+def test_zeros_are_written_where_they_are_digits_and_nowhere_else(
+    value: Fraction, digits: int, text: str
+) -> None:
+    """Trailing zeros fill up the digits; zeros that are no digits give way to an exponent."""
+    assert decimal_text(value, digits) == text
+
+
+def test_a_float_reads_the_text_as_the_number() -> None:
+    """What is printed to seventeen digits reads back as the double it came from."""
+    for value in (0.1, -1e300, 5e-324, 123456789.123456789, 2.0**-1022):
+        assert float(decimal_text(Fraction(value), 17)) == value
+
+
+# The document.
+
+
+def test_the_document_has_the_keys_of_the_contract(exact: Asked) -> None:
+    """scene, route, evidence, digits, regime and rows; a row has t, what is tracked, and radius."""
+    found = exact("euler/generic", "--at", "10", "--digits", "12")
+    assert exact.status == 0
+    assert list(found) == ["scene", "route", "evidence", "digits", "regime", "rows"]
+    assert (found["scene"], found["route"], found["digits"]) == ("euler/generic", "arb", 12)
+    (row,) = found["rows"]
+    assert list(row) == ["t", "omega", "radius"]
+    assert all(isinstance(text, str) and significant(text) == 12 for text in row["omega"])
+
+
+def test_tracked_quantities_appear_with_the_attitude_row_by_row(exact: Asked) -> None:
+    """For kirchhoff both impulses, a proper 3x3 attitude and the centre, and nothing else."""
+    arguments = ("--at", "1", "--digits", "15", "--route", "taylor")
+    (row,) = exact("kirchhoff/whole-motion", *arguments)["rows"]
+    names = ["t", "linear_impulse", "angular_impulse", "attitude", "centre", "radius"]
+    assert list(row) == names
+    r = [[Fraction(text) for text in line] for line in row["attitude"]]
+    assert [len(line) for line in r] == [3, 3, 3]
+    radius = Fraction(row["radius"])
+    for i in range(3):
+        for j in range(3):
+            product = sum(r[i][k] * r[j][k] for k in range(3))
+            # |R|_F^2 = 3, so a relative radius moves R R^T by at most 2 * 3 * radius, and a bit.
+            assert abs(product - (i == j)) <= 7 * radius
+
+
+@pytest.mark.parametrize("scene", ["euler/generic", "euler/full-tensor", "kirchhoff/cubic"])
+@pytest.mark.parametrize("digits", [1, 2, 17, 45])
+def test_the_radius_holds_for_the_digits_printed(exact: Asked, scene: str, digits: int) -> None:
+    """The row is within its radius of the same row by the other route to twenty digits more."""
+    row = exact(scene, "--at", "1.25", "--digits", str(digits))["rows"][0]
+    more = ("--digits", str(digits + 20), "--route", "taylor")
+    other = exact(scene, "--at", "1.25", *more)["rows"][0]
+    assert agree(row, other)
+    # Printing is what limits: half a unit in the last digit, and hardly more.
+    assert Fraction(row["radius"]) <= Fraction(6, 10**digits)
+
+
+def test_a_digit_that_is_wrong_is_outside_the_radius(exact: Asked) -> None:
+    """`agree`, by which these tests judge, notices two units in the last digit of the largest."""
+    row = exact("euler/generic", "--at", "1.25", "--digits", "20")["rows"][0]
+    wrong = Fraction(row["omega"][0]) + Fraction(2, 10**19)
+    shifted = {**row, "omega": [decimal_text(wrong, 20), *row["omega"][1:]]}
+    assert agree(row, row)
+    assert not agree(row, shifted)
+
+
+def test_the_regime_is_that_of_the_orbit_on_either_route(exact: Asked) -> None:
+    """`--route taylor` takes another way to the numbers of the same orbit."""
+    names = {
+        exact("euler/generic", "--at", "1", *route)["regime"]
+        for route in ([], ["--route", "mpmath"], ["--route", "taylor"])
+    }
+    assert len(names) == 1
+    assert names != {"no closed form"}
+
+
+def test_a_body_at_rest_is_printed_as_zeros_with_an_absolute_radius(
+    exact: Asked, tmp_path: Any
+) -> None:
+    """Where a vector vanishes its entries are "0" and the radius is absolute."""
+    file = tmp_path / "rest.toml"
+    file.write_text(AT_REST)
+    (row,) = exact(str(file), "--at", "2", "--digits", "8", "--route", "taylor")["rows"]
+    assert row["linear_impulse"] == row["angular_impulse"] == ["0", "0", "0"]
+    assert 0 < Fraction(row["radius"]) <= Fraction(6, 10**8)
+
+
+@pytest.mark.parametrize(
+    "scene", ["euler/nesc-brick", "kirchhoff/swimmer-vehicle", "manufactured/kirchhoff-path"]
+)
+def test_the_start_is_the_initial_state_itself(exact: Asked, scene: str) -> None:
+    """Numbers that the scene tells exactly come back exactly: a zero is no noise of forty digits."""
+    asked = load(scene)
+    at = ("--at", str(asked.clock.start), "--digits", "40", "--route", "taylor")
+    (row,) = exact(scene, *at)["rows"]
+    found, start = vectors(row), asked.initial
+    told = {"omega": start.omega} if isinstance(start, Spin) else {"linear_impulse": start.linear}
+    for name, vector in told.items():
+        assert found[name] == [Fraction(decimal_text(value, 40)) for value in vector]
+    assert found["attitude"] == [entry for row in rotation_matrix(start.attitude) for entry in row]
+
+
+def test_small_components_have_all_their_digits(exact: Asked, tmp_path: Any) -> None:
+    """At the start, the rationals of the scene come back, each to the digits asked for."""
+    file = tmp_path / "tiny.toml"
+    file.write_text(TINY)
+    (row,) = exact(str(file), "--at", "0.5", "--digits", "6")["rows"]
+    assert row["omega"] == ["1.00000e-9", "-2.00000e-12", "0.333333"]
+
+
+# Times.
+
+
+@pytest.mark.parametrize("arguments", [["--at=-5,3"], ["--at", "-5,3"]])
+def test_times_may_be_negative_with_and_without_an_equals_sign(
+    exact: Asked, arguments: list[str]
+) -> None:
+    """A leading minus is a time, before the scene or after it."""
+    after = exact("euler/generic", *arguments)
+    before = exact(*arguments, "euler/generic")
+    assert [row["t"] for row in after["rows"]] == ["-5", "3"]
+    assert after == before
+
+
+def test_t_repeats_the_text_given_and_times_come_in_any_order(exact: Asked) -> None:
+    """Equal times written differently have equal rows, each with its own text."""
+    rows = exact("euler/generic", "--at", "10,1e1, 20/2,-.5,1e1")["rows"]
+    assert [row.pop("t") for row in rows] == ["10", "1e1", "20/2", "-.5", "1e1"]
+    assert rows[0] == rows[1] == rows[2] == rows[4] != rows[3]
+
+
+def test_times_are_absolute(exact: Asked, tmp_path: Any) -> None:
+    """At the scene's own start, which is not 0, the body is in its initial state."""
+    file = tmp_path / "later.toml"
+    file.write_text(UNREAL)
+    start, zero = exact(str(file), "--at", "1/2,0", "--digits", "5")["rows"]
+    assert start["omega"] == ["1.0000", "2.0000", "3.0000"] != zero["omega"]
+
+
+@pytest.mark.parametrize("at", ["nan", "inf", "-inf", "1,,2", "", "1/0", "1e99999", "ten", "1;2"])
+def test_a_time_that_is_no_number_is_a_wrong_call(exact: Asked, at: str) -> None:
+    """One line that names the option, exit 2, and nothing on stdout."""
+    assert exact("euler/generic", f"--at={at}") is None
+    assert exact.status == 2
+    assert exact.error.count("\n") == 1
+    assert "expected" in exact.error
+    assert "--at" in exact.error
+
+
+# What there is not.
+
+
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_a_closed_form_that_is_missing_is_said_and_the_exit_is_3(exact: Asked, route: str) -> None:
+    """`regime` is "no closed form" and there are no rows; the text names the route that has some."""
+    found = exact("euler/constant-moment", "--at", "1", "--route", route)
+    assert exact.status == 3
+    assert found["regime"] == "no closed form"
+    assert found["rows"] == []
+    assert "--route taylor" in exact.error
+
+
+def test_without_a_closed_form_the_answer_is_enclosed_by_taylor_series(exact: Asked) -> None:
+    """Nobody has to ask for the route: the exit is 0, and the radius is proven."""
+    found = exact("euler/constant-moment", "--at", "1")
+    assert exact.status == 0
+    assert (found["regime"], found["route"]) == ("no closed form", "taylor")
+    assert found["evidence"] == "proven"
+    assert len(found["rows"]) == 1
+
+
+def test_only_balls_are_called_proven(exact: Asked) -> None:
+    """The second formulas settle a number by agreement, and say so."""
+    routes = ("arb", "mpmath", "taylor")
+    said = {r: exact("euler/generic", "--at", "1", "--route", r)["evidence"] for r in routes}
+    assert said == {"arb": "proven", "mpmath": "agreed", "taylor": "proven"}
+
+
+def test_a_motion_that_does_not_settle_is_undecided(exact: Asked) -> None:
+    """Where the Taylor route gives up, the exit is 3 and the reason is told."""
+    found = exact("euler/constant-moment", "--at", "1e30", "--route", "taylor")
+    assert exact.status == 3
+    assert found["rows"] == []
+    assert "undecided" in exact.error
+    assert "undecided" in found["because"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragment"),
+    [
+        (["--digits", "0"], "--digits"),
+        (["--digits", "10001"], "--digits"),
+    ],
+)
+def test_what_cannot_be_given_is_a_wrong_call(
+    exact: Asked, arguments: list[str], fragment: str
+) -> None:
+    """Exit 2 and one line that says what could be given."""
+    assert exact("euler/generic", "--at", "1", *arguments) is None
+    assert exact.status == 2
+    assert fragment in exact.error
+
+
+def test_a_tensor_of_no_real_solid_is_a_warning(exact: Asked, tmp_path: Any) -> None:
+    """The triangle inequality is warned about on stderr, and the motion is computed."""
+    file = tmp_path / "unreal.toml"
+    file.write_text(UNREAL)
+    assert exact(str(file), "--at", "1")["rows"]
+    assert exact.status == 0
+    assert "warning" in exact.error
+
+
+def test_a_person_sees_the_numbers_that_a_program_reads(
+    capsys: pytest.CaptureFixture[str], exact: Asked
+) -> None:
+    """The text for the terminal holds every decimal string of the document."""
+    arguments = ["euler/with-attitude", "--at", "1,2", "--route", "taylor", "--digits", "9"]
+    rows = exact(*arguments)["rows"]
+    assert main(["exact", *arguments]) == 0
+    shown = capsys.readouterr().out
+    for row in rows:
+        assert f"t = {row['t']}" in shown
+        assert row["radius"] in shown
+        for line in row["attitude"]:
+            assert re.search(r" +".join(re.escape(text) for text in line), shown)
+
+
+def test_the_separatrix_is_printed_at_any_time(capsys: pytest.CaptureFixture[str]) -> None:
+    """At t = 10^9 two components are e^(-3 10^8): their digits are printed, not their rational."""
+    assert main(["exact", "euler/separatrix", "--at", "1e9", "--digits", "20", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert row["omega"][0].endswith("e-132974985")
+    assert len(row["omega"][0].split("e")[0].replace(".", "")) == 20

@@ -1,0 +1,412 @@
+"""Fourth integrals: proven by algebra, recognised in rationals, held wherever such a body runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.kirchhoff import integrable
+from taylor_verify.exact.kirchhoff.integrable import Fourth, fourth_integral
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+SCENES = {
+    "clebsch-second-case": "clebsch2",
+    "equal-rotations": "neumann",
+    "steklov": "steklov",
+    "lyapunov": "lyapunov",
+    "chaplygin": "chaplygin",
+    "sokolov": "sokolov",
+}
+NAMES = ("x1", "x2", "x3", "y1", "y2", "y3")
+CYCLIC = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+
+
+def shipped(name: str) -> Scene:
+    return load(f"kirchhoff/{name}")
+
+
+def fourth(scene: Scene) -> Fourth:
+    found = fourth_integral(scene)
+    assert found is not None
+    return found
+
+
+def body_of(scene: Scene) -> ImmersedBody:
+    assert isinstance(scene.body, ImmersedBody)
+    return scene.body
+
+
+# The equations of motion, on polynomials.
+
+
+def cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def rate(integral: fmpq_mpoly, T: fmpq_mpoly, x: Sequence[Any], y: Sequence[Any]) -> fmpq_mpoly:
+    """The rate of a polynomial along 48 (3), (4), with U = dT/dx and Omega = dT/dy."""
+    U, Omega = ([T.derivative(n + m) for m in range(3)] for n in (0, 3))
+    torque = [p + q for p, q in zip(cross(y, Omega), cross(x, U), strict=True)]
+    rates = cross(x, Omega) + torque
+    return sum((integral.derivative(n) * r for n, r in enumerate(rates)), 0 * T)
+
+
+def symbols(*names: str) -> tuple[Any, Any, dict[str, Any]]:
+    """x, y and the coefficients by name; p0 and b0 are always among these."""
+    every = (*NAMES, "p0", "b0", *names)
+    generators = fmpq_mpoly_ctx.get(every, Ordering.lex).gens()
+    return generators[:3], generators[3:6], dict(zip(every[6:], generators[6:], strict=True))
+
+
+def squares(v: Sequence[Any]) -> Any:
+    return sum(e * e for e in v)
+
+
+def dot(v: Sequence[Any], w: Sequence[Any]) -> Any:
+    return sum(p * q for p, q in zip(v, w, strict=True))
+
+
+# Twice T of each family, and its integral, with every coefficient a symbol. Denominators are cleared:
+# T times a constant only changes the unit of time.
+Family = Callable[[], tuple[Any, Any, Any, Any]]
+
+
+def clebsch2() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("r1", "r2", "r3", "theta")
+    r = [s["r1"], s["r2"], s["r3"]]
+    T = sum(r[i] * y[i] ** 2 + s["theta"] * r[j] * r[k] * x[i] ** 2 for i, j, k in CYCLIC)
+    return x, y, T + casimirs(x, y, s), integrable.clebsch2(r, s["theta"])(x, y)
+
+
+def neumann() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("p1", "p2", "p3", "r")
+    p = [s["p1"], s["p2"], s["p3"]]
+    T = sum(s["r"] * y[i] ** 2 + p[i] * x[i] ** 2 for i in range(3))
+    return x, y, T + casimirs(x, y, s), integrable.neumann(s["r"], p)(x, y)
+
+
+def steklov() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("r1", "r2", "r3", "mu")
+    r, mu = [s["r1"], s["r2"], s["r3"]], s["mu"]
+    T = sum(
+        r[i] * y[i] ** 2
+        + 2 * mu * r[j] * r[k] * x[i] * y[i]
+        + mu**2 * r[i] * (r[j] - r[k]) ** 2 * x[i] ** 2
+        for i, j, k in CYCLIC
+    )
+    return x, y, T + casimirs(x, y, s), integrable.steklov(r, mu)(x, y)
+
+
+def lyapunov() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("b1", "b2", "b3", "r")
+    b, r = [s["b1"], s["b2"], s["b3"]], s["r"]
+    T = sum(
+        r**2 * y[i] ** 2 + 2 * r * b[i] * x[i] * y[i] + (b[j] - b[k]) ** 2 * x[i] ** 2
+        for i, j, k in CYCLIC
+    )
+    return x, y, T + casimirs(x, y, s), integrable.lyapunov(r, b)(x, y)
+
+
+def chaplygin() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("a", "c", "d")
+    a, c, d = s["a"], s["c"], s["d"]
+    T = a * (y[0] ** 2 + y[1] ** 2 + 2 * y[2] ** 2) + c * (x[0] ** 2 - x[1] ** 2)
+    T = T + 2 * d * x[0] * x[1]
+    return x, y, T + casimirs(x, y, s), integrable.chaplygin(a, c, d)(x, y)
+
+
+def sokolov() -> tuple[Any, Any, Any, Any]:
+    x, y, s = symbols("a", "c", "d")
+    a, c, d = s["a"], s["c"], s["d"]
+    T = a**2 * (y[0] ** 2 + y[1] ** 2 + 2 * y[2] ** 2) + 2 * a * (c * x[0] + d * x[1]) * y[2]
+    T = T - (c**2 + d**2) * x[2] ** 2
+    return x, y, T + casimirs(x, y, s), integrable.sokolov(a, c, d)(x, y)
+
+
+def casimirs(x: Sequence[Any], y: Sequence[Any], s: dict[str, Any]) -> Any:
+    return s["p0"] * squares(x) + s["b0"] * dot(x, y)
+
+
+@pytest.mark.parametrize("family", [clebsch2, neumann, steklov, lyapunov, sokolov])
+def test_the_integral_is_constant_for_every_coefficient(family: Family) -> None:
+    """{I, T} = 0 identically in x, y and the coefficients, with any F^2 and FG added to T."""
+    x, y, T, integral = family()
+    assert integral != 0
+    assert rate(integral, T, x, y) == 0
+
+
+def test_chaplygins_is_constant_where_fg_is_zero_and_leaks_as_stated() -> None:
+    """K' = 2 leak FG identically (twice T was put in), and the leak does not vanish."""
+    x, y, T, integral = chaplygin()
+    generators = integral.context().gens()
+    a, c, d = generators[8:]
+    leak = integrable.chaplygin_leak(a, c, d)(x, y)
+    assert leak != 0
+    assert rate(integral, T, x, y) == 2 * leak * dot(x, y)
+
+
+def test_steklovs_and_lyapunovs_are_each_others_integrals() -> None:
+    """The integral of one is twice the energy of the other: one pencil, as Kolosov found."""
+    x, y, s = symbols("r1", "r2", "r3", "mu")
+    r, mu = [s["r1"], s["r2"], s["r3"]], s["mu"]
+    of_lyapunov = sum(
+        y[i] ** 2 - 2 * mu * r[i] * x[i] * y[i] + mu**2 * (r[j] - r[k]) ** 2 * x[i] ** 2
+        for i, j, k in CYCLIC
+    )
+    assert integrable.steklov(r, mu)(x, y) == of_lyapunov
+    of_steklov = sum(
+        r[i] * y[i] ** 2 - 2 * r[j] * r[k] * x[i] * y[i] + r[i] * (r[j] - r[k]) ** 2 * x[i] ** 2
+        for i, j, k in CYCLIC
+    )
+    assert integrable.lyapunov(1, r)(x, y) == of_steklov
+
+
+# The shipped scenes.
+
+
+def polynomial(terms: integrable.Terms) -> fmpq_mpoly:
+    context = fmpq_mpoly_ctx.get(NAMES, Ordering.lex)
+    return context.from_dict({n: fmpq(c.numerator, c.denominator) for n, c in terms.items()})
+
+
+def energy(body: ImmersedBody) -> fmpq_mpoly:
+    state = fmpq_mpoly_ctx.get(NAMES, Ordering.lex).gens()
+    entries = [[fmpq(e.numerator, e.denominator) for e in row] for row in body.energy_matrix]
+    return sum(
+        (entries[n][m] * state[n] * state[m] for n in range(6) for m in range(6)), 0 * state[0]
+    ) * fmpq(1, 2)
+
+
+def remainder(integral: fmpq_mpoly, T: fmpq_mpoly, only_orthogonal: bool) -> fmpq_mpoly:
+    """The integral's rate; for Chaplygin's what FG = 0 leaves of it."""
+    state = T.context().gens()
+    found = rate(integral, T, state[:3], state[3:])
+    return divmod(found, dot(state[:3], state[3:]))[1] if only_orthogonal else found
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_wrong_coefficient_is_caught(name: str) -> None:
+    """The integral of the scene is one; with any single coefficient 1 + 2^-40 of itself it is not."""
+    scene = shipped(name)
+    found, T = fourth(scene), energy(body_of(scene))
+    assert remainder(polynomial(found.terms), T, bool(found.leak)) == 0
+    for powers, c in found.terms.items():
+        wrong = {**found.terms, powers: c * (1 + Fraction(1, 2**40))}
+        assert remainder(polynomial(wrong), T, bool(found.leak)) != 0
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_it_says_what_the_three_others_do_not(name: str) -> None:
+    """The gradients of T, F^2, FG and the integral are independent at the start."""
+    scene = shipped(name)
+    assert isinstance(scene.initial, Impulse)
+    state = fmpq_mpoly_ctx.get(NAMES, Ordering.lex).gens()
+    x, y = state[:3], state[3:]
+    four = [energy(body_of(scene)), squares(x), dot(x, y), polynomial(fourth(scene).terms)]
+    start = [fmpq(e.numerator, e.denominator) for e in scene.initial.linear + scene.initial.angular]
+    rows = [[p.derivative(n)(*start) for n in range(6)] for p in four]
+    assert fmpq_mat(rows).rank() == 4
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_it_is_conserved_along_the_taylor_motion(name: str) -> None:
+    """Forward and backward, to the digits of a motion that knows nothing of it."""
+    scene = shipped(name)
+    (invariant,) = (i for i in invariants(scene) if i.name == SCENES[name])
+    motion = TaylorSolution(scene).motion([Fraction(0), Fraction(3), Fraction(-2)], 30)
+    with mp.workdps(50):
+        drift = max(abs(invariant.value(motion) - invariant.value(motion)[0]))
+        # Four factors of 30 digits each, two rows.
+        assert drift <= 8 * mpf(10) ** -30 * invariant.scale(motion)
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("step", LADDER)
+def test_every_rung_has_the_integral_of_the_shipped_scene(name: str, step: str) -> None:
+    """Their coefficients are dyadic: no rung rounds the relation away."""
+    given = pose(shipped(name), rung(step)).given
+    assert fourth(given).name == SCENES[name]
+    assert fourth(given).terms == fourth(shipped(name)).terms
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_holds_the_integral(name: str) -> None:
+    """It is one of the gates of a run on f64, and the solver passes it."""
+    (row,) = (v for v in run(shipped(name), "taylor", "f64").verdicts if v.quantity == SCENES[name])
+    assert row.verdict is Status.PASS
+
+
+def test_a_wrong_theta_fails_the_gate_of_clebsch2_and_no_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The broken twin: theta off by a part in 10^9 is no constant of the motion, and is seen."""
+    right = integrable.clebsch2
+    monkeypatch.setattr(
+        integrable, "clebsch2", lambda r, theta: right(r, theta * (1 + Fraction(1, 10**9)))
+    )
+    verdicts = run(shipped("clebsch-second-case"), "taylor", "f64").verdicts
+    assert {v.quantity for v in verdicts if v.verdict is not Status.PASS} == {"clebsch2"}
+    assert {v.quantity for v in verdicts} >= {"impulse", "T", "F2", "FG"}
+
+
+# Recognition.
+
+
+def changed(matrix: Matrix, i: int, j: int, by: Fraction) -> Matrix:
+    rows = [list(row) for row in matrix]
+    rows[i][j] += by
+    return tuple(tuple(row) for row in rows)
+
+
+def with_body(scene: Scene, **parts: Any) -> Scene:
+    return replace(scene, body=replace(body_of(scene), **parts))
+
+
+@pytest.mark.parametrize("name", [n for n in SCENES if n != "equal-rotations"])
+def test_what_holds_nearly_is_no_integral_until_a_rung_rounds_it(name: str) -> None:
+    """p_1 off by 2^-60 is another body on f128, and the same one on f64."""
+    scene = shipped(name)
+    near = with_body(scene, linear=changed(body_of(scene).linear, 0, 0, Fraction(1, 2**60)))
+    assert fourth_integral(near) is None
+    assert fourth_integral(pose(near, rung("f128")).given) is None
+    assert fourth(pose(near, rung("f64")).given).name == SCENES[name]
+
+
+def test_any_p_will_do_where_the_r_are_equal_but_no_other_r() -> None:
+    """With r_3 off by 2^-60 the body with equal rotations has no fourth integral."""
+    scene = shipped("equal-rotations")
+    C = body_of(scene).angular
+    near = with_body(scene, angular=changed(C, 2, 2, Fraction(1, 2**60)))
+    assert fourth_integral(near) is None
+    other_p = changed(body_of(scene).linear, 1, 1, Fraction(1, 3))
+    assert fourth(with_body(scene, linear=other_p)).name == "neumann"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_casimirs_in_the_energy_change_nothing(name: str) -> None:
+    """p0 F^2 and b0 FG more in T leave the word and every difference of the integral's terms."""
+    scene = shipped(name)
+    body = body_of(scene)
+    A, B = body.linear, body.coupling
+    for n in range(3):
+        A, B = changed(A, n, n, Fraction(5, 3)), changed(B, n, n, Fraction(1, 7))
+    found = fourth(with_body(scene, linear=A, coupling=B))
+    assert (found.name, found.terms) == (SCENES[name], fourth(scene).terms)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scaled_body_keeps_its_integral(name: str) -> None:
+    """Another unit of mass, length or time: with T a third as large the integral still holds."""
+    scene = shipped(name)
+    parts = {
+        part: tuple(tuple(e / 3 for e in row) for row in getattr(body_of(scene), part))
+        for part in ("linear", "coupling", "angular")
+    }
+    scaled = with_body(scene, **parts)
+    found = fourth(scaled)
+    assert found.name == SCENES[name]
+    assert remainder(polynomial(found.terms), energy(body_of(scaled)), bool(found.leak)) == 0
+
+
+def test_chaplygins_needs_orthogonal_impulses_and_no_body_is_loaded() -> None:
+    """With FG != 0, or with a couple, nothing is recognised."""
+    scene = shipped("chaplygin")
+    assert isinstance(scene.initial, Impulse)
+    askew = replace(scene.initial, angular=(Fraction(1), Fraction(0), Fraction(0)))
+    assert fourth_integral(replace(scene, initial=askew)) is None
+    couple: Vector = (Fraction(0), Fraction(0), Fraction(1))
+    assert fourth_integral(with_body(shipped("steklov"), couple=couple)) is None
+    assert fourth_integral(load("kirchhoff/general-body")) is None
+    assert fourth_integral(load("kirchhoff/four-real-roots")) is None  # it has y3
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_words_of_the_orbit_tell_of_it(name: str) -> None:
+    """`explain` names the fourth integral, and of no other general body one."""
+    assert any(
+        f"{SCENES[name]}, the fourth integral" in s for s in elements(shipped(name)).sentences
+    )
+    assert not any("fourth" in s for s in elements(load("kirchhoff/general-body")).sentences)
+
+
+# Scale and sensitivity.
+
+
+def still(x: Sequence[Fraction], y: Sequence[Fraction]) -> Motion:
+    rows = {"linear_impulse": x, "angular_impulse": y}
+    held = {n: np.array([[mp.convert(e) for e in row]], dtype=object) for n, row in rows.items()}
+    return Motion(held, np.array([mp.zero], dtype=object))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_scale_is_never_less_than_the_integral_and_vanishes_never(name: str) -> None:
+    """Drawn states: |I| <= scale > 0; no motion, or an integral without terms left, has scale 1."""
+    found, draw = fourth(shipped(name)), Random(name)
+    with mp.workdps(40):
+        for _ in range(50):
+            x, y = ([Fraction(draw.randint(-9, 9), 7) for _ in range(3)] for _ in range(2))
+            motion = still(x, y)
+            slack = 1 + mpf(10) ** -38
+            assert abs(found.value(motion)[0]) <= slack * found.scale(motion)
+            assert found.scale(motion) > 0
+        assert found.scale(still([Fraction(0)] * 3, [Fraction(0)] * 3)) == 1
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_sensitivity_is_the_norm_of_the_gradient(name: str) -> None:
+    """Difference quotients of the value, by x and by y; Chaplygin's leak comes on top of it."""
+    found = fourth(shipped(name))
+    step = Fraction(1, 10**20)
+    state = [Fraction(n, 7) for n in (5, -3, 4, 2, 6, -1)]
+    with mp.workdps(60):
+        here = still(state[:3], state[3:])
+        bare = replace(found, leak={}).sensitivity(here)
+        for block, places in (("linear_impulse", (0, 1, 2)), ("angular_impulse", (3, 4, 5))):
+            quotients = []
+            for n in places:
+                moved = [e + step * (m == n) for m, e in enumerate(state)]
+                there = still(moved[:3], moved[3:])
+                quotients.append((found.value(there)[0] - found.value(here)[0]) / step)
+            # The quotient differs from the derivative by the step times a second derivative.
+            assert abs(mp.norm(quotients) - bare[block][0]) <= mpf(10) ** -17 * bare[block][0]
+            whole = found.sensitivity(here)[block][0]
+            assert whole > bare[block][0] if found.leak else whole == bare[block][0]
+
+
+def test_what_leaks_by_a_disturbed_fg_stays_within_the_sensitivity() -> None:
+    """Chaplygin's K after y was moved along x by 10^-12 changes by no more than was stated."""
+    scene = shipped("chaplygin")
+    assert isinstance(scene.initial, Impulse)
+    found, move = fourth(scene), Fraction(1, 10**12)
+    x, y = scene.initial.linear, scene.initial.angular
+    nudged = replace(scene.initial, angular=tuple(b + move * a for a, b in zip(x, y, strict=True)))
+    elapsed = [Fraction(n, 2) for n in range(11)]
+    plain = TaylorSolution(scene).motion(elapsed, 30)
+    there = TaylorSolution(replace(scene, initial=nudged)).motion(elapsed, 30)
+    with mp.workdps(40):
+        size = mp.convert(move) * mp.norm([mp.convert(e) for e in x])
+        stated = size * max(found.sensitivity(plain)["angular_impulse"])
+        differences = abs(found.value(there) - found.value(plain))
+        assert max(differences) <= stated
+        # And it does leak: K of the disturbed motion is no constant of it.
+        assert max(abs(found.value(there) - found.value(there)[0])) >= mpf(10) ** -14

@@ -1,0 +1,96 @@
+"""After a billion periods the exact solution is proven to 40 digits, and is back where it began."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.library import EXTREMES, WORST, names
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+DIGITS = 40
+PERIODS = 10**9
+# 1e9 periods of 60 digits are known to 1e-51 of one.
+PERIOD_DIGITS = 60
+
+
+def closed_scenes() -> list[str]:
+    shipped = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
+    return [name for name in shipped if solution(load(name)).regime != NO_CLOSED_FORM]
+
+
+def period(scene: Scene) -> Fraction | None:
+    """By complete integrals in mpmath, not by the lattice of the balls; None where there is none."""
+    orbit = elements(scene, PERIOD_DIGITS)
+    return exact_value(orbit["period"].value) if "period" in orbit else None
+
+
+def recurring(motion: Motion, row: int, axis: int) -> list[Any]:
+    """What a period brings back: omega, or x along the axis of symmetry and the lengths of x and y."""
+    if "omega" in motion.quantities:
+        return list(motion["omega"][row])
+    x, y = motion["linear_impulse"][row], motion["angular_impulse"][row]
+    return [x[axis], mp.norm(list(x)), mp.norm(list(y))]
+
+
+def missed(scene: Scene, span: Fraction) -> mpf:
+    """How far from its start the motion is after this time, in parts of omega or of the impulses."""
+    motion = solution(scene).motion([Fraction(0), span], DIGITS)
+    body = scene.body
+    axis = ((body.axis_of_symmetry or 3) if isinstance(body, ImmersedBody) else 3) - 1
+    assert all(radius <= mpf(10) ** -DIGITS for radius in motion.radius)
+    with mp.workdps(PERIOD_DIGITS):
+        start, end = (np.array(recurring(motion, row, axis), dtype=object) for row in (0, 1))
+        scale = mp.norm(list(start))
+        return mp.norm(list(end - start)) / scale if scale else mp.norm(list(end))
+
+
+# Two vectors of 40 digits; for each, what its length and its component may be off by.
+RETURNS = 4 * mpf(10) ** -DIGITS
+
+
+@pytest.mark.parametrize("name", closed_scenes())
+def test_a_billion_periods_keep_forty_digits(name: str) -> None:
+    """Every shipped closed form, all that it tracks; 1e9 units of time where there is no period."""
+    scene = load(name)
+    exact, once = solution(scene), period(scene)
+    if once is not None:
+        assert missed(scene, PERIODS * once) <= RETURNS
+    else:
+        motion = exact.motion([Fraction(PERIODS), -Fraction(PERIODS)], DIGITS)
+        assert all(radius <= mpf(10) ** -DIGITS for radius in motion.radius)
+
+
+@pytest.mark.slow
+def test_no_extreme_scene_is_too_far() -> None:
+    """Nor does any of the extremes with a closed form lose a digit: forty are proven of all of them."""
+    is_answered = False
+    for name in names(EXTREMES, WORST):
+        scene = load(name)
+        exact = solution(scene)
+        if exact.regime != NO_CLOSED_FORM:
+            (radius,) = exact.motion([PERIODS * (period(scene) or Fraction(1))], DIGITS).radius
+            assert radius <= mpf(10) ** -DIGITS, name
+            is_answered = True
+    assert is_answered
+
+
+@pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
+def test_a_period_wrong_in_its_45th_digit_is_noticed(name: str) -> None:
+    """A billion times 1e-45 of a period is 1e-36, ten thousand times what is allowed."""
+    scene = load(name)
+    once = period(scene)
+    assert once is not None
+    off = once * (1 + Fraction(1, 10**45))
+    assert not missed(scene, PERIODS * off) <= RETURNS

@@ -1,0 +1,144 @@
+"""The radius means one thing on every route: the error of each vector by its norm, printing included."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from flint import arb, ctx
+from mpmath import mp, mpf
+
+from taylor_verify.exact import balls, taylor
+from taylor_verify.exact.printed import _printed_radius, document
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import _distance
+from taylor_verify.scenes.reading.reader import load
+
+ROUTES = ("arb", "mpmath", "taylor")
+SCENES = (
+    "euler/with-attitude",
+    "euler/moment-along-axis",
+    "kirchhoff/screw",
+    "manufactured/kirchhoff-tones",
+)
+TIMES = ("1.25", "7")
+
+
+def printed(scene: str, route: str, digits: int) -> list[dict[str, Any]]:
+    asked = load(scene)
+    times = [(text, asked.clock.start + Fraction(text)) for text in TIMES]
+    found: list[dict[str, Any]] = document(asked, solution(asked, route), times, digits)["rows"]
+    return found
+
+
+def vectors(row: dict[str, Any]) -> dict[str, list[Fraction]]:
+    """Every vector and matrix of a row, flat, as the rationals that its text says."""
+    found = {}
+    for name, value in row.items():
+        if name not in ("t", "radius"):
+            found[name] = [Fraction(text) for text in np.ravel(np.array(value))]
+    return found
+
+
+def errors(row: dict[str, Any], truth: dict[str, Any]) -> dict[str, Fraction]:
+    """The square of each vector's error by that of its norm, recomputed from the text alone."""
+    ones, others = vectors(row), vectors(truth)
+    assert set(ones) == set(others)
+    return {
+        name: sum((a - b) ** 2 for a, b in zip(ones[name], others[name], strict=True))
+        / sum(b * b for b in others[name])
+        for name in ones
+    }
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("digits", [3, 16])
+def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits: int) -> None:
+    """Against forty digits of the other routes; and printing is most of it, on all three alike."""
+    sharp = {route: printed(scene, route, 40) for route in ROUTES}
+    for route in ROUTES:
+        for k, row in enumerate(printed(scene, route, digits)):
+            radius = Fraction(row["radius"])
+            assert Fraction(5, 10**digits) < radius <= Fraction(6, 10**digits)
+            for other in ROUTES:
+                room = radius + Fraction(sharp[other][k]["radius"])
+                assert max(errors(row, sharp[other][k]).values()) <= room**2
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_routes_overlap_within_the_sum_of_their_radii(scene: str) -> None:
+    """Vector by vector and to the last bit held: no rounding of a print lies between."""
+    asked = load(scene)
+    elapsed = [Fraction(text) for text in TIMES]
+    motions = [solution(asked, route).motion(elapsed, 25) for route in ROUTES]
+    with mp.workdps(80):
+        for one in motions:
+            for other in motions:
+                for name in one.quantities:
+                    apart = [_distance(*pair) for pair in zip(one[name], other[name], strict=True)]
+                    sums = one.radius_of(name) + other.radius_of(name)
+                    # A radius is by the norm of the truth, which is within a radius of either norm.
+                    assert all(a <= s * (1 + s) for a, s in zip(apart, sums, strict=True))
+                    assert all(one.radius >= one.radius_of(name))
+
+
+def test_both_routes_in_balls_measure_alike() -> None:
+    """The norm of the radii by the least norm that the balls allow, for vectors and for matrices."""
+    with ctx.workprec(100):
+        vector = [arb(3, 1e-20), arb(4, 0), arb(0, 1e-30)]
+        matrix = [*vector, *vector, *vector]
+        for entries in (vector, matrix):
+            width = balls.width(entries)
+            assert taylor._radius(entries, 0.0, 60) == (width, int(mp.mag(width)) + 60)
+            assert mpf("2e-21") <= width <= mpf("2.0001e-21")
+    # Of a vector from which zero is not excluded no digit is known; far below its own size it is told.
+    small = [arb(0, 1e-90), arb(0)]
+    assert balls.width(small) == mp.inf
+    assert taylor._radius(small, 0.0, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
+    assert taylor._radius([arb(0, 1e-30)], 0.0, 60)[1] > 0
+
+
+@pytest.mark.parametrize("radius", [Fraction(0), Fraction(1, 10**3), Fraction(1, 10**25)])
+def test_the_rounding_of_the_digits_is_in_the_printed_radius(radius: Fraction) -> None:
+    """The error of the midpoint and half a last digit of each entry, both by the norm of the truth."""
+    digits = 20
+    # The truth is 1, and what is printed is as far from it as both allow.
+    midpoint = 1 + radius
+    printed_number = midpoint * (1 + Fraction(1, 2 * 10 ** (digits - 1)))
+    assert printed_number - 1 <= Fraction(_printed_radius(radius, digits))
+
+
+CANCELLING = """
+title = "An impulse that a force takes away"
+model = "kirchhoff"
+[body]
+force = ["1/3", "2/3", 0]
+[body.energy]
+linear = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+coupling = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]
+angular = [[1, 0, 0], [0, 2, 0], [0, 0, 3]]
+[initial]
+linear_impulse = ["-1/7", "-2/7", 0]
+angular_impulse = [0, 0, 0]
+[time]
+end = 1
+samples = 2
+"""
+
+
+@pytest.mark.parametrize("left", [Fraction(1, 10**100), Fraction(0)])
+def test_what_is_left_of_a_vector_that_cancels_is_right(tmp_path: Path, left: Fraction) -> None:
+    """x is linear in time. Of 1e-100 of it every digit is right; of nothing, zero is printed and said."""
+    file = tmp_path / "cancelling.toml"
+    file.write_text(CANCELLING, encoding="utf-8")
+    scene = load(str(file))
+    printed = document(scene, solution(scene, "taylor"), [("t", Fraction(3, 7) + 3 * left)], 30)
+    (row,) = printed["rows"]
+    truth = [left, 2 * left, Fraction(0)]
+    errors = [Fraction(p) - t for p, t in zip(row["linear_impulse"], truth, strict=True)]
+    assert Fraction(row["radius"]) < Fraction(1, 10**29)
+    assert sum(e * e for e in errors) <= Fraction(row["radius"]) ** 2 * sum(t * t for t in truth)
+    assert ("absolute" in row) is (left == 0)

@@ -1,0 +1,194 @@
+"""Washboard orbits with many teeth between the start, the turning point and the time asked for.
+
+Legend as in taylor_verify.exact.euler.moments.washboard and washboard_teeth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from flint import arb, ctx, fmpq
+from mpmath import mpf
+from samples import one_instant
+from test_washboard import DIGITS, ROUTES, axial, board, gap, vector
+
+from taylor_verify.exact.euler.moments import washboard_teeth
+from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, located
+from taylor_verify.exact.euler.moments.washboard_balls import Course, Turn
+from taylor_verify.exact.euler.moments.washboard_speed import speed
+from taylor_verify.exact.euler.moments.washboard_teeth import FarTeeth
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.run import run
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import diagonal
+
+# A spin against a moment that is too small to stop it before it has passed so many teeth. In the first two
+# the teeth are so deep that the body all but stops on each of the last.
+SCENES = {
+    87: axial(2, "1/50", vector(1, 1, -2)),
+    159: axial(2, "1/20", vector(5, 6, -5)),
+    2_387_323: axial(2, "1/20", vector("1/2", "3/5", -500)),
+}
+DEEP = SCENES[159]
+
+
+def teeth_to_the_turn(scene: Scene) -> int:
+    found = board(scene)
+    with ctx.workprec(192):
+        count = abs(located(found).lower) * speed(found).rate / arb.pi()
+    return int(count.floor().unique_fmpz())
+
+
+def tooth_by_tooth(turn: Turn, y: arb) -> arb:
+    """The time of the bead to y, an integral for each tooth."""
+    assert turn._teeth is not None
+    time, last = arb(0), arb(0)
+    while y * y > last * last + turn._teeth.width:
+        stop = (last * last + turn._teeth.width).sqrt().mid()
+        time, last = time + turn._way(last, stop), stop
+    return time + turn._way(last, y)
+
+
+@pytest.mark.parametrize("teeth", SCENES)
+def test_the_start_lies_so_many_teeth_from_the_turn(teeth: int) -> None:
+    """The scenes of this file are what they are said to be."""
+    assert teeth_to_the_turn(SCENES[teeth]) == teeth
+
+
+@pytest.mark.parametrize(
+    ("teeth", "route"),
+    [
+        pytest.param(teeth, route, marks=[pytest.mark.slow] if longer else [])
+        for teeth in SCENES
+        for route in ROUTES
+        for longer in [route == "mpmath" and teeth == 159]
+    ],
+)
+def test_the_closed_form_is_the_taylor_motion(teeth: int, route: str) -> None:
+    """Both ways from the start; the recursion knows of no tooth and no turning point."""
+    scene, rate = SCENES[teeth], 1 if teeth < 1000 else 100
+    digits = DIGITS if route == "arb" else 15
+    times = [Fraction(0), Fraction(3, rate), Fraction(-2, rate)]
+    found, expected = solution(scene, route), TaylorSolution(scene).motion(times, digits)
+    assert (found.route, found.regime) == (route, "washboard-run")
+    assert gap(found.motion(times, digits), expected) <= 2 * mpf(10) ** -digits
+
+
+def test_it_turns_back_as_the_taylor_motion_does() -> None:
+    """Through the turning point, 87 teeth after the start, and as many beyond it."""
+    scene, digits = SCENES[87], 15
+    times = [Fraction(200), Fraction(500)]
+    expected = TaylorSolution(scene).motion(times, digits)
+    assert expected["omega"][0][2] < 0 < expected["omega"][1][2]
+    assert gap(solution(scene, "arb").motion(times, digits), expected) <= 2 * mpf(10) ** -digits
+
+
+def test_both_routes_agree_after_a_million_million_teeth() -> None:
+    """The sum of Euler and Maclaurin in balls, and Hurwitz' zeta function of mpmath."""
+    times = [Fraction(-(10**8), 3)]
+    one, other = (solution(DEEP, route).motion(times, 15) for route in ROUTES)
+    assert max(one.radius) <= mpf(10) ** -15
+    assert gap(one, other) <= 2 * mpf(10) ** -15
+
+
+# The sum over the teeth.
+
+
+def far_and_near(bits: int) -> tuple[arb, arb]:
+    """The time from the turn to the start, 159 teeth away: all at once, and tooth by tooth."""
+    with ctx.workprec(bits):
+        turn = Course(board(DEEP))._lower
+        y = turn.place(arb(0)).mid()
+        assert isinstance(turn._level, arb)
+        assert isinstance(turn._teeth, FarTeeth)
+        return turn._level - turn._teeth.level(turn.sigma(y)), tooth_by_tooth(turn, y)
+
+
+@pytest.mark.parametrize("bits", [64, 128, 256])
+def test_the_teeth_all_at_once_take_the_time_of_each(bits: int) -> None:
+    """The balls of the two sums overlap, and half of the bits are proven."""
+    once, each = far_and_near(bits)
+    assert once.overlaps(each)
+    assert once.rad() <= arb(2) ** (-bits // 2)
+
+
+@pytest.mark.parametrize("place", [1, 2, 4, 6])
+def test_a_wrong_term_of_the_sum_over_teeth_is_caught(
+    place: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A coefficient that is off by a part in a million: the balls no longer overlap."""
+    sound = washboard_teeth._coefficients
+
+    def broken(a: int, bits: int) -> list[fmpq]:
+        found = sound(a, bits)
+        found[place] *= 1 + fmpq(1, 10**6)
+        return found
+
+    monkeypatch.setattr(washboard_teeth, "_coefficients", broken)
+    once, each = far_and_near(128)
+    assert not once.overlaps(each)
+
+
+# So small a moment that F on the crests, where it is least, is a billionth of F between them.
+NARROW = axial(0, "-1e-9", vector("1/2", "3/5", "1/10"))
+
+
+def test_teeth_that_all_but_stop_the_body_are_summed_too() -> None:
+    """By balls as by the recursion; F is small there by its second order."""
+    times = [Fraction(0), Fraction(5)]
+    expected = TaylorSolution(NARROW).motion(times, 25)
+    found = solution(NARROW, "arb")
+    assert found.regime == "washboard-run"
+    assert gap(found.motion(times, 25), expected) <= 2 * mpf(10) ** -25
+
+
+# What is not waited for.
+
+
+def test_a_start_too_many_teeth_from_its_turn_has_no_closed_form() -> None:
+    """1e22 teeth are refused in words, and the Taylor route takes over."""
+    weak = axial(2, "1e-22", vector("1/2", "3/5", -3))
+    for route in ROUTES:
+        with pytest.raises(NoClosedForm, match=r"more than 1e\+20 teeth of the washboard"):
+            solution(weak, route)
+    assert solution(weak).route == "taylor"
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_a_time_too_many_teeth_away_is_not_waited_for(route: str) -> None:
+    """The number of teeth grows with the square of the time: 1e23 units are refused in words."""
+    assert MOST_TEETH == 10**40
+    with pytest.raises(Unsettled, match=r"more than 1e\+40 teeth"):
+        solution(DEEP, route).motion([Fraction(10**23)], 15)
+
+
+# The judge.
+
+
+@pytest.mark.slow
+def test_a_scene_with_many_teeth_is_judged() -> None:
+    """The shipped scene, and through its turning point and beyond: a verdict on float64, a pass."""
+    scene = load("extremes/euler-washboard-many-teeth")
+    assert teeth_to_the_turn(scene) == 159
+    longer = replace(scene.clock, instants=tuple(Fraction(k) for k in range(401)))
+    for each in (scene, replace(scene, clock=longer)):
+        verdicts = run(each).verdicts
+        assert [v.verdict.value for v in verdicts] == ["pass"] * len(verdicts)
+        assert "omega" in {v.quantity for v in verdicts}
+
+
+def test_where_integrals_are_hard_series_answer() -> None:
+    """A moment of 1e-100 tips a spin about the middle axis at t = 399: in a second, and proven."""
+    pushed = RigidBody(diagonal(vector(1, 2, 3)), vector(0, 0, "1e-100"))
+    tipped = solution(one_instant(pushed, Spin(vector(0, 1, 0))))
+    motion = tipped.motion([Fraction(10), Fraction(404)], 30)
+    assert (tipped.route, tipped.evidence) == ("taylor", "proven")
+    assert motion.radius[1] <= 1e-30
+    assert abs(motion["omega"][1][1] + 0.922373734915401) <= 1e-14

@@ -1,0 +1,287 @@
+"""Weber's case of Clebsch's second: theta functions of genus two, by two routes and against Taylor.
+
+The twins at the end are faults put in on purpose; the comparison they name must notice each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from flint import ctx
+from mpmath import mp, mpf
+from webers import BODIES, STARTS, built, case, curve_of, exact
+
+from taylor_verify.exact.balls import max_or_nan, midpoint
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.weber import enclosure
+from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
+from taylor_verify.exact.kirchhoff.weber.curve import curve
+from taylor_verify.exact.kirchhoff.weber.sums import Sums
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+DIGITS = 42
+TIMES = [Fraction(0), Fraction(1, 3), Fraction(-7, 2), Fraction(6)]
+
+
+def shipped() -> Scene:
+    return load("kirchhoff/weber")
+
+
+def apart(one: Motion, other: Motion) -> mpf:
+    """The largest difference of two motions, relative to the size of each vector; NaN if one is."""
+    found = mpf(0)
+    for name, rows in one.quantities.items():
+        for a, b in zip(rows, other[name], strict=True):
+            size = mp.norm(list(a.flat))
+            found = max_or_nan(found, mp.norm(list((a - b).flat)) / (size if size else 1))
+    return found
+
+
+# Against Taylor.
+
+
+# Every start, the bodies by turns; the other pairs are slow.
+PAIRS = [
+    pytest.param(body, start, marks=() if (n + m) % 3 == 0 else pytest.mark.slow)
+    for n, start in enumerate(STARTS)
+    for m, body in enumerate(BODIES)
+]
+
+
+@pytest.mark.parametrize(("body", "start"), PAIRS)
+def test_the_balls_hold_the_taylor_motion(body: str, start: str) -> None:
+    """x and y to 42 digits, forward and backward, of both families and from every kind of start."""
+    scene = case(start, body)
+    exact_motion = solution(scene)
+    assert (exact_motion.regime, exact_motion.route) == ("weber", "arb")
+    found = exact_motion.motion(TIMES, DIGITS)
+    truth = TaylorSolution(scene).motion(TIMES, DIGITS)
+    with mp.workdps(DIGITS + 30):
+        assert apart(truth, found) <= 2 * mpf(10) ** -DIGITS
+        # What is proven of the balls leaves nothing but Taylor's own error beside it.
+        for k in range(len(TIMES)):
+            for name in found.quantities:
+                distance = mp.norm(list(found[name][k] - truth[name][k]))
+                room = found.radii[name][k] + truth.radii[name][k]
+                size = mp.norm(list(truth[name][k]))
+                assert distance <= room * (size if size else 1) * (1 + mpf(10) ** -20)
+
+
+@pytest.mark.parametrize(
+    ("body", "start"),
+    [
+        ("theta < 0", "x_1 = 0"),
+        pytest.param("theta > 0", "plain", marks=pytest.mark.slow),
+        pytest.param("r alike", "x along axis 3", marks=pytest.mark.slow),
+        pytest.param("r alike", "y = 0", marks=pytest.mark.slow),
+    ],
+)
+def test_the_sums_in_mpmath_are_the_balls(body: str, start: str) -> None:
+    """The other route, with no derivative of theta in y, other integrals and its own theta series."""
+    scene = case(start, body)
+    times, digits = [Fraction(7, 3), Fraction(-50)], 30
+    found = solution(scene, "mpmath")
+    assert (found.regime, found.route) == ("weber", "mpmath")
+    one, other = found.motion(times, digits), solution(scene, "arb").motion(times, digits)
+    with mp.workdps(digits + 30):
+        assert apart(other, one) <= 2 * mpf(10) ** -digits
+
+
+def test_far_times_cost_no_digit() -> None:
+    """After 10^12 units of time, and three more: Taylor leads from the one state to the other."""
+    scene, far, on = shipped(), Fraction(10**12), Fraction(3)
+    there = enclosure.enclosed(scene).motion([far, far + on], DIGITS)
+    x, y = (
+        tuple(exact_value(entry) for entry in there[name][0])
+        for name in ("linear_impulse", "angular_impulse")
+    )
+    beyond = TaylorSolution(replace(scene, initial=Impulse(x, y))).motion([on], DIGITS)
+    with mp.workdps(DIGITS + 30):
+        for name in beyond.quantities:
+            difference = mp.norm(list(beyond[name][0] - there[name][1]))
+            # What is handed on is right to 10^-42; in three units of time the orbit makes of that
+            # at most some ten times as much.
+            assert difference <= 100 * mpf(10) ** -DIGITS
+
+
+def test_what_is_conserved_is_conserved() -> None:
+    """F^2, x.y = 0, T and the fourth integral, in the balls' own midpoints, to every digit asked for."""
+    scene = shipped()
+    assert isinstance(scene.body, ImmersedBody)
+    motion = solution(scene).motion([Fraction(0), Fraction(17, 2), Fraction(-1000)], DIGITS)
+    fourth = fourth_integral(scene)
+    assert fourth is not None
+    with mp.workdps(DIGITS + 20):
+        coefficients = [[mp.convert(c) for c in row] for row in scene.body.energy_matrix]
+        rows = []
+        for x, y in zip(motion["linear_impulse"], motion["angular_impulse"], strict=True):
+            state = [*x, *y]
+            T = (
+                sum(
+                    c * a * b
+                    for row, a in zip(coefficients, state, strict=True)
+                    for c, b in zip(row, state, strict=True)
+                )
+                / 2
+            )
+            rows.append((sum(x * x), sum(x * y), T))
+        integral = fourth.value(motion)
+        # Products of two numbers of about 1, each right to 10^-42.
+        room = 20 * mpf(10) ** -DIGITS
+        for row, value in zip(rows, integral, strict=True):
+            assert all(abs(a - b) <= room for a, b in zip(row, rows[0], strict=True))
+            assert abs(value - integral[0]) <= room
+
+
+# What is Weber's, and what is not.
+
+
+@pytest.mark.parametrize("step", LADDER)
+def test_the_shipped_scene_is_webers_on_every_rung(step: str) -> None:
+    """Its numbers are dyadic, and so are FG = 0 and Clebsch's relation."""
+    posed = pose(shipped(), rung(step)).given
+    assert curve(posed) is not None
+    assert solution(posed).regime == "weber"
+
+
+LITTLE = Fraction(1, 10**40)
+
+
+def test_what_is_nearly_webers_is_not() -> None:
+    """FG of 10^-40, or Clebsch's relation short by that, and there is no theta function."""
+    scene = shipped()
+    assert isinstance(scene.initial, Impulse)
+    assert isinstance(scene.body, ImmersedBody)
+    y = scene.initial.angular
+    askew = replace(scene, initial=replace(scene.initial, angular=(y[0] + LITTLE, *y[1:])))
+    with pytest.raises(NoClosedForm, match="only the motions with FG = 0"):
+        curve(askew)
+    p = tuple(scene.body.linear[n][n] for n in range(3))
+    body = replace(scene.body, linear=tensors.diagonal((p[0] + LITTLE, *p[1:])))
+    assert curve(replace(scene, body=body)) is None
+    for other in (askew, replace(scene, body=body)):
+        assert solution(other).regime == NO_CLOSED_FORM
+
+
+# F_2 = y_3^2/(a_2 - a_1) + y_1^2/(a_2 - a_3) = 0, though a_2 - a_1 = a_3 - a_2: a_2 is a root of B.
+DEGENERATE = built(exact("1/2", 0, "1/2"), exact(1, "-1/2", -1), exact(1, 1, 1), exact(1, 2, 3))
+DECLINED = {
+    "two branch points of Weber's curve coincide": DEGENERATE,
+    "not attitude and centre": replace(shipped(), track=frozenset({"attitude"})),
+    "only the motions with FG = 0": built(exact(1, "1/2", 1), exact(1, 1, 1), *BODIES["theta > 0"]),
+    "of Clebsch's form": built(exact(1, 0, 1), exact(0, 1, 0), exact(1, 2, 3), exact(1, 2, 4)),
+}
+
+
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+@pytest.mark.parametrize("reason", DECLINED)
+def test_other_motions_are_declined_with_the_reason(reason: str, route: str) -> None:
+    """A degenerate curve, a tracked attitude, FG that is not zero, another body: Taylor's, then."""
+    with pytest.raises(NoClosedForm, match=reason):
+        solution(DECLINED[reason], route)
+    assert solution(DECLINED[reason]).route == "taylor"
+
+
+def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
+    """x_2 = 10^-12 beside it: two branch points all but coincide, and no digit is lost."""
+    little = Fraction(1, 10**12)
+    near = built(
+        (Fraction(1, 2), little, Fraction(1, 2)),
+        (1 + little, Fraction(-1, 2), Fraction(-1)),
+        exact(1, 1, 1),
+        exact(1, 2, 3),
+    )
+    times = [Fraction(-7, 2)]
+    found = enclosure.enclosed(near).motion(times, 30)
+    truth = TaylorSolution(near).motion(times, 30)
+    with mp.workdps(60):
+        e = [surd.form(mp.convert, mp.sqrt) for surd in curve_of(near).branches]
+        assert min(b - a for a, b in pairwise(e)) <= mpf(10) ** -11
+        assert apart(truth, found) <= 2 * mpf(10) ** -30
+
+
+def test_a_motion_in_a_plane_stays_the_pendulums() -> None:
+    """A body of the family whose x stays in a plane of it: a pendulum, and no curve of genus two."""
+    scene = built(exact(1, "1/2", 0), exact(0, 0, "1/3"), *BODIES["theta > 0"], Fraction(0))
+    assert curve(scene) is None
+    assert solution(scene).regime in ("planar-swing", "planar-turn")
+
+
+def test_the_angles_grow_at_the_rates_that_are_told() -> None:
+    """After p/q turns of both angles, nearly whole, x and y are nearly those of the start."""
+    scene = shipped()
+    with mp.workdps(40):
+        first, second = (elements(scene, 30)[n].value for n in ("first_rate", "second_rate"))
+        # A time after which the first angle has turned 199 times; the second all but 448 times.
+        turns, other = min(
+            ((n, second / first * n) for n in range(1, 200)),
+            key=lambda pair: abs(pair[1] - mp.nint(pair[1])),
+        )
+        t = 2 * mp.pi * turns / first
+        time = Fraction(*(int(n) for n in t.as_integer_ratio()))
+        left = 2 * mp.pi * abs(other - mp.nint(other))
+        motion = solution(scene).motion([Fraction(0), time, time / 2], 20)
+        x = motion["linear_impulse"]
+        assert mp.norm(list(x[1] - x[0])) <= 4 * left
+        assert mp.norm(list(x[2] - x[0])) >= mpf("0.01")
+
+
+# Broken twins.
+
+
+@pytest.mark.parametrize("other", range(5))
+def test_a_wrong_theta_characteristic_is_seen(monkeypatch: pytest.MonkeyPatch, other: int) -> None:
+    """theta of another branch point than a_1 in x_1: wrong by more than any tolerance, or NaN."""
+    scene = case("plain", "r alike")
+    own = curve_of(scene).places[0]
+    truth = TaylorSolution(scene).motion(TIMES[1:], 20)
+    broken = list(HALF_PERIODS)
+    broken[own] = HALF_PERIODS[other]
+    monkeypatch.setattr(enclosure, "HALF_PERIODS", tuple(broken))
+    with mp.workdps(30):
+        wrong = apart(truth, midpoints(scene))
+        # The right one among the five shows that the comparison lets through what it should.
+        assert (wrong <= mpf(10) ** -20) is (other == own)
+        assert other == own or not wrong <= mpf("0.01")
+
+
+def midpoints(scene: Scene) -> Motion:
+    """What the balls say at one precision, however wide they are."""
+    found = curve_of(scene)
+    with ctx.workprec(200):
+        rows = enclosure.WeberBalls(found).enclose(TIMES[1:], 200)
+    centre = np.frompyfunc(midpoint, 1, 1)
+    quantities = {name: centre(np.array(balls, dtype=object)) for name, balls in rows.items()}
+    return Motion(quantities, np.zeros(len(TIMES) - 1))
+
+
+def test_a_y_of_the_wrong_sign_is_seen() -> None:
+    """One d_k turned: x.y = 0 and Taylor's motion notice, and y.y does not."""
+    scene, times = case("plain", "theta < 0"), TIMES[1:3]
+    truth = TaylorSolution(scene).motion(times, 20)["angular_impulse"]
+    with mp.workdps(30):
+        twin = Sums(curve_of(scene))
+        for k in range(3):
+            twin._d[k] = -twin._d[k]
+            for row, right in zip(map(twin.at, times), truth, strict=True):
+                x, y = row
+                assert abs(mp.fdot(x, y)) >= mpf("0.001")
+                assert abs(mp.fdot(y, y) - mp.fdot(right, right)) <= mpf(10) ** -19
+                difference = [a - b for a, b in zip(y, right, strict=True)]
+                assert mp.norm(difference) >= mpf("0.001")
+            twin._d[k] = -twin._d[k]

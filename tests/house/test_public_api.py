@@ -1,0 +1,234 @@
+"""The names of `import taylor_verify`: plain typed functions, whatever else is imported."""
+
+from __future__ import annotations
+
+import inspect
+import pickle
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import pytest
+
+import taylor_verify
+from taylor_verify.batch.failure import Failed
+from taylor_verify.claims.claim import Finding
+from taylor_verify.cli import main
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.precision import Rung, rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.tradeoff.recommend import recommend
+from taylor_verify.studies.tradeoff.setting import setting
+
+NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
+FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
+PROMISED = {
+    *("load", "exact", "solve", "run", "run_many", "check", "explain", "tradeoff", "recommend"),
+    "claims",
+}
+SCENES = ("euler/spherical", "euler/rest")
+
+
+def program(script: str) -> str:
+    """Run a script in a process of its own and return what it prints."""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stderr == ""
+    assert done.returncode == 0
+    return done.stdout
+
+
+# What the names are.
+
+
+def test_the_public_names_are_those_of_the_design() -> None:
+    """No name is missing, and none was added without a word."""
+    assert set(NAMES) == PROMISED
+
+
+EVERY_MODULE = """
+import importlib, pkgutil, types, taylor_verify
+for module in pkgutil.walk_packages(taylor_verify.__path__, "taylor_verify."):
+    if not module.name.endswith("__main__") and ".outside" not in module.name:
+        importlib.import_module(module.name)
+names = set(taylor_verify.__all__) - {"__version__"}
+print(*sorted(n for n in names if type(getattr(taylor_verify, n)) is not types.FunctionType))
+"""
+
+
+def test_no_module_takes_the_name_of_a_function() -> None:
+    """Every public name is still a function after every module of the package was imported."""
+    assert program(EVERY_MODULE).strip() == ""
+
+
+@pytest.mark.parametrize(
+    "first", ["exact.route", "judge.judgement", "run", "check", "cli", "claims.ledger", "explain"]
+)
+def test_a_function_is_one_whatever_module_was_imported_first(first: str) -> None:
+    """The functions can be called after an import of any module, in either form of import."""
+    script = (
+        f"import taylor_verify.{first}\nimport taylor_verify, taylor_verify.exact.solution\n"
+        "scene = taylor_verify.load('euler/generic')\n"
+        "assert taylor_verify.exact(scene, [0, '1/2'], 20)['omega'].shape == (2, 3)\n"
+        "from taylor_verify import check, claims, exact, explain, load, run\n"
+        "from taylor_verify.exact import exact as same\n"
+        "assert exact is taylor_verify.exact is same and run is taylor_verify.run\n"
+        "assert callable(check) and callable(claims) and callable(explain) and callable(load)\n"
+    )
+    program(script)
+
+
+def test_importing_the_package_imports_no_library_of_numbers() -> None:
+    """`import taylor_verify` brings in neither an array nor an integrator, nor what is slow to import."""
+    loaded = set(program("import sys, taylor_verify; print(*sys.modules)").split())
+    slow = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich", "dataclasses", "multiprocessing"}
+    assert loaded.isdisjoint(slow)
+    assert {name for name in loaded if name.startswith("taylor_verify.")} == {
+        function.__module__ for function in FUNCTIONS
+    } | {"taylor_verify.records.version"}
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
+def test_a_function_is_typed(function: FunctionType) -> None:
+    """Each argument and the result have a type."""
+    signature = inspect.signature(function)
+    types = [argument.annotation for argument in signature.parameters.values()]
+    assert inspect.Signature.empty not in [*types, signature.return_annotation]
+    assert (Path(taylor_verify.__file__).with_name("py.typed")).is_file()
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
+def test_a_function_goes_to_another_process(function: FunctionType) -> None:
+    """Pickled and read again it is the same function."""
+    assert pickle.loads(pickle.dumps(function)) is function
+
+
+def test_the_version_is_that_of_the_distribution(capsys: pytest.CaptureFixture[str]) -> None:
+    """The package, the installed distribution and `--version` have one version."""
+    assert taylor_verify.__version__ == version("taylor-verify")
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code in {0, None}
+    assert capsys.readouterr().out == f"taylor-verify {taylor_verify.__version__}\n"
+
+
+# What they return.
+
+
+class Lost(Solver):
+    """A solver of one's own that raises, leaves, or is not there."""
+
+    name = "lost"
+
+    def __init__(self, lacks: str = "") -> None:
+        self.lacks = lacks
+
+    def unavailable(self, rung: Rung) -> str:
+        del rung
+        return self.lacks
+
+    def solve(self, problem: Problem) -> Trajectory:
+        del problem
+        sys.exit(3)
+
+
+def test_solve_returns_what_run_judges() -> None:
+    """The states of `solve` are those of the solver, one row for each time."""
+    found = taylor_verify.solve("euler/generic", "taylor", "f64")
+    assert found.outcome is Outcome.FINISHED
+    times = taylor_verify.load("euler/generic").clock.elapsed
+    assert found.quantities["omega"].shape == (len(times), 3)
+    (_, omega, *_) = taylor_verify.run("euler/generic", "taylor", "f64").verdicts
+    assert (omega.steps, omega.outcome) == (found.steps, found.outcome.value)
+
+
+@pytest.mark.parametrize(
+    ("scene", "solver", "outcome", "detail"),
+    [
+        ("euler/rest", Lost(), Outcome.RAISED, "SystemExit: 3"),
+        ("euler/rest", Lost("not here"), Outcome.UNSUITED, "not here"),
+        ("extremes/kirchhoff-linear-1e-150", "taylor", Outcome.NOT_REPRESENTABLE, ""),
+    ],
+)
+def test_a_run_that_cannot_begin_is_an_outcome(
+    scene: str, solver: Solver | str, outcome: Outcome, detail: str
+) -> None:
+    """`solve` raises nothing for it and has no states; `run` has a verdict with the same outcome."""
+    found = taylor_verify.solve(scene, solver, "f32")
+    assert found.outcome is outcome
+    assert detail in found.detail
+    assert found.quantities == {}
+    first, *_ = taylor_verify.run(scene, solver, "f32").verdicts
+    assert first.outcome == outcome.value
+    assert first.verdict is not Status.PASS
+
+
+def test_many_runs_are_in_the_order_asked_for() -> None:
+    """A judgement for each scene and, within it, each rung, equal to those of `run`."""
+    found = taylor_verify.run_many(SCENES, rungs=["f64", "f32"], jobs=2)
+    asked = [(scene, rung) for scene in SCENES for rung in ("f64", "f32")]
+    assert [(j.verdicts[0].scene, j.verdicts[0].rung) for j in found] == asked
+    one = taylor_verify.run(SCENES[0], "taylor", "f32")
+    rows = [[(v.quantity, v.verdict, v.max) for v in j.verdicts] for j in (found[1], one)]
+    assert rows[0] == rows[1]
+    assert taylor_verify.run_many([]) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "expected"),
+    [
+        ({"scenes": ["euler/rest", "euler/none"]}, Refused, "euler/none"),
+        ({"solver": "tailor"}, ValueError, "tailor"),
+        ({"rungs": ["f65"]}, ValueError, "f65"),
+        ({"jobs": 0}, ValueError, "expected jobs of at least 1, got 0"),
+    ],
+)
+def test_many_runs_refuse_a_wrong_call(
+    changed: dict[str, Any], error: type[Exception], expected: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What cannot be run is an error of the call, before anything runs."""
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("it ran"))
+    with pytest.raises(error, match=expected) as raised:
+        taylor_verify.run_many(**{"scenes": SCENES, **changed})
+    assert not isinstance(raised.value, Failed)
+
+
+def test_explain_returns_the_document_of_the_verb() -> None:
+    """The rung is a name or a Rung; the numbers are those of `explain --json`."""
+    found = taylor_verify.explain("euler/spherical", rung("f64"))
+    assert found["rung"] == "f64"
+    assert set(found) == set(explanation("euler/spherical", "f64"))
+    with pytest.raises(ValueError, match="f65"):
+        taylor_verify.explain("euler/spherical", "f65")
+
+
+def test_a_trade_off_measures_what_was_asked_for() -> None:
+    """The points are those of the settings; a number of repeats below one is refused."""
+    asked = [setting("taylor", rung("f32")), setting("taylor", rung("f64"))]
+    found = taylor_verify.tradeoff("euler/rest", asked, repeats=1)
+    assert [p.timed.setting for p in found.points] == asked
+    assert found.repeats == 1
+    with pytest.raises(ValueError, match="expected repeats of at least 1, got 0"):
+        taylor_verify.tradeoff("euler/rest", asked, repeats=0)
+
+
+def test_a_recommendation_has_the_arguments_of_its_room() -> None:
+    """The public function and that of the room ask for the same, by the same names."""
+    assert list(inspect.signature(taylor_verify.recommend).parameters) == list(
+        inspect.signature(recommend).parameters
+    )
+
+
+def test_claims_returns_findings() -> None:
+    """An id, or a part that ends one, gives the finding with its verdict; another one is refused."""
+    (found,) = taylor_verify.claims("hydromechanics 49 (11)")
+    assert isinstance(found, Finding)
+    assert found.is_as_recorded
+    with pytest.raises(ValueError, match="expected the id of a claim"):
+        taylor_verify.claims("hydromechanics 99")

@@ -1,0 +1,248 @@
+"""heyoka is an extra: without it all is there but the solver `taylor`, which says how to install it."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from pathlib import Path
+
+import pytest
+from lacking import lacking
+
+import taylor_verify
+from taylor_verify.solvers.taylor.package import INSTALL
+
+HEYOKA = ("heyoka",)
+# The environments of the other libraries have none of this package; `__main__` is a run.
+EVERY_MODULE = """
+import importlib, pkgutil, taylor_verify
+names = [m.name for m in pkgutil.walk_packages(taylor_verify.__path__, "taylor_verify.")]
+names = [n for n in names if ".outside" not in n and not n.endswith("__main__")]
+assert "taylor_verify.solvers.taylor.plain.clock" in names
+for name in names:
+    importlib.import_module(name)
+"""
+STILL = """
+import taylor_verify
+from taylor_verify import check, exact, explain, load, run, run_many, solve
+SCENE = load("euler/spherical")
+def still(problem):
+    return [problem.given.initial.omega] * len(problem.times)
+"""
+USES = {
+    "every module": EVERY_MODULE,
+    "load and exact": STILL + "assert exact(SCENE, [0, '1/2'], 20)['omega'].shape == (2, 3)",
+    "check of a callable": STILL + "assert check(SCENE, still)",
+    "check of a file": STILL
+    + """
+with open("mine.csv", "w") as file:
+    print("t,w1,w2,w3", file=file)
+    for t in SCENE.clock.instants:
+        print(*map(float, (t, *SCENE.initial.omega)), sep=",", file=file)
+assert check(SCENE, "mine.csv")
+""",
+    "another solver": STILL
+    + """
+assert run("euler/rest", "geometric:splitting?step=1/4").record is not None
+assert run("euler/rest", "scipy:DOP853").record is not None
+assert run("euler/generic", "closed-form:ellipj").record is not None
+""",
+    "runs that are unavailable": STILL
+    + f"""
+lack = {INSTALL!r}
+assert lack in solve(SCENE).detail
+for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f64"])]:
+    assert [v.verdict.value for v in found.verdicts] == ["unavailable"]
+    assert lack in found.verdicts[0].because
+    assert not found
+""",
+    "a trade-off": f"""
+from taylor_verify import tradeoff
+from taylor_verify.scenes.precision import rung
+from taylor_verify.trade.setting import setting
+names = ["taylor", "geometric:splitting?step=1/4"]
+found = tradeoff("euler/spherical", [setting(n, rung("f64")) for n in names], repeats=1)
+absent, present = found.document()["points"]
+assert (absent["standing"], present["standing"]) == ("not run", "sound")
+assert {INSTALL!r} in absent["because"]
+""",
+    "the ledger": "from taylor_verify import claims; assert claims('hydromechanics 49 (11)')",
+}
+
+
+@pytest.mark.parametrize("use", USES.values(), ids=USES)
+def test_what_works_without_heyoka(use: str, tmp_path: Path) -> None:
+    """Everything imports; scenes, truths, checks, other solvers and the ledger work."""
+    done = lacking(tmp_path, HEYOKA, "-c", use)
+    assert done.returncode == 0, done.stderr
+
+
+def test_an_import_at_the_top_of_a_module_is_seen(tmp_path: Path) -> None:
+    """The process above lacks heyoka indeed: a module that begins with its import does not load."""
+    (tmp_path / "twin.py").write_text("import heyoka as hy\n")
+    done = lacking(tmp_path, HEYOKA, "-c", EVERY_MODULE + "import twin")
+    assert done.returncode == 1
+    assert "ModuleNotFoundError: import of heyoka halted" in done.stderr
+
+
+def command(folder: Path, *words: str) -> tuple[int, str, str]:
+    """The exit status of a verb without heyoka, and its two streams."""
+    done = lacking(folder, HEYOKA, "-m", "taylor_verify", *words)
+    return done.returncode, done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("scenes", [["euler/generic"], ["euler"]])
+def test_run_names_the_command_that_installs_it(scenes: list[str], tmp_path: Path) -> None:
+    """The exit status is 2, and one sentence says what is missing, however many scenes were asked for."""
+    status, out, err = command(tmp_path, "run", *scenes, "--rung", "f64")
+    assert status == 2
+    (counts, why) = out.splitlines()
+    assert counts.endswith(" unavailable: not judged (exit status 2)")
+    assert why == f"nothing was judged: expected heyoka, got no such package: {INSTALL}"
+    assert err.splitlines()[-1] == f"taylor-verify: {why}"
+
+
+def test_the_plugin_advises_to_install_it(tmp_path: Path) -> None:
+    """A missing package is no matter of the rung."""
+    (tmp_path / "test_mine.py").write_text(
+        "def test_it(verify_solver):\n    verify_solver('euler/rest', 'taylor')\n"
+    )
+    done = lacking(tmp_path, HEYOKA, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_mine.py")
+    assert done.returncode == 1
+    assert f"expected heyoka, got no such package: {INSTALL}" in done.stdout
+    assert "mend     install the package that is missing" in done.stdout
+    assert "take another" not in done.stdout
+
+
+def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
+    """One that cannot be imported is named with the reason, and the same command mends it."""
+    (tmp_path / "heyoka.py").write_text("raise ImportError('no libLLVM')\n")
+    done = lacking(tmp_path, (), "-m", "taylor_verify", "run", "euler/rest")
+    assert done.returncode == 2
+    expected = f"expected heyoka, got one that cannot be imported (no libLLVM): {INSTALL}"
+    assert done.stdout.splitlines()[-1] == f"nothing was judged: {expected}"
+
+
+@pytest.mark.parametrize(
+    "option",
+    ["portraits", "controls", "prices", "reach", "tradeoff", "extremes", "worst", "growth"],
+)
+def test_nothing_is_published_without_heyoka(option: str, tmp_path: Path) -> None:
+    """What was measured with it stays as it is: exit status 2, one sentence, and no file."""
+    script = (
+        "import sys\nfrom pathlib import Path\nfrom taylor_verify.cli import folders, main\n"
+        "folders._checkout = lambda place: place\n"
+        f"sys.exit(main(['publish', '--{option}', '--from', 'reports']))"
+    )
+    done = lacking(tmp_path, HEYOKA, "-c", script)
+    assert done.returncode == 2
+    expected = f"expected heyoka, got no such package: {INSTALL} @ --{option}"
+    assert done.stderr.splitlines() == [f"taylor-verify: {expected}"]
+    assert not (tmp_path / "reports").exists()
+
+
+def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
+    """What is measured with heyoka alone is exit status 2 with the same sentence, and no traceback."""
+    script = (
+        "import sys\nfrom taylor_verify import cli\n"
+        "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"
+        " from taylor_verify.scenes.precision import rung\n batch_width(rung('f64'))\n"
+        "import taylor_verify.cli.verbs as verbs\nverbs.list_all = act\n"
+        "sys.exit(cli.main(['list']))"
+    )
+    done = lacking(tmp_path, HEYOKA, "-c", script)
+    assert done.returncode == 2
+    told = done.stderr.splitlines()[-1]
+    assert told == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
+
+
+def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:
+    """`list`, `question`, `exact` and `check` have exit status 0."""
+    assert command(tmp_path, "list")[0] == 0
+    status, question, _ = command(tmp_path, "question", "euler/spherical", "--csv")
+    assert status == 0
+    header, *rows = question.splitlines()
+    omega = [str(float(w)) for w in taylor_verify.load("euler/spherical").initial.omega]
+    rows = [",".join([row.split(",")[0], *omega]) for row in rows]
+    (tmp_path / "mine.csv").write_text("\n".join([header, *rows]))
+    assert command(tmp_path, "check", "mine.csv", "--scene", "euler/spherical")[0] == 0
+    assert command(tmp_path, "exact", "euler/generic", "--at", "1")[0] == 0
+
+
+def test_a_program_of_a_user_is_judged(tmp_path: Path) -> None:
+    """`process:` needs no heyoka."""
+    rk4 = Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
+    solver = f"process:{shlex.join([sys.executable, str(rk4), '0.05'])}"
+    status, out, _ = command(tmp_path, "run", "euler/spherical", "--solver", solver)
+    assert status == 0, out
+
+
+@pytest.mark.parametrize("scene", ["euler/with-attitude", "kirchhoff/constant-loads"])
+def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
+    """Equations, orbit, truth and bounds are those of the exact motion, and a warning says so."""
+    status, out, err = command(tmp_path, "explain", scene, "--json")
+    assert status == 0, err
+    found = json.loads(out)
+    (warning,) = found["warnings"]
+    assert warning.startswith(f"expected heyoka, got no such package: {INSTALL}; the gates are")
+    with_heyoka = json.loads(json.dumps(taylor_verify.explain(scene)))
+    same = {"equations", "parameters", "units", "regime", "route", "truth_digits", "orbit"}
+    assert {name: found[name] for name in same} == {name: with_heyoka[name] for name in same}
+    assert (found["cost"]["steps"], found["cost"]["products"] > 0) == (None, True)
+    gates = {gate["quantity"]: gate for gate in found["gates"]}
+    assert set(gates) == {gate["quantity"] for gate in with_heyoka["gates"]}
+    for gate in gates.values():
+        assert gate["verdict"] == "pass"
+        # A row that is right is a rounding off, and a rounding is part of every bound.
+        assert 0 <= gate["max"] <= gate["attainable"]
+        assert gate["bound"] == pytest.approx(10 * gate["attainable"])
+    text = command(tmp_path, "explain", scene)[1]
+    assert INSTALL in " ".join(text.split())
+    assert "steps of order" not in text
+
+
+# What another project writes. The fixture runs the solver of the project, and no heyoka.
+SESSION = """
+def still(problem):
+    return [problem.given.initial.omega] * len(problem.times)
+
+def test_callable(verify_solver):
+    verify_solver("euler/spherical", still)
+
+def test_wrong(verify_solver):
+    verify_solver("euler/generic", still)
+
+def test_default(verify_solver):
+    verify_solver("euler/generic", "taylor")
+"""
+
+
+def test_the_plugin_judges_a_solver_of_ones_own(tmp_path: Path) -> None:
+    """A right solver passes, a wrong one fails, and `taylor` fails with the command that installs it."""
+    (tmp_path / "test_mine.py").write_text(SESSION)
+    plugin = (
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:taylor-verify",
+        "-p",
+        "taylor_verify.testing.plugin",
+    )
+    done = lacking(tmp_path, HEYOKA, "-m", "pytest", *plugin, "-rA")
+    outcomes = dict(line.split()[:2][::-1] for line in done.stdout.splitlines() if "py::" in line)
+    assert outcomes == {
+        "test_mine.py::test_callable": "PASSED",
+        "test_mine.py::test_wrong": "FAILED",
+        "test_mine.py::test_default": "FAILED",
+    }, done.stdout
+    assert "pip install 'taylor-verify[taylor]'" in done.stdout
+
+
+@pytest.mark.parametrize("name", ["check of a file", "check of a callable", "load and exact"])
+def test_no_library_of_a_solver_is_imported(name: str, tmp_path: Path) -> None:
+    """heyoka, matplotlib and SciPy are there, and are not imported to check or to tell the truth."""
+    slow = {"heyoka", "matplotlib", "scipy", "pyarrow", "sympy"}
+    use = f"{USES[name]}\nimport sys\nprint(sorted({slow!r} & set(sys.modules)))"
+    done = lacking(tmp_path, (), "-c", use)
+    assert (done.returncode, done.stdout) == (0, "[]\n"), done.stderr

@@ -1,0 +1,397 @@
+"""The floor: roundings component by component, from anywhere on the orbit, in the units of the problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from math import log
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import libmp, mp
+from samples import CLEBSCH, TENSOR, vector
+from samples import LOADED as SOLID
+
+from taylor_verify.exact.conditioning import gathering
+from taylor_verify.exact.conditioning.condition import transition
+from taylor_verify.exact.conditioning.gathering import Path, path
+from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.conditioning.variation import stepped
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.judge.errors.state import state_errors
+from taylor_verify.judge.floor import attainable
+from taylor_verify.judge.floor.attainable import Floor, floor
+from taylor_verify.judge.floor.magnitude import Magnitude, roundings
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.models.problem import adopt
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.mpfr import in_mpfr
+from taylor_verify.scenes.precision import power_of_two, rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector
+from taylor_verify.solvers.taylor.plain.body import Plain
+from taylor_verify.studies.traps.measured import free
+
+Array = np.ndarray[Any, Any]
+U = 2.0**-53
+# The rate at which an error grows beside the middle axis of moments 1, 2, 3.
+RATE = 3**-0.5
+
+
+IMPULSE = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), centre=vector(1, 2, 3))
+
+
+def scene(
+    body: RigidBody | ImmersedBody, start: Spin | Impulse, end: float, samples: int, *track: str
+) -> Scene:
+    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
+    times = tuple(Fraction(end) * Fraction(k, samples - 1) for k in range(samples))
+    return Scene("here", "", model, frozenset(track), body, start, Clock(Fraction(0), times))
+
+
+RIGID = scene(RigidBody(TENSOR), Spin(vector("0.3", 1, "0.2")), 4, 5, "attitude")
+LOADED = scene(SOLID, IMPULSE, 4, 5, "attitude", "centre")
+REVOLVED = scene(CLEBSCH, IMPULSE, 4, 5, "attitude", "centre")
+
+
+# The magnitude of terms.
+
+
+SIZES = st.floats(0, 1e3)
+
+
+@given(SIZES, SIZES, st.floats(-1e3, 1e3))
+def test_nothing_cancels_in_a_magnitude(a: float, b: float, c: float) -> None:
+    """a - b has the size |a| + |b|, a factor that is a number its own, and -a that of a."""
+    one, other = Magnitude(a), Magnitude(b)
+    assert (one - other).size == (one + other).size == a + b
+    assert (c * one).size == (one * c).size == (-one * -c).size == abs(c) * a
+    assert (c - one).size == (one - c).size == a + abs(c)
+    assert (np.float64(c) * one).size == abs(c) * a
+
+
+@pytest.mark.parametrize("start", [(0.25, 1.0, -0.5), (0.0, 0.0, 2.0), (-3.0, 0.125, 0.0)])
+def test_terms_of_a_full_tensor_are_added_up(start: tuple[float, ...]) -> None:
+    """S is the sum of |deviation_ij H_j H_k| over the terms of H x K H, written out by hand."""
+    asked = replace(RIGID, initial=Spin(tuple(Fraction(w) for w in start)), track=frozenset())
+    found = _rounded(asked, steps=4)
+    momentum = np.array(TENSOR, dtype=float) @ start
+    K = np.array(tensors.inverse(TENSOR), dtype=float)
+    terms = np.abs(K - K[2, 2] * np.eye(3)) @ np.abs(momentum)
+    H = np.abs(momentum)
+    S = np.array([H[j] * terms[k] + H[k] * terms[j] for j, k in ((1, 2), (2, 0), (0, 1))])
+    along = [np.linalg.norm(H), np.linalg.norm(S)]
+    # One length of a step for all components, and at most the span over the steps.
+    h = (found[0] - H) @ S / (S @ S)
+    assert 0 < h <= 1
+    assert np.abs(found[0] - H - h * S).max() <= 1e-12 * (along[0] + along[1])
+
+
+def _rounded(asked: Scene, steps: int) -> Array:
+    """r of every component in the scene's own units."""
+    orbit = path(asked)
+    units = [float(orbit.units[block]) for block in orbit.blocks for _ in range(3)]
+    return roundings(asked, orbit, 53, steps) * units
+
+
+def test_what_cancels_in_the_data_alone_is_known() -> None:
+    """In principal axes a rate is one product: beside an axis all that is small stays small."""
+    body = RigidBody(tensors.diagonal(vector(1, 2, 3)))
+    tiny = Fraction(1, 10**9)
+    asked = scene(body, Spin((tiny, Fraction(1), Fraction(0))), 10, 3)
+    found = _rounded(asked, steps=40)
+    # H1' = -H2 H3/6, H3' = -H1 H2/2 with steps of 1/4: never more than both components added up.
+    momenta = np.abs(solution(asked).motion(path(asked).elapsed, 20)["omega"].astype(float))
+    assert (found[:, [0, 2]] <= 3 * momenta[:, [0, 2]].sum(axis=1, keepdims=True)).all()
+    assert (found[:, 1] >= 1).all()
+
+
+# How errors add up.
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
+def test_one_error_is_carried_as_the_exact_motion_carries_it(asked: Scene) -> None:
+    """A component moved by 10^-20 on the way, and the rest of the way by the Taylor route."""
+    orbit = path(asked)
+    # Of the times some tenth of the span from the start, and the last.
+    place, end = 7, len(orbit.elapsed) - 1
+    here = solution(asked, "taylor").motion([orbit.elapsed[place]], 60)
+    rest = orbit.elapsed[end] - orbit.elapsed[place]
+    for component in range(3 * len(_momenta(orbit))):
+        errors = np.zeros((len(orbit.elapsed), 3 * len(orbit.blocks)))
+        errors[place, component] = 1.0
+        gathered = {name: rows[end] for name, rows in orbit.gathered(errors).items()}
+        moved = _moved(asked, here, component, float(orbit.units[_momenta(orbit)[component // 3]]))
+        for name, change in _change(asked, here, moved, rest).items():
+            expected = change / float(orbit.units[name])
+            # The variational equations are integrated to four digits.
+            assert gathered[name] == pytest.approx(expected, rel=1e-3, abs=1e-6)
+
+
+def _momenta(orbit: Path) -> tuple[str, ...]:
+    return tuple(block for block in orbit.blocks if block not in ("attitude", "centre"))
+
+
+TINY = Fraction(1, 10**20)
+
+
+def _state(asked: Scene, here: Motion) -> tuple[Vector, Vector]:
+    rows = {name: _rational(values[0]) for name, values in here.quantities.items()}
+    if "omega" in rows:
+        return tensors.apply(asked.body.inertia, rows["omega"]), ()
+    return rows["linear_impulse"] + rows["angular_impulse"], rows["centre"]
+
+
+def _rational(values: Array) -> Vector:
+    return tuple(
+        Fraction(*(int(part) for part in libmp.to_rational(value._mpf_))) for value in values.flat
+    )
+
+
+def _started(asked: Scene, momenta: Vector) -> Scene:
+    """From these momenta in the frame of the body, which then leads from the identity."""
+    if isinstance(asked.body, RigidBody):
+        return replace(asked, initial=Spin(tensors.apply(asked.body.inverse_inertia, momenta)))
+    return replace(asked, initial=Impulse(momenta[:3], momenta[3:]))
+
+
+def _moved(asked: Scene, here: Motion, component: int, unit: float) -> tuple[Scene, Scene]:
+    momenta, _ = _state(asked, here)
+    other = tuple(m + TINY * Fraction(unit) * (i == component) for i, m in enumerate(momenta))
+    return _started(asked, momenta), _started(asked, other)
+
+
+def _change(
+    asked: Scene, here: Motion, starts: tuple[Scene, Scene], rest: Fraction
+) -> dict[str, float]:
+    """|change|/TINY of every quantity; norms do not know which way the frame looked at first."""
+    del here
+    one, other = (TaylorSolution(start).evaluate([rest], 60) for start in starts)
+    with mp.workdps(60):
+        found = {}
+        for name in one:
+            difference = (other[name] - one[name]) / mp.convert(TINY)
+            # A small turn moves a matrix by the root of two times its angle.
+            size = mp.norm(list(difference.flat)) / (mp.sqrt(2) if name == "attitude" else 1)
+            found[name] = float(size)
+    return found
+
+
+@pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
+def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
+    """Integers from differences and factors of float64 give one answer, attitude and centre too."""
+    times = list(path(asked).elapsed)
+    found = stepped(asked, solution(asked), momentum(asked).units, times)
+    assert found is not None
+    routes = gathering._sharp(asked, times), gathering._ByIntegration.of(asked, times, found)
+    draw = np.random.default_rng(1)
+    errors = draw.uniform(0, 1, (len(times), 3 * len(routes[0].blocks)))
+    one, other = (_in_scene_units(route, errors) for route in routes)
+    assert set(one) == set(other)
+    for name, rows in one.items():
+        # The variational equations are integrated to four digits.
+        assert np.abs(rows / other[name] - 1).max() <= 1e-3
+
+
+def _in_scene_units(orbit: Path, errors: Array) -> dict[str, Array]:
+    units = [float(orbit.units[block]) for block in orbit.blocks for _ in range(3)]
+    found = orbit.gathered(errors / units)
+    return {name: rows * float(orbit.units[name]) for name, rows in found.items()}
+
+
+def test_squares_of_independent_errors_are_added() -> None:
+    """All errors together make the root of the sum of squares of what each makes alone."""
+    orbit = path(RIGID)
+    shape = len(orbit.elapsed), 3 * len(orbit.blocks)
+    draw = np.random.default_rng(2)
+    places = [(int(draw.integers(shape[0])), int(draw.integers(shape[1]))) for _ in range(6)]
+    together, squares = np.zeros(shape), {}
+    for place in set(places):
+        alone = np.zeros(shape)
+        together[place] = alone[place] = draw.uniform(0.1, 1)
+        for name, rows in orbit.gathered(alone).items():
+            squares[name] = squares.get(name, 0) + rows**2
+    for name, rows in orbit.gathered(together).items():
+        assert np.allclose(rows**2, squares[name], rtol=1e-12, atol=1e-24)
+
+
+def test_an_error_of_every_component_is_between_one_norm_and_the_root_of_three() -> None:
+    """Unit errors at the start alone: |Phi|_2 <= result <= sqrt(3) |Phi|_2, by the table of norms."""
+    orbit = path(RIGID)
+    errors = np.zeros((len(orbit.elapsed), 6))
+    errors[0, :3] = 1
+    norms = transition(RIGID, orbit.elapsed).norms("momentum", "momentum")[:, 0]
+    found = orbit.gathered(errors)["momentum"]
+    assert (norms * (1 - 1e-3) <= found).all()
+    assert (found <= 3**0.5 * norms * (1 + 1e-3)).all()
+
+
+# The floor.
+
+
+def _floor(asked: Scene, steps: int) -> Array:
+    """The floor of the state at the samples."""
+    found, truth = _floor_of(asked, steps)
+    (errors, *_) = state_errors(asked, truth, truth)
+    return found.of_state(errors)
+
+
+def _floor_of(asked: Scene, steps: int) -> tuple[Floor, Motion]:
+    truth = solution(asked).motion(asked.clock.elapsed, 25)
+    return floor(asked, asked, Fraction(1, 2**53), steps), truth
+
+
+def edge(d: float, samples: int, tumbles: float = 1.0) -> Scene:
+    """(d, 1, 0) with moments 1, 2, 3, until so many times as long as it takes to the first tumble."""
+    return free("edge", (d, 1.0, 0.0), tumbles * log(1 / d) / RATE, samples)
+
+
+@pytest.mark.parametrize("d", [1e-8, 1e-12])
+def test_beside_the_unstable_axis_principal_axes_lose_nothing(d: float) -> None:
+    """Until the first tumble the floor is that of a walk of some roundings: not u/d, but u."""
+    steps = 100
+    found = _floor(edge(d, 31), steps)
+    assert found.max() <= 100 * U * steps**0.5
+    assert found.max() <= 1e-2 * U / d
+
+
+def test_in_other_axes_a_rounding_of_the_large_components_is_one_of_the_small() -> None:
+    """The same body in a full tensor: d is a difference of large numbers, and the floor u/d or so."""
+    turned = load("extremes/euler-unstable-axis-turned")
+    found = _floor(turned, 100)
+    # At the first tumble, t = 32: u exp(0.577 t), from every step.
+    assert found[:20].max() >= 0.1 * U / 1e-8
+
+
+def test_after_a_tumble_the_next_passage_magnifies() -> None:
+    """Components of size one are rounded in the tumble; after it that grows at the classical rate."""
+    asked = edge(1e-12, 61, tumbles=1.5)
+    found, times = _floor(asked, 100), [float(t) for t in asked.clock.elapsed]
+    assert log(found[60] / found[50]) == pytest.approx(RATE * (times[60] - times[50]), rel=0.05)
+    # Until the tumble it is a walk, though the same rate rules there.
+    assert found[30] / found[10] <= 4
+
+
+@pytest.mark.parametrize(("shift", "model"), [(-400, "euler"), (400, "euler"), (-400, "kirchhoff")])
+def test_floor_does_not_know_the_units(shift: int, model: str) -> None:
+    """omega or impulses times a power of two, far out: the same floors of state and invariants.
+
+    A RuntimeWarning of an overflow would be an error of this test.
+    """
+    asked = replace(RIGID, track=frozenset()) if model == "euler" else REVOLVED
+    factor = power_of_two(shift)
+    if isinstance(asked.initial, Spin):
+        start: Spin | Impulse = Spin(tensors.scaled(factor, asked.initial.omega))
+    else:
+        x, y = (tensors.scaled(factor, v) for v in (asked.initial.linear, asked.initial.angular))
+        start = replace(asked.initial, linear=x, angular=y)
+    times = tuple(t / factor for t in asked.clock.instants)
+    scaled = replace(asked, initial=start, clock=Clock(Fraction(0), times))
+    for one, other in zip(_all_floors(asked), _all_floors(scaled), strict=True):
+        assert np.allclose(one, other, rtol=1e-9, atol=0)
+        assert (one > 0).all()
+
+
+def _all_floors(asked: Scene) -> list[Array]:
+    from taylor_verify.exact.invariants import invariants
+
+    found, truth = _floor_of(asked, 40)
+    floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]
+    quick = in_mpfr(truth)
+    return floors + [found.of_invariant(i, quick, i.scale(truth)) for i in invariants(asked)]
+
+
+def returning(samples: int) -> Scene:
+    """A body that comes back to its unstable axis every 27 units, six times."""
+    return free("returning", (1e-6, 1.0, 2.5e-7), 165.0, samples)
+
+
+def test_floor_does_not_depend_on_where_the_samples_lie() -> None:
+    """With 3, 11, 41 and 161 samples of one run the floors at the common instants are the same."""
+    found = {samples: _floor(returning(samples), 240) for samples in (3, 11, 41, 161)}
+    for samples, values in found.items():
+        middle, end = values[(samples - 1) // 2], values[-1]
+        # Roundings are gathered at other times, radian by radian: within a factor of two.
+        assert 0.5 <= middle / found[161][80] <= 2
+        assert 0.5 <= end / found[161][160] <= 2
+
+
+def in_step(samples: int) -> Scene:
+    """Moments a million apart and near the separatrix: samples at 7.504 periods see one phase of it."""
+    moments = (Fraction(1, 10**6), Fraction(19, 20), Fraction(1))
+    inertia = tuple(tuple(I * (i == j) for j in range(3)) for i, I in enumerate(moments))
+    spin = Spin((Fraction(0), Fraction(1), Fraction(1, 10)))
+    times = tuple(Fraction(20 * k, samples - 1) for k in range(samples))
+    plain = free("in step", (0.0, 1.0, 0.0), 20.0, 3)
+    return replace(plain, body=RigidBody(inertia), initial=spin, clock=Clock(Fraction(0), times))
+
+
+def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Samples that meet a motion in one phase find the floor that every radian has; alone, a tenth."""
+    asked = in_step(41)
+    found = _floor(asked, 14505)
+    monkeypatch.setattr(gathering, "few", lambda elapsed: list(elapsed))
+    alone = _floor_again(asked, 14505)
+    monkeypatch.setattr(gathering, "_REGULAR", 0)
+    resolved = _floor_again(asked, 14505)
+    # A few dozen times stand for a thousand whose parts differ a hundredfold: within the gates' factor.
+    assert (found[1:] >= 0.2 * resolved[1:]).all()
+    assert (found[1:] <= 10 * resolved[1:]).all()
+    assert (alone[1:] <= 0.3 * resolved[1:]).all()
+
+
+def _floor_again(asked: Scene, steps: int) -> Array:
+    """The floor without what is remembered of the orbit, before and after."""
+    attainable._orbit.cache_clear()
+    try:
+        return _floor(asked, steps)
+    finally:
+        attainable._orbit.cache_clear()
+
+
+@pytest.mark.parametrize("samples", [3, 12, 41])
+def test_sound_driver_passes_however_it_is_sampled(samples: int) -> None:
+    """What the passages of the unstable axis do to roundings is in the floor, seen or not."""
+    verdicts = run(returning(samples), "taylor", "f64").verdicts
+    assert {v.verdict for v in verdicts} == {Status.PASS}
+
+
+# A broken twin.
+
+
+def plain(asked: Scene) -> tuple[Verdict, ...]:
+    """heyoka without a bound on its step, on the very data."""
+    problem = adopt(asked, rung("f64"), asked.clock.instants)
+    return judgement(problem, Plain(), Plain().solve(problem)).verdicts
+
+
+def driver(asked: Scene) -> tuple[Verdict, ...]:
+    return run(asked, "taylor", "f64").verdicts
+
+
+@pytest.mark.parametrize("d", [1e-8, 1e-12])
+def test_a_step_without_a_bound_is_seen_beside_the_unstable_axis(d: float) -> None:
+    """An absolute error control loses d: omega fails, energy and momentum pass; the driver passes all."""
+    asked = edge(d, 11, tumbles=1.1)
+    omega, *conserved = plain(asked)
+    assert omega.verdict is Status.FAIL
+    assert {v.verdict for v in conserved} == {Status.PASS}
+    assert {v.verdict for v in driver(asked)} == {Status.PASS}
+
+
+@pytest.mark.parametrize("solve", [plain, driver])
+def test_both_pass_where_nothing_is_small(solve: Callable[[Scene], tuple[Verdict, ...]]) -> None:
+    """On a generic orbit the step needs no bound: what fails above is the small component alone."""
+    assert {v.verdict for v in solve(free("generic", (0.3, 1.0, 0.2), 20.0))} == {Status.PASS}

@@ -1,0 +1,445 @@
+"""Likely causes: each defect has its own name, and sound integrators have none."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from first_order import engine, in_space_axes, none
+from scipy.spatial.transform import Rotation
+from trajectories import QUATERNION, VECTORS, Columns, columns_at, write_csv
+from wrong_dynamics import (
+    Array,
+    Numbers,
+    Rate,
+    Turn,
+    euler,
+    material,
+    runge_kutta,
+    simulated,
+    turned,
+    turned_by_space,
+)
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+FREE, FULL = "euler/with-attitude", "euler/full-tensor"
+FORCED, FLUID, LOADED = "euler/moment-oblique", "kirchhoff/general-body", "kirchhoff/constant-loads"
+
+
+def judged(path: Path, scene: str | Scene, columns: Columns) -> FileJudgement:
+    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def names(path: Path, scene: str | Scene, columns: Columns) -> set[str]:
+    """The names of the causes of a file that is judged."""
+    return {cause.name for cause in judged(path, scene, columns).causes}
+
+
+def sentences(scene: Scene, columns: Columns) -> dict[str, str]:
+    """The names and sentences of the causes of an answer whose states failed, whatever their errors."""
+    with np.errstate(all="ignore"):
+        causes = likely_causes(material(scene, columns), scene)
+    return {cause.name: cause.sentence for cause in causes}
+
+
+# Wrong equations of the states.
+
+
+def cut(n: Numbers) -> None:
+    n.tensor = np.diag(np.diag(n.tensor))
+
+
+def cut_inverse(n: Numbers) -> None:
+    n.tensor = np.diag(1 / np.diag(np.linalg.inv(n.tensor)))
+
+
+def eigenvalues_alone(n: Numbers) -> None:
+    n.tensor = np.diag(np.linalg.eigvalsh(n.tensor)[::-1])
+
+
+def axes_backwards(n: Numbers) -> None:
+    moments, axes = np.linalg.eigh(n.tensor)
+    n.tensor = axes.T @ np.diag(moments) @ axes
+
+
+def reordered(n: Numbers) -> None:
+    n.tensor = n.tensor[::-1, ::-1].copy()
+
+
+def narrowed(n: Numbers) -> None:
+    n.tensor = n.tensor.astype(np.float32).astype(float)
+
+
+def slightly_other(n: Numbers) -> None:
+    change = np.random.default_rng(1).standard_normal(n.tensor.shape)
+    n.tensor = n.tensor + 4e-9 * (change + change.T)
+
+
+def unloaded(n: Numbers) -> None:
+    n.load = 0 * n.load
+
+
+def otherwise_loaded(n: Numbers) -> None:
+    n.load = -n.load
+
+
+def uncoupled(n: Numbers) -> None:
+    n.tensor = n.tensor.copy()
+    n.tensor[:3, 3:] = n.tensor[3:, :3] = 0
+
+
+@pytest.mark.parametrize(
+    ("scene", "change", "name"),
+    [
+        (FULL, cut, "inertia tensor cut to its diagonal"),
+        (FULL, cut_inverse, "inertia tensor cut to its diagonal"),
+        (FULL, eigenvalues_alone, "principal axes dropped"),
+        (FULL, axes_backwards, "principal axes turned the wrong way"),
+        (FREE, reordered, "principal moments in another order"),
+        (FULL, narrowed, "inertia in float32"),
+        (FULL, slightly_other, "another inertia tensor"),
+        (FREE, slightly_other, "another inertia tensor"),
+        (FORCED, unloaded, "moment left out"),
+        (FORCED, otherwise_loaded, "moment with the other sign"),
+        (FLUID, cut, "energy cut to its diagonal"),
+        (FLUID, uncoupled, "coupling left out"),
+        (FLUID, slightly_other, "other coefficients of the energy"),
+        (LOADED, unloaded, "loads left out"),
+        (LOADED, otherwise_loaded, "loads with the other sign"),
+    ],
+)
+def test_another_body_or_load_is_named(
+    scene: str, change: Callable[[Numbers], None], name: str
+) -> None:
+    """A sound integrator of a misread body has the name of the misreading, and no other."""
+    assert set(sentences(load(scene), simulated(load(scene), change=change))) == {name}
+
+
+def weighted(
+    turning: float = 1, gyroscopic: float = 1, munk: float = 1, damping: float = 0
+) -> Rate:
+    """Kirchhoff's equations with weights of their terms, and damping."""
+
+    def rate(z: Array, q: Array, n: Numbers) -> Array:
+        x, y, velocity = z[:3], z[3:], n.tensor @ z
+        U, W = velocity[:3], velocity[3:]
+        y_rate = gyroscopic * np.cross(y, W) + munk * np.cross(x, U)
+        return np.concatenate([turning * np.cross(x, W), y_rate]) - damping * z + n.load
+
+    return rate
+
+
+def back(w: Array, q: Array, n: Numbers) -> Array:
+    return -euler(w, q, n)
+
+
+def damped(w: Array, q: Array, n: Numbers) -> Array:
+    return euler(w, q, n) - 0.01 * w
+
+
+def dragged(w: Array, q: Array, n: Numbers) -> Array:
+    return euler(w, q, n) - 0.01 * np.linalg.solve(n.tensor, w)
+
+
+def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
+    return -0.05 * w
+
+
+@pytest.mark.parametrize(
+    ("scene", "rate", "name"),
+    [
+        (FREE, back, "gyroscopic term with the other sign"),
+        (FREE, damped, "damping left on"),
+        (FREE, dragged, "damping left on"),
+        (FREE, damped_alone, "no gyroscopic term and damping left on"),
+        (FLUID, weighted(munk=0), "no Munk moment"),
+        (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
+        (FLUID, weighted(gyroscopic=0), "no gyroscopic term"),
+        (FLUID, weighted(-1, -1, -1), "motion back in time"),
+        (FLUID, weighted(damping=0.02), "damping left on"),
+    ],
+)
+def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str) -> None:
+    """A term left out, of the other sign, or one too many has its name, and no other."""
+    assert set(sentences(load(scene), simulated(load(scene), rate))) == {name}
+
+
+def test_the_sentence_has_the_number() -> None:
+    """The constant of a damping and the difference of a body are those that the simulator had."""
+    (sentence,) = sentences(load(FREE), simulated(load(FREE), damped)).values()
+    assert "with c = 0.01;" in sentence
+    (sentence,) = sentences(load(FULL), simulated(load(FULL), change=stiffer)).values()
+    assert "differs by 3e-07 (relative), its axes turned by" in sentence
+
+
+def stiffer(n: Numbers) -> None:
+    """A change of 3e-7 of the tensor's size, at right angles to the tensor: its scale does not show."""
+    change = np.diag([1.0, -2.0, 0.5])
+    change -= n.tensor * np.sum(change * n.tensor) / np.sum(n.tensor**2)
+    n.tensor = n.tensor + 3e-7 * change * np.linalg.norm(n.tensor) / np.linalg.norm(change)
+
+
+def test_a_moment_in_space_axes_is_named() -> None:
+    """A moment that stands still in space is told by the file's own attitude."""
+
+    def rate(w: Array, q: Array, n: Numbers) -> Array:
+        R = Rotation.from_quat(np.roll(q / np.linalg.norm(q), -1)).as_matrix()
+        return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w) + R.T @ n.load)
+
+    scene = load(FORCED)
+    assert set(sentences(scene, simulated(scene, rate))) == {"moment in space axes"}
+
+
+# Attitudes and axes.
+
+
+@pytest.mark.parametrize(
+    ("turn", "name"),
+    [
+        (turned_by_space, "attitude kinematics in the wrong axes"),
+        (lambda q, w: -turned(q, w), "attitude turned backwards"),
+        (lambda q, w: 0 * q, "attitude stands still"),
+        (lambda q, w: 2 * turned(q, w), "attitude turns twice as fast"),
+        (lambda q, w: 0.5 * turned(q, w), "attitude turns half as fast"),
+    ],
+)
+@pytest.mark.parametrize("rate", [euler, damped])
+def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
+    """A wrong turn of the attitude has its name, beside whatever is wrong with omega."""
+    found = set(sentences(load(FREE), simulated(load(FREE), rate, turn)))
+    assert found == {name} | ({"damping left on"} if rate is damped else set())
+
+
+def conjugate(columns: Columns) -> Columns:
+    return columns | {name: [-v for v in columns[name]] for name in QUATERNION[1:]}
+
+
+def scalar_last(columns: Columns) -> Columns:
+    names = QUATERNION[1:] + QUATERNION[:1]
+    return columns | dict(zip(QUATERNION, (columns[name] for name in names), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "expected"),
+    [
+        (in_space_axes, {"omega in space axes"}),
+        (conjugate, {"transposed attitude"}),
+        (scalar_last, {"scalar last"}),
+        (lambda c: conjugate(in_space_axes(c)), {"omega in space axes", "transposed attitude"}),
+        (lambda c: scalar_last(conjugate(c)), {"scalar last and transposed attitude"}),
+    ],
+)
+def test_conventions_are_named_beside_wrong_dynamics(
+    spoil: Callable[[Columns], Columns], expected: set[str], tmp_path: Path
+) -> None:
+    """With rows so far apart that the second is wrong already, the row at the start tells the axes."""
+    columns = spoil(engine(FREE, none, 0.01, 41, 50))
+    assert names(tmp_path, FREE, columns) == expected | {"no gyroscopic term"}
+
+
+def test_omega_in_space_axes_is_told_without_the_start() -> None:
+    """From an attitude of 1 the start is right in both axes: the motion back in time tells them apart."""
+    scene = load(FREE)
+    scene = replace(
+        scene, initial=replace(scene.initial, attitude=(Fraction(1), *[Fraction(0)] * 3))
+    )
+    columns = in_space_axes(simulated(scene, back))
+    found = set(sentences(scene, columns))
+    assert found == {"omega in space axes", "gyroscopic term with the other sign"}
+
+
+# Rows.
+
+
+def one_up(sound: Columns) -> Columns:
+    return {k: v[:-1] if k == "t" else v[1:] for k, v in sound.items()}
+
+
+def one_down(sound: Columns) -> Columns:
+    return {k: v if k == "t" else [v[0], *v[:-1]] for k, v in sound.items()}
+
+
+@pytest.mark.parametrize(("spoil", "row"), [(one_up, "k+1"), (one_down, "k-1")])
+def test_one_row_off_is_named(
+    spoil: Callable[[Columns], Columns], row: str, tmp_path: Path
+) -> None:
+    """Rows that hold the state of the next or of the last row are told apart."""
+    scene = load(FREE)
+    causes = judged(tmp_path, FREE, spoil(columns_at(scene, scene.clock.instants))).causes
+    assert {cause.name for cause in causes} == {"one row off"}
+    assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
+
+
+@pytest.mark.parametrize(("early", "expected"), [(100, {"first row stepped already"}), (77, set())])
+def test_a_first_step_too_many_is_named(early: int, expected: set[str], tmp_path: Path) -> None:
+    """A state that is a step early is one if whole steps make a row; rows are 1/2 apart here."""
+    scene = load(FREE)
+    columns = columns_at(scene, [t + Fraction(1, early) for t in scene.clock.instants])
+    columns["t"] = [float(t) for t in scene.clock.instants]
+    assert names(tmp_path, FREE, columns) == expected
+
+
+# Numbers.
+
+
+def as_float32(columns: Columns) -> Columns:
+    return {
+        name: values if name == "t" else np.float32(values).astype(float).tolist()
+        for name, values in columns.items()
+    }
+
+
+@pytest.mark.parametrize("every", [1, 5])
+def test_a_state_in_float32_is_named(every: int, tmp_path: Path) -> None:
+    """Rounding every step to 24 bits is named; rounding every row that is written is none of it."""
+    inside = runge_kutta(load(FREE), 0.02, every, single=True)
+    assert names(tmp_path, FREE, inside) == {"float32 inside"}
+    stored = as_float32(runge_kutta(load(FREE), 0.02, every))
+    assert names(tmp_path, FREE, stored) == set()
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_a_coarse_method_stored_in_float32_is_not_float32_inside(
+    tolerance: float, tmp_path: Path
+) -> None:
+    """The truncation errors of an adaptive method are no roundings, though its rows are float32 numbers."""
+    times = np.linspace(0, 20, 401)
+    columns = simulated(load(FREE), times=times, method="RK45", tolerance=tolerance)
+    assert names(tmp_path, FREE, as_float32(columns)) == set()
+
+
+# Another scene.
+
+
+def test_another_scene_is_named(tmp_path: Path) -> None:
+    """A file of another scene is told by its start, and by its rows."""
+    scene = load(FULL)
+    columns = columns_at(scene, scene.clock.instants[:30])
+    (cause,) = judged(tmp_path, FREE, columns).causes
+    assert cause.name == "another scene"
+    assert "the rows fit euler/full-tensor better (omega within" in cause.sentence
+    wrong = simulated(scene, back, times=np.linspace(0, 20, 41))
+    sentence = sentences(load(FREE), wrong)["another scene"]
+    assert "the row at the start is that of euler/full-tensor" in sentence
+
+
+# Answers that have no cause.
+
+
+def turned_body(scene: Scene, seed: int, spread: float) -> Scene:
+    """The scene with another body, whose moments differ by about ``spread``, and another start."""
+    draw = np.random.default_rng(seed)
+    axes = np.linalg.qr(draw.standard_normal((3, 3)))[0]
+    tensor = axes @ np.diag(1 + spread * draw.uniform(0, 1, 3)) @ axes.T
+    upper = [[Fraction(float(tensor[min(i, k), max(i, k)])) for k in range(3)] for i in range(3)]
+    body = replace(scene.body, inertia=tuple(map(tuple, upper)))
+    omega = tuple(Fraction(float(w)) for w in draw.standard_normal(3))
+    q = tuple(Fraction(float(e)) for e in draw.standard_normal(4))
+    return replace(scene, body=body, initial=Spin(omega, q))
+
+
+SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", [1e-2, 1.0])
+@pytest.mark.parametrize("scene", [FREE, FORCED])
+def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
+    """Coarse answers by the right equations are given no cause, whatever body and start they are for."""
+    for seed in range(3):
+        other = turned_body(load(scene), seed, spread)
+        for method, tolerance in SOUND:
+            columns = simulated(
+                other, method=method, tolerance=tolerance, times=np.linspace(0, 15, 61)
+            )
+            assert sentences(other, columns) == {}
+        for h, every in ((0.1, 1), (0.02, 10)):
+            assert sentences(other, runge_kutta(other, h, every)) == {}
+
+
+@pytest.mark.parametrize("scene", [FLUID, LOADED, "kirchhoff/whole-motion"])
+@pytest.mark.parametrize(("method", "tolerance"), SOUND)
+def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, tolerance: float) -> None:
+    """Coarse answers by Kirchhoff's equations are given no cause either."""
+    columns = simulated(load(scene), method=method, tolerance=tolerance)
+    assert sentences(load(scene), columns) == {}
+
+
+@pytest.mark.parametrize("name", ["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
+def test_a_geometric_method_has_no_cause(name: str) -> None:
+    """A method that conserves much, and whose error is all along the orbit, is given no other body."""
+    found = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
+    assert not found.passed
+    assert found.causes == ()
+
+
+def test_what_passes_has_no_cause(tmp_path: Path) -> None:
+    """Nothing is named for the exact motion."""
+    scene = load(FREE)
+    found = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
+    assert found.passed
+    assert found.causes == ()
+
+
+def test_two_rows_name_nothing() -> None:
+    """One step may agree with anything by chance."""
+    columns = simulated(load(FREE), damped, times=np.array([0.0, 0.5]))
+    assert sentences(load(FREE), columns) == {}
+
+
+@pytest.mark.parametrize("value", [np.nan, 1e200])
+def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> None:
+    """Rows that are no numbers, or beyond float64's squares, end in no error and no cause."""
+    columns = simulated(load(FREE))
+    for name in (*VECTORS["omega"], *QUATERNION):
+        columns[name] = columns[name][:1] + [value] * (len(columns["t"]) - 1)
+    assert names(tmp_path, FREE, columns) == set()
+
+
+# Solvers.
+
+
+def without_gyroscopic_term(problem: Any) -> Array:
+    states = [float(v) for v in problem.scene.initial.omega]
+    return np.array([states] * len(problem.times))
+
+
+def test_a_callable_is_given_its_cause(capsys: pytest.CaptureFixture[str]) -> None:
+    """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
+    found = taylor_verify.check("euler/generic", without_gyroscopic_term)
+    (cause,) = found.causes
+    assert (cause.name, cause.scene, cause.rung) == ("no gyroscopic term", "euler/generic", "f64")
+    with pytest.raises(AssertionError, match="likely cause: no gyroscopic term"):
+        found.raise_for_failure()
+
+
+def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """`run` of a program names the cause with its scene and rung, in its text and in JSON."""
+    program = tmp_path / "mine.py"
+    program.write_text(
+        "import json, sys\n"
+        "asked = json.load(sys.stdin)\n"
+        "times = asked['time']['times']['hex']\n"
+        "w = asked['initial']['omega']['hex']\n"
+        "rows = {n: [v] * len(times) for n, v in zip(('w1', 'w2', 'w3'), w)}\n"
+        "json.dump({'t': times, **rows}, sys.stdout)\n"
+    )
+    solver = f"process:{sys.executable} {program}"
+    assert main(["run", "euler/generic", "--solver", solver]) == 1
+    printed = capsys.readouterr().out
+    assert "likely cause: no gyroscopic term: " in printed

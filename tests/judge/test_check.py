@@ -1,0 +1,670 @@
+"""`check`: anybody's trajectory, read exactly, judged in the scene's own terms, or refused in words."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+from trajectories import MATRIX, VECTORS, Columns, columns_at, exact_columns, write_csv
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.models.problem import adopt, pose
+from taylor_verify.records.quantities import COLUMNS, COMPLETE, INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.values import exact, held
+
+F64 = rung("f64")
+SCENE = "euler/with-attitude"
+OMEGA = VECTORS["omega"]
+
+
+def judged(file: str, scene: str, **options: Any) -> FileJudgement:
+    found = taylor_verify.check(scene, file, **options)
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def checked(path: Path, scene: str, columns: Mapping[str, Sequence[Any]]) -> FileJudgement:
+    return judged(write_csv(path / "mine.csv", columns), scene)
+
+
+def rows(found: FileJudgement) -> dict[str, Verdict]:
+    return {verdict.quantity: verdict for verdict in found.verdicts}
+
+
+def all_pass(found: FileJudgement) -> bool:
+    """Whether all that was compared passes; whether the file is complete is another row."""
+    return {v.verdict for v in found.verdicts if v.quantity != COMPLETE} == {Status.PASS}
+
+
+def without(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
+    return {name: list(values) for name, values in columns.items() if name not in names}
+
+
+# Sound files.
+
+
+@pytest.mark.parametrize(
+    ("scene", "quantities"),
+    [
+        ("euler/with-attitude", {"omega", "attitude", "T", "H2", "H_space"}),
+        ("euler/backward", {"omega", "T", "H2"}),
+        ("euler/later-start", {"omega", "T", "H2"}),
+        ("euler/constant-moment", {"omega", "T", "H2"}),
+        (
+            "kirchhoff/whole-motion",
+            {"impulse", "attitude", "centre", "T", "F2", "FG", "y3", "x_space", "y_space", "omega"},
+        ),
+    ],
+)
+def test_exact_motion_rounded_to_float64_passes(
+    scene: str, quantities: set[str], tmp_path: Path
+) -> None:
+    """Every quantity that the columns determine has its row, and every row passes."""
+    found = checked(tmp_path, scene, exact_columns(scene))
+    assert all_pass(found)
+    assert set(rows(found)) - {INITIAL} == quantities
+    assert found.conventions == ()
+
+
+def test_matrices_are_judged_as_they_are(tmp_path: Path) -> None:
+    """A matrix scaled by 1 + 1e-9 is off by that much: it is not made a rotation before."""
+    sound = exact_columns(SCENE, matrix=True)
+    assert all_pass(checked(tmp_path, SCENE, sound))
+    scaled = {n: [v * (1 + 1e-9 * (n in MATRIX)) for v in vs] for n, vs in sound.items()}
+    attitude = rows(checked(tmp_path, SCENE, scaled))["attitude"]
+    assert attitude.verdict is Status.FAIL
+    # |R (1 + e) - R| = e sqrt 3, and an angle is |difference| / sqrt 2.
+    assert attitude.max == pytest.approx(1e-9 * math.sqrt(3 / 2), rel=1e-3)
+
+
+def test_quaternions_have_either_sign(tmp_path: Path) -> None:
+    """q and -q are one attitude, from row to row."""
+    sound = exact_columns(SCENE)
+    signs = [(-1) ** k for k in range(len(sound["t"]))]
+    turned = {
+        name: [v * s if name[0] == "q" else v for v, s in zip(values, signs, strict=True)]
+        for name, values in sound.items()
+    }
+    assert all_pass(checked(tmp_path, SCENE, turned))
+
+
+def test_times_are_the_files_own(tmp_path: Path) -> None:
+    """Rows between the scene's samples, beyond its end and before its start are judged."""
+    scene = load(SCENE)
+    times = [Fraction(k, 7) * 3 for k in range(-20, 200, 9)]
+    found = checked(tmp_path, SCENE, columns_at(scene, times))
+    assert max(times) > scene.clock.instants[-1]
+    assert all_pass(found)
+    spoiled = columns_at(scene, times)
+    spoiled["w1"][0] += 1e-6
+    omega = rows(checked(tmp_path, SCENE, spoiled))["omega"]
+    assert (omega.verdict, omega.at) == (Status.FAIL, float(times[0]))
+
+
+def test_rows_may_run_backwards(tmp_path: Path) -> None:
+    """A file whose times decrease is the same file."""
+    turned = {name: list(values)[::-1] for name, values in exact_columns(SCENE).items()}
+    assert all_pass(checked(tmp_path, SCENE, turned))
+
+
+def test_one_row_is_judged_and_no_trajectory(tmp_path: Path) -> None:
+    """A file with one row, at the start or later, is judged there, and undecided as a whole."""
+    for instants in ([Fraction(0)], [Fraction(30)]):
+        found = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
+        assert all_pass(found)
+        assert rows(found)[COMPLETE].verdict is Status.UNDECIDED
+        assert "one row within it is no trajectory" in rows(found)[COMPLETE].because
+
+
+@pytest.mark.parametrize(
+    ("kept", "expected"),
+    [
+        ({"t", *OMEGA}, {INITIAL, "omega", "T", "H2", COMPLETE}),
+        ({"t", "q0", "q1", "q2", "q3"}, {INITIAL, "attitude", COMPLETE}),
+    ],
+)
+def test_only_what_is_in_the_file_is_compared(
+    kept: set[str], expected: set[str], tmp_path: Path
+) -> None:
+    """No row rests on a quantity that the file lacks, and the lack is said."""
+    sound = exact_columns(SCENE)
+    found = checked(tmp_path, SCENE, without(sound, *(sound.keys() - kept)))
+    assert set(rows(found)) == expected
+    assert all_pass(found)
+    assert any("is not judged: the file has no" in note for note in found.notes)
+
+
+def test_only_omega_of_a_solid_in_a_fluid(tmp_path: Path) -> None:
+    """w1 w2 w3 alone are compared with Omega = B^T x + C y, and an error of them is seen."""
+    scene = "kirchhoff/screw"
+    sound = exact_columns(scene)
+    columns = {name: list(sound[name]) for name in ("t", *OMEGA)}
+    assert set(rows(checked(tmp_path, scene, columns))) == {INITIAL, "omega", COMPLETE}
+    columns["w2"][3] *= 1 + 1e-10
+    omega = rows(checked(tmp_path, scene, columns))["omega"]
+    assert (omega.verdict, omega.at) == (Status.FAIL, columns["t"][3])
+
+
+def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
+    """w1 w2 w3 of a solid in a fluid tell how late they are, and what is left."""
+    sound = exact_columns("kirchhoff/screw")
+    columns = {"t": [t + 2**-11 for t in sound["t"]], **{n: sound[n] for n in OMEGA}}
+    found = checked(tmp_path, "kirchhoff/screw", columns)
+    omega = rows(found)["omega"]
+    assert omega.verdict is Status.FAIL
+    assert omega.time_shift == pytest.approx(2**-11, rel=1e-9)
+    assert omega.residual < 1e-14
+    assert [finding.subject for finding in found.conventions] == ["time"]
+
+
+def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) -> None:
+    """Quaternions beside a scene of omega alone are left out, and that is said."""
+    columns = {**exact_columns("euler/generic")}
+    rest = {name: [0.5] * len(columns["t"]) for name in COLUMNS["quaternion"]}
+    found = checked(tmp_path, "euler/generic", {**columns, **rest})
+    assert all_pass(found)
+    assert any("does not track the attitude" in note for note in found.notes)
+
+
+def test_matrices_of_a_loaded_body(tmp_path: Path) -> None:
+    """With a moment the states are compared, and the balances that need no matrix."""
+    scene = replace(load("euler/constant-moment"), track=frozenset({"attitude"}))
+    columns = columns_at(scene, scene.clock.instants[::2], matrix=True)
+    found = taylor_verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
+    assert {v.quantity for v in found.verdicts} == {INITIAL, "omega", "attitude", "T", "H2"}
+    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+
+
+# What is wrong in a file that can be read.
+
+
+def test_half_a_millisecond_is_seen(tmp_path: Path) -> None:
+    """States fail and say by how much they are late; conserved quantities see nothing."""
+    sound = exact_columns(SCENE)
+    late = {**sound, "t": [t + 5e-4 for t in sound["t"]]}
+    found = rows(checked(tmp_path, SCENE, late))
+    for quantity in ("omega", "attitude"):
+        assert found[quantity].verdict is Status.FAIL
+        assert found[quantity].time_shift == pytest.approx(5e-4, rel=1e-9)
+        assert found[quantity].residual < 1e-12 < found[quantity].max
+    assert all(found[quantity].verdict is Status.PASS for quantity in ("T", "H2", "H_space"))
+
+
+def test_initial_state_that_is_not_the_scenes_is_said_first(tmp_path: Path) -> None:
+    """The first row is its own, fails and says by how much."""
+    scene = load(SCENE)
+    assert isinstance(scene.initial, Spin)
+    w1, w2, w3 = scene.initial.omega
+    other = replace(scene, initial=replace(scene.initial, omega=(w1 + Fraction(1, 10**6), w2, w3)))
+    first, *others = checked(tmp_path, SCENE, columns_at(other, scene.clock.instants[::4])).verdicts
+    assert (first.quantity, first.verdict, first.at) == (INITIAL, Status.FAIL, 0.0)
+    assert "is not the scene's initial state" in first.because
+    assert any(verdict.verdict is Status.FAIL for verdict in others)
+
+
+def test_one_unit_in_the_last_place_of_the_start_passes(tmp_path: Path) -> None:
+    """Whoever rounded the input once otherwise has an answer as good: its response is attainable."""
+    scene = load(SCENE)
+    assert isinstance(scene.initial, Spin)
+    assert isinstance(scene.body, RigidBody)
+    ulp = 1 + Fraction(1, 2**53)
+    I = scene.body.inertia
+    body = RigidBody(tensors.diagonal((I[0][0] * ulp, I[1][1], I[2][2] / ulp)))
+    initial = replace(scene.initial, omega=tensors.scaled(ulp, scene.initial.omega))
+    other = replace(scene, body=body, initial=initial)
+    # Its exact motion, so that no rounding but that of the input is left.
+    motion = solution(other).evaluate([Fraction(60)], 40)["omega"][0]
+    truth = solution(adopt(scene, F64, (Fraction(60),)).given).evaluate([Fraction(60)], 40)["omega"]
+    error = float(mp.norm(list(motion - truth[0])))
+    columns = {"t": [60.0], **{n: [mp.nstr(v, 30)] for n, v in zip(OMEGA, motion, strict=True)}}
+    found = judged(write_csv(tmp_path / "mine.csv", columns, str), SCENE)
+    assert error > 1e-15
+    assert rows(found)["omega"].verdict is Status.PASS
+    assert "moved by u" in rows(found)["omega"].because
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-Infinity"])
+def test_what_is_not_finite_fails_its_own_rows(value: str, tmp_path: Path) -> None:
+    """The row says where the first such value stands; what does not rest on it still passes."""
+    sound = exact_columns(SCENE)
+    spoiled = {name: [repr(v) for v in values] for name, values in sound.items()}
+    spoiled["q2"][3] = spoiled["q2"][9] = value
+    found = rows(judged(write_csv(tmp_path / "mine.csv", spoiled, str), SCENE))
+    for quantity in ("attitude", "H_space"):
+        assert found[quantity].verdict is Status.FAIL
+    assert found["attitude"].at == sound["t"][3]
+    assert f"q2 is {float(value)} in row 4" in found["attitude"].because
+    assert all(found[q].verdict is Status.PASS for q in ("omega", "T", "H2"))
+    assert json.dumps(found["attitude"].row(), allow_nan=False)
+
+
+def test_numbers_cut_off_in_printing_are_told(tmp_path: Path) -> None:
+    """Six digits are no float64, and the note says so."""
+    file = write_csv(tmp_path / "mine.csv", exact_columns(SCENE), lambda v: f"{v:.5e}")
+    found = judged(file, SCENE)
+    assert rows(found)["omega"].verdict is Status.FAIL
+    assert any("6 significant digits, where f64 has 17" in note for note in found.notes)
+    sound = judged(write_csv(tmp_path / "mine.csv", exact_columns(SCENE)), SCENE)
+    assert not any("digits" in note for note in sound.notes)
+
+
+def test_storing_as_float32_is_told(tmp_path: Path) -> None:
+    """A float64 run that was stored as float32 fails on f64, and the note says why; sound ones do not."""
+    columns = exact_columns(SCENE)
+    stored = {n: v if n == "t" else [float(np.float32(x)) for x in v] for n, v in columns.items()}
+    file = write_csv(tmp_path / "mine.csv", stored)
+    found = judged(file, SCENE)
+    assert rows(found)["omega"].verdict is Status.FAIL
+    assert any("every number is one of float32, where f64 has 53" in note for note in found.notes)
+    # One number of float64 is enough: then it is another fault.
+    stored["w2"][3] = math.nextafter(stored["w2"][3], 1.0)
+    other = checked(tmp_path, SCENE, stored)
+    assert rows(other)["omega"].verdict is Status.FAIL
+    assert not any("float32" in note for note in other.notes)
+
+
+def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
+    """What there is is judged, and the note says where the rest begins, also of a motion backwards."""
+    for scene in (SCENE, "euler/backward"):
+        whole = exact_columns(scene)
+        half = {name: values[: len(values) // 2] for name, values in whole.items()}
+        found = checked(tmp_path, scene, half)
+        assert all_pass(found)
+        said = f"the last row is at t = {half['t'][-1]:g}, and the scene ends at t = "
+        assert any(said in note for note in found.notes)
+        assert not any("last row" in note for note in checked(tmp_path, scene, whole).notes)
+
+
+def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
+    """Numbers of float32 are no float64 answer; as f32 arithmetic they are sound."""
+    scene = load("euler/generic")
+    times = scene.clock.instants[:40]
+    given = adopt(scene, rung("f32"), times).given
+    motion = solution(given).evaluate(given.clock.elapsed, 20)["omega"]
+    columns = {"t": [float(t) for t in times]}
+    columns |= {n: [float(np.float32(float(v))) for v in motion[:, i]] for i, n in enumerate(OMEGA)}
+    file = write_csv(tmp_path / "mine.csv", columns)
+    assert rows(judged(file, scene.name))["omega"].verdict is Status.FAIL
+    assert all_pass(judged(file, scene.name, rung="f32"))
+
+
+def test_reference_trajectories_are_files(tmp_path: Path) -> None:
+    """What `publish --reference` writes has 32 digits of the scene's own numbers: f64 is no bound."""
+    from taylor_verify.studies.reference.measure import reference
+
+    columns = reference(load("euler/later-start"))["columns"]
+    file = write_csv(tmp_path / "mine.csv", {n: v[:20] for n, v in columns.items()}, str)
+    assert all_pass(judged(file, "euler/later-start"))
+
+
+# The problem that others solve.
+
+
+def test_others_round_the_inertia_and_we_its_inverse() -> None:
+    """adopt stores I and omega0 on the rung, exactly inverted; pose stores I^-1."""
+    scene = load("euler/full-tensor")
+    given, posed = adopt(scene, F64, scene.clock.instants).given, pose(scene, F64).given
+    for body, entries in ((given.body, "inertia"), (posed.body, "inverse_inertia")):
+        assert isinstance(body, RigidBody)
+        assert all(F64.holds(v) for row in getattr(body, entries) for v in row)
+    assert isinstance(given.initial, Spin)
+    assert all(F64.holds(v) for v in given.initial.omega)
+    assert given.clock.instants == scene.clock.instants
+
+
+def test_response_to_the_input_is_that_of_differences() -> None:
+    """One number moved by u: the response is the motion's own change, in the unit of its gate."""
+    scene = load("euler/generic")
+    given = adopt(scene, F64, scene.clock.instants[::10]).given
+    found = input_rounding(given, F64).at_samples
+    # |omega|^2 scales with u^2: all three components of omega0 moved together turn T by 2 u, apart
+    # and squared by less; the moments do as much again.
+    u = float(F64.unit_roundoff)
+    assert u < found["T"][0] < 3 * u
+    assert found["omega"][0] == pytest.approx(
+        u * np.linalg.norm([1, 0.4, 0.3]) / np.linalg.norm([1, 0.4, 0.3]), rel=0.2
+    )
+    # A rounding of the rate grows in proportion to time.
+    assert 20 * found["omega"][0] < found["omega"][-1] < 200 * found["omega"][0]
+
+
+# Numbers.
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_every_double_survives_its_texts(value: float) -> None:
+    """Hexadecimal text is the double; decimal text is the decimal, not the double near it."""
+    assert exact(value.hex()) == Fraction(value)
+    assert exact(value) == Fraction(value)
+    assert exact(repr(value)) == Fraction(repr(value))
+    ((mpf,),) = held([(Fraction(value),)], 53)
+    assert Fraction(*map(int, mpf.as_integer_ratio())) == Fraction(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.1", Fraction(1, 10)),
+        ("1/3", Fraction(1, 3)),
+        ("0x1.8p-3", Fraction(3, 16)),
+        ("-0X.8P+4", Fraction(-8)),
+        ("0x1p-16000", Fraction(1, 2**16000)),
+        ("0x10", Fraction(16)),
+        ("1e-400", Fraction(1, 10**400)),
+        ("123456789012345678901234567890.5", Fraction(246913578024691357802469135781, 2)),
+    ],
+)
+def test_text_becomes_exact(text: str, value: Fraction) -> None:
+    """Decimals, fractions and hexadecimal floats of any length lose nothing."""
+    assert exact(text) == value
+    assert exact(np.longdouble(1) / 3) == Fraction(*(np.longdouble(1) / 3).as_integer_ratio())
+
+
+def test_held_numbers_are_right_to_the_bits_asked_for() -> None:
+    """A third is rounded at the precision given, whatever mpmath's own precision is."""
+    with mp.workprec(20):
+        ((third,),) = held([(Fraction(1, 3),)], 200)
+    assert abs(Fraction(*map(int, third.as_integer_ratio())) - Fraction(1, 3)) < Fraction(1, 2**200)
+
+
+# Formats.
+
+
+def test_formats_agree(tmp_path: Path) -> None:
+    """CSV by comma, semicolon, tab and blanks, JSON and NPZ hold the same numbers."""
+    columns = exact_columns("euler/generic")
+    expected = read(write_csv(tmp_path / "hex.csv", columns, _hexadecimal))
+    for mark, suffix in ((";", "csv"), ("\t", "tsv"), ("   ", "txt")):
+        file = tmp_path / f"mine.{suffix}"
+        plain = Path(write_csv(tmp_path / "plain.csv", columns, _hexadecimal)).read_text()
+        file.write_text("# a comment\n\n" + plain.replace(",", mark))
+        assert read(file).groups == expected.groups
+        assert read(file).times == expected.times
+    json_file = tmp_path / "mine.json"
+    texts = {name: [_hexadecimal(v) for v in values] for name, values in columns.items()}
+    json_file.write_text(json.dumps(texts))
+    assert read(json_file).groups == expected.groups
+    json_file.write_text(json.dumps({"title": "mine", "columns": texts}))
+    assert read(json_file).groups == expected.groups
+    np.savez(tmp_path / "mine.npz", **{n: np.array(v) for n, v in columns.items()})
+    assert read(tmp_path / "mine.npz").groups == expected.groups
+
+
+def _hexadecimal(value: float) -> str:
+    return float(value).hex()
+
+
+def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
+    """0.1 in JSON is a tenth, and no double."""
+    file = tmp_path / "mine.json"
+    file.write_text('{"t": [0.1, 1], "w1": [0.1, 0.2], "w2": [0, 0], "w3": [1e-30, 1]}')
+    found = read(file)
+    assert found.times == (Fraction(1, 10), Fraction(1))
+    assert found.groups["omega"][0] == (Fraction(1, 10), Fraction(0), Fraction(1, 10**30))
+
+
+def test_long_doubles_are_taken_exactly(tmp_path: Path) -> None:
+    """An NPZ of long doubles keeps what a double would lose."""
+    third = np.longdouble(1) / 3
+    np.savez(tmp_path / "mine.npz", t=[0.0], w1=np.array([third]), w2=[0.0], w3=[0.0])
+    (row,) = read(tmp_path / "mine.npz").groups["omega"]
+    assert row[0] == Fraction(*third.as_integer_ratio())
+
+
+def test_parquet_holds_the_same_numbers(tmp_path: Path) -> None:
+    """Doubles of a Parquet file are taken exactly."""
+    arrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    columns = {name: list(values) for name, values in exact_columns("euler/generic").items()}
+    parquet.write_table(arrow.table(columns), tmp_path / "mine.parquet")
+    np.savez(tmp_path / "mine.npz", **{n: np.array(v) for n, v in columns.items()})
+    assert read(tmp_path / "mine.parquet").groups == read(tmp_path / "mine.npz").groups
+    (tmp_path / "broken.parquet").write_text("no parquet")
+    with pytest.raises(Refused, match="expected a Parquet file, got a fault"):
+        read(tmp_path / "broken.parquet")
+
+
+def test_without_pyarrow_the_mend_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A Parquet file asks for the package by the name that installs it."""
+    monkeypatch.setitem(__import__("sys").modules, "pyarrow", None)
+    (tmp_path / "mine.parquet").write_bytes(b"PAR1")
+    with pytest.raises(Refused, match=r"pip install 'taylor-verify\[parquet\]'"):
+        read(tmp_path / "mine.parquet")
+
+
+# Faults.
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("w1,w2,w3\n1,2,3\n", "expected a column `t` of times, got none"),
+        ("t,w1,w2\n0,1,2\n", "expected all of w1 w2 w3, got no w3"),
+        ("t,w1,w2,wz\n0,1,2,3\n", "got no w3 @ .*did you mean `wz`"),
+        ("epoch,w1,w2,w3\n0,1,2,3\n", "got none @ .*--columns t=NAME; the columns are .*`epoch`"),
+        ("t,t,w1,w2,w3\n0,0,1,2,3\n", "expected every column once, got `t` again"),
+        ("t,w1,w2,w3\n", "expected at least one row, got none"),
+        ("", "got an empty file"),
+        ("1,2,3,4\n2,3,4,5\n", "expected a header line that names the columns"),
+        ("t,w1,w2,w3\n0,1,2\n", "expected 4 values as in the header, got 3 @ .* line 2"),
+        ("t,w1,w2,w3\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column w2"),
+        ("t,w1,w2,w3\n0,1,,3\n", "got '' @ .* row 1, column w2"),
+        ("t,w1,w2,w3\n0,1,2,3\n0,1,2,3\n", "expected no time twice, got 0 again @ .* row 2"),
+        ("t,w1,w2,w3\n0,1,2,3\n2,1,2,3\n1,1,2,3\n", "keep increasing, got 1 after 2 @ .* row 3"),
+        ("t,w1,w2,w3\n5,1,2,3\n1,1,2,3\n2,1,2,3\n", "keep decreasing, got 2 after 1 @ .* row 3"),
+        ("t,w1,w2,w3\nnan,1,2,3\n", "expected a finite time, got nan @ .* row 1"),
+        (
+            "t,q0,q1,q2,q3," + ",".join(MATRIX) + "\n" + ",".join("0" * 14) + "\n",
+            "expected the attitude once",
+        ),
+    ],
+)
+def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -> None:
+    """Expectation, value and place of what is wrong with a CSV file."""
+    file = tmp_path / "mine.csv"
+    file.write_text(text)
+    with pytest.raises(Refused, match=fault):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "fault"),
+    [
+        ("mine.json", b"{", "expected a JSON document"),
+        ("mine.json", b"[" * 100_000, "brackets nested too deeply"),
+        ("mine.json", b"[1, 2]", "expected an object of column arrays"),
+        ("mine.json", b'{"t": 1, "w1": [1]}', "expected an array of numbers, got '1'"),
+        (
+            "mine.json",
+            b'{"t": [0], "w1": [1, 2], "w2": [1], "w3": [1]}',
+            "expected 1 values as in t",
+        ),
+        ("mine.json", b'{"t": [0], "w1": [true], "w2": [null], "w3": [[1]]}', "column w2"),
+        ("mine.csv", b"\xff\xfe\x00", "expected text in UTF-8"),
+        ("mine.npz", b"PK no zip", "expected an NPZ archive"),
+        ("mine.npz", b"", "expected an NPZ archive"),
+        ("mine.xlsx", b"", r"expected a file that ends in .csv, .*got .xlsx"),
+    ],
+)
+def test_what_is_no_such_file_is_refused(
+    name: str, content: bytes, fault: str, tmp_path: Path
+) -> None:
+    """A fault of the format is told in words, whatever the library made of it."""
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(Refused, match=fault):
+        read(tmp_path / name)
+
+
+def test_missing_file_and_folder(tmp_path: Path) -> None:
+    """What is not there, and what is a folder, is no trajectory file."""
+    (tmp_path / "folder.csv").mkdir()
+    for name, got in (("none.csv", "no such file"), ("folder.csv", "a folder")):
+        with pytest.raises(Refused, match=f"expected a trajectory file, got {got}"):
+            read(tmp_path / name)
+
+
+def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
+    """Objects are never unpickled; matrices and complex numbers are no columns."""
+    np.savez(tmp_path / "mine.npz", t=[0.0], w1=np.zeros((2, 2)), w2=[1j], w3=[0.0])
+    with pytest.raises(Refused) as refused:
+        read(tmp_path / "mine.npz")
+    assert len(refused.value.faults) == 2
+    np.savez(tmp_path / "object.npz", t=np.array([{}], dtype=object))
+    with pytest.raises(Refused, match=r"got shape .* of object"):
+        read(tmp_path / "object.npz")
+
+
+def test_truth_of_a_path_that_begins_at_the_origin_is_narrow_enough(tmp_path: Path) -> None:
+    """Where the centre begins at zero its first floor is zero, and no row is undecided for it."""
+    scene = load("kirchhoff/planar-turn")
+    assert all_pass(checked(tmp_path, scene.name, columns_at(scene, scene.clock.instants[::20])))
+
+
+def test_all_faults_at_once(tmp_path: Path) -> None:
+    """A file with three faults is refused with all of them, and many of one kind are counted."""
+    file = tmp_path / "mine.csv"
+    file.write_text("w1,w2,speed\n" + "a,1,2\n" * 10)
+    with pytest.raises(Refused) as refused:
+        read(file)
+    assert len([line for line in refused.value.faults if line.startswith("expected")]) == 5
+    assert any(line.startswith("and 7 more of this kind") for line in refused.value.faults)
+
+
+def test_numbers_beyond_a_double_are_refused(tmp_path: Path) -> None:
+    """Errors are told as doubles: 1e400 is refused, 1e-400 is a number like any other."""
+    columns = {"t": ["0"], "w1": ["1e400"], "w2": ["1e-400"], "w3": ["0"]}
+    with pytest.raises(
+        Refused, match=r"below 2\^1000 in size, got '1e400' @ .* column w1"
+    ) as refused:
+        read(write_csv(tmp_path / "mine.csv", columns, str))
+    assert len(refused.value.faults) == 1
+
+
+def test_far_beyond_a_scene_without_closed_form_is_undecided(tmp_path: Path) -> None:
+    """Where no exact motion is computed nothing is judged, and the row says why."""
+    columns = {"t": ["0", "1e9"], **{n: ["0", "0"] for n in OMEGA}}
+    file = write_csv(tmp_path / "mine.csv", columns, str)
+    (verdict,) = judged(file, "euler/constant-moment").verdicts
+    assert verdict.verdict is Status.UNDECIDED
+    assert "no closed form" in verdict.because
+
+
+def test_columns_of_the_other_model_are_refused(tmp_path: Path) -> None:
+    """Impulses are no answer to Euler's equations, nor is t alone."""
+    columns = {"t": [0.0], **{f"{letter}{i}": [1.0] for letter in "xy" for i in (1, 2, 3)}}
+    with pytest.raises(Refused, match="expected columns of a scene of model euler"):
+        checked(tmp_path, "euler/generic", columns)
+    with pytest.raises(Refused, match="expected w1 w2 w3, which euler/generic tracks, got t alone"):
+        checked(tmp_path, "euler/generic", {"t": [0.0]})
+
+
+# The command.
+
+
+def test_command_says_pass_and_fail(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Exit 0 for a sound file, 1 with the hint for a spoiled one, 0 when it is accepted."""
+    sound = exact_columns(SCENE)
+    file = write_csv(tmp_path / "mine.csv", sound)
+    assert main(["check", file, "--scene", SCENE]) == 0
+    assert "6 pass" in capsys.readouterr().out
+    scalar_last = {f"q{i}": sound[f"q{(i + 1) % 4}"] for i in range(4)}
+    spoiled = {**sound, **scalar_last}
+    file = write_csv(tmp_path / "mine.csv", spoiled)
+    assert main(["check", file, "--scene", SCENE]) == 1
+    printed = capsys.readouterr().out
+    assert "scalar last" in printed
+    assert "--accept-conventions" in printed
+    assert "is not the scene's initial state" in printed
+    assert main(["check", file, "--scene", SCENE, "--accept-conventions"]) == 0
+
+
+def test_command_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The rows of `run` with time_shift and residual, the summary and the conventions."""
+    sound = exact_columns(SCENE)
+    late = {**sound, "t": [t + 5e-4 for t in sound["t"]]}
+    file = write_csv(tmp_path / "mine.csv", late)
+    assert main(["check", file, "--scene", SCENE, "--json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    states = [row for row in document["verdicts"] if row["quantity"] in ("omega", "attitude")]
+    assert [row["time_shift"] for row in states] == pytest.approx([5e-4] * 2)
+    assert all(row["residual"] < 1e-12 for row in states)
+    assert document["summary"]["fail"] == 2
+    assert document["conventions"][0]["found"] == "t is late by 0.0005"
+    assert set(document["verdicts"][0]) == set(Verdict(*[""] * 5, Status.PASS, "").row())
+    assert document["file"]["columns"][:4] == ["t", *OMEGA]
+
+
+def test_command_reports_faults_of_scene_and_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exit 2, every fault on stderr, nothing on stdout."""
+    scene = tmp_path / "scene.toml"
+    scene.write_text('title = "x"\nmodel = "newton"\n')
+    (tmp_path / "mine.csv").write_text("t,w1\n1,2\n0,2\n")
+    assert main(["check", str(tmp_path / "mine.csv"), "--scene", str(scene)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "got no w2 w3" in err
+    assert "newton" in err
+    assert "Traceback" not in err
+
+
+def test_command_tells_a_file_without_a_number(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A column of NaN alone is a fail in words and in JSON, and no convention is made of it."""
+    sound = exact_columns("euler/generic")
+    file = write_csv(tmp_path / "mine.csv", {**sound, "w1": [math.nan] * len(sound["t"])})
+    assert main(["check", file, "--scene", "euler/generic"]) == 1
+    printed = capsys.readouterr().out
+    assert "w1 is nan in row 1, t = 0" in printed
+    assert "conventions" not in printed
+    assert main(["check", file, "--scene", "euler/generic", "--json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    assert document["summary"]["fail"] == len(document["verdicts"])
+    assert document["conventions"] == []
+
+
+@pytest.mark.parametrize("arguments", [["--rung", "f65"], ["--scene", "euler/genric"]])
+def test_command_refuses_a_wrong_call(
+    arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A rung or a scene that there is not ends with 2 and a suggestion."""
+    file = write_csv(tmp_path / "mine.csv", exact_columns("euler/generic"))
+    assert main(["check", file, "--scene", "euler/generic", *arguments]) == 2
+    assert "expected" in capsys.readouterr().err
+
+
+def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:
+    """A body whose numbers overflow float32 is a refused row, as in a run."""
+    scene = tmp_path / "huge.toml"
+    scene.write_text(
+        'title = "Huge"\nmodel = "euler"\n[body]\ninertia = [1e60, 2e60, 2.5e60]\n'
+        "[initial]\nomega = [1, 2, 3]\n[time]\nend = 1\nsamples = 2\n"
+    )
+    file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "w1": [1.0], "w2": [2.0], "w3": [3.0]})
+    (verdict,) = judged(file, str(scene), rung="f32").verdicts
+    assert verdict.verdict is Status.REFUSED

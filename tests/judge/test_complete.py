@@ -1,0 +1,203 @@
+"""The row `complete`: what of a scene's question a file does not answer is never a pass."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from trajectories import columns_at, write_csv
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.records.quantities import COMPLETE
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.reading.reader import load
+
+SCENE = "euler/with-attitude"
+OMEGA = ("t", "w1", "w2", "w3")
+Captured = pytest.CaptureFixture[str]
+
+
+def file_of(path: Path, rows: Sequence[int], names: Sequence[str] = (), scene: str = SCENE) -> str:
+    """A file with these of the scene's own samples, and these of its columns."""
+    instants = load(scene).clock.instants
+    columns = columns_at(load(scene), [instants[k] for k in rows])
+    kept = {name: values for name, values in columns.items() if not names or name in names}
+    return str(write_csv(path / "mine.csv", kept))
+
+
+def complete(file: str, scene: str = SCENE, partial: bool = False) -> Verdict | None:
+    found = taylor_verify.check(scene, file, partial=partial)
+    rows = {verdict.quantity: verdict for verdict in found.verdicts}
+    assert {v.verdict for name, v in rows.items() if name != COMPLETE} == {Status.PASS}
+    return rows.get(COMPLETE)
+
+
+LACKING = [
+    ([0], (), "one row within it is no trajectory"),
+    (range(5), (), "the last 18 of the scene's span of 20"),
+    (range(20, 41), (), "the first 10 of the scene's span of 20"),
+    ([20, 40], (), "the first 10 of the scene's span of 20"),
+    (range(41), OMEGA, "the attitude"),
+    (range(41), ("t", "q0", "q1", "q2", "q3"), "the angular velocity"),
+    (range(5), OMEGA, "the attitude, the last 18"),
+]
+
+
+@pytest.mark.parametrize(("rows", "names", "lack"), LACKING)
+def test_what_a_file_lacks_is_undecided(
+    rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
+) -> None:
+    """One row says all that was not judged, and names both ways out."""
+    verdict = complete(file_of(tmp_path, rows, names))
+    assert verdict is not None
+    assert verdict.verdict is Status.UNDECIDED
+    assert verdict.because.startswith("not judged: ")
+    assert lack in verdict.because
+    assert "--partial" in verdict.because
+    assert f"`taylor-verify question {SCENE} --csv`" in verdict.because
+
+
+@pytest.mark.parametrize(("rows", "names", "lack"), LACKING)
+def test_a_part_that_was_asked_for_is_vacuous(
+    rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
+) -> None:
+    """With --partial the row says the same, and changes no exit status."""
+    file = file_of(tmp_path, rows, names)
+    verdict = complete(file, partial=True)
+    assert verdict is not None
+    assert verdict.verdict is Status.VACUOUS
+    assert lack in verdict.because
+    assert main(["check", file, "--scene", SCENE, "--partial", "--json"]) == 0
+    assert main(["check", file, "--scene", SCENE, "--json"]) == 3
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [range(41), [0, 40], [0, 3, 40], range(1, 41), [40, 17, 0], [5, 10, 15, 20, 25, 30, 35, 40]],
+)
+def test_sample_times_are_the_files_own_affair(rows: Sequence[int], tmp_path: Path) -> None:
+    """A file that reaches the end from within one of its own intervals of the start is complete."""
+    assert complete(file_of(tmp_path, sorted(rows))) is None
+
+
+def test_a_motion_backwards_has_an_end_too(tmp_path: Path) -> None:
+    """The span of a scene that ends before it starts is counted in its own direction."""
+    last = len(load("euler/backward").clock.instants) - 1
+    assert complete(file_of(tmp_path, [0, last], scene="euler/backward"), "euler/backward") is None
+    verdict = complete(file_of(tmp_path, [0, last // 2], scene="euler/backward"), "euler/backward")
+    assert verdict is not None
+    assert "the last " in verdict.because
+
+
+def summed(step: float, end: float) -> float:
+    """A clock that adds up its step until it is as near to the end as it comes."""
+    t = 0.0
+    while t < end - step / 2:
+        t += step
+    return t
+
+
+@pytest.mark.parametrize("end", [summed(1e-3, 20.0), summed(1e-4, 20.0), 19.99999999999])
+def test_a_summed_clock_is_at_the_end(end: float, tmp_path: Path) -> None:
+    """A last row that misses the end by roundings of the clock leaves nothing unjudged."""
+    assert end != 20.0
+    scene = load(SCENE)
+    columns = columns_at(scene, [*scene.clock.instants[:-1], Fraction(end)])
+    found = taylor_verify.check(SCENE, write_csv(tmp_path / "mine.csv", columns))
+    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
+    assert not any("not judged" in note for note in found.notes)
+
+
+def test_a_step_short_of_the_end_is_not_at_the_end(tmp_path: Path) -> None:
+    """A file that leaves out its last row, as numpy.arange does, is not complete."""
+    verdict = complete(file_of(tmp_path, range(40)))
+    assert verdict is not None
+    assert "the last 0.5 of the scene's span of 20" in verdict.because
+
+
+def test_nothing_of_it_is_green(tmp_path: Path, capsys: Captured) -> None:
+    """Text, JUnit and annotations say what was not judged; asked for a part, none of them is red."""
+    file, report = file_of(tmp_path, range(5), OMEGA), tmp_path / "junit.xml"
+    call = ["check", file, "--scene", SCENE, "--junit", str(report), "--github"]
+    assert main(call) == 3
+    told = capsys.readouterr()
+    assert re.search(r"complete +undecided", told.out)
+    assert "complete: not judged: " in told.out
+    assert "not judged" in told.out
+    assert "::warning title=euler/with-attitude on f64%3A complete undecided::" in told.err
+    suites = ElementTree.parse(report).getroot()
+    assert (suites.get("errors"), suites.get("failures")) == ("1", "0")
+    assert main([*call, "--partial"]) == 0
+    told = capsys.readouterr()
+    assert "not judged" in told.out
+    assert "::notice title=euler/with-attitude on f64%3A complete vacuous::" in told.err
+    suites = ElementTree.parse(report).getroot()
+    assert (suites.get("errors"), suites.get("failures")) == ("0", "0")
+
+
+def test_a_baseline_of_a_part_is_no_regression_of_the_whole(
+    tmp_path: Path, capsys: Captured
+) -> None:
+    """Whether a file is complete is asked of each call, and not compared with another."""
+    file = file_of(tmp_path, range(41), OMEGA)
+    assert main(["check", file, "--scene", SCENE, "--json", "--partial"]) == 0
+    before = tmp_path / "before.json"
+    before.write_text(capsys.readouterr().out)
+    call = ["check", file, "--scene", SCENE, "--json", "--baseline", str(before)]
+    assert main([*call, "--partial"]) == 0
+    assert main(call) == 3
+    assert json.loads(before.read_text())["verdicts"][-1]["quantity"] == COMPLETE
+
+
+# The file to fill in.
+
+
+def test_question_prints_the_file_to_fill_in(tmp_path: Path, capsys: Captured) -> None:
+    """Its header and times, filled in with the exact motion, are a complete file."""
+    assert main(["question", SCENE, "--csv"]) == 0
+    header, *lines = capsys.readouterr().out.splitlines()
+    assert header == "t,w1,w2,w3,q0,q1,q2,q3"
+    assert lines[:3] == ["0,,,,,,,", "0.5,,,,,,,", "1,,,,,,,"]
+    scene = load(SCENE)
+    columns = columns_at(scene, scene.clock.instants)
+    rows = zip(*(columns[name] for name in header.split(",")[1:]), strict=True)
+    filled = [
+        ",".join([line.rstrip(","), *map(repr, row)]) for line, row in zip(lines, rows, strict=True)
+    ]
+    file = tmp_path / "mine.csv"
+    file.write_text("\n".join([header, *filled]))
+    assert complete(str(file)) is None
+
+
+@pytest.mark.parametrize("on", ["f32", "f64", "f128", "mp237"])
+def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
+    """With and without --json it is the document of the protocol on that precision."""
+    assert main(["question", "kirchhoff/screw", "--rung", on]) == 0
+    text = json.loads(capsys.readouterr().out)
+    assert main(["question", "kirchhoff/screw", "--rung", on, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == text
+    assert (text["rung"], text["scene"]) == (on, "kirchhoff/screw")
+    assert {"columns", "body", "initial", "time"} <= set(text)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (["question", SCENE, "--csv", "--json"], "expected one of --csv and --json, got both"),
+        (["question", "nobody"], "got nobody"),
+        (["question", SCENE, "--rung", "f65"], "@ --rung"),
+    ],
+)
+def test_a_wrong_question_is_refused(call: list[str], told: str, capsys: Captured) -> None:
+    """One message on stderr, and exit status 2."""
+    assert main(call) == 2
+    shown = capsys.readouterr()
+    assert told in shown.err
+    assert not shown.out

@@ -1,0 +1,437 @@
+"""Conventions: each way of spoiling a sound file is found, named, and mended only when asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from first_order import engine, explicit, none
+from mpmath import mp, mpf
+from trajectories import (
+    MATRIX,
+    QUATERNION,
+    VECTORS,
+    Columns,
+    columns_at,
+    exact_columns,
+    named,
+    quaternion,
+    rows_of,
+    write_csv,
+)
+
+import taylor_verify
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.conventions.axes import AXES, Frames
+from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.judge.conventions.search import EXPLAINS, conventions
+from taylor_verify.records.status import Status
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.file import read
+
+Sound = Mapping[str, Sequence[float]]
+OMEGA = VECTORS["omega"]
+
+
+def judged(path: Path, scene: str, columns: Sound, accept: bool = False) -> FileJudgement:
+    file = write_csv(path / "mine.csv", columns)
+    found = taylor_verify.check(scene, file, accept_conventions=accept)
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def replaced(sound: Sound, names: Sequence[str], rows: object) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, **named(names, rows)}
+
+
+def statuses(found: FileJudgement) -> set[Status]:
+    return {verdict.verdict for verdict in found.verdicts}
+
+
+# The ways to spoil a file. Each takes sound columns and returns spoiled ones.
+
+
+def scalar_last(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, np.roll(rows_of(sound, QUATERNION), -1, axis=1))
+
+
+def conjugate(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, rows_of(sound, QUATERNION) * [1, -1, -1, -1])
+
+
+def scalar_last_and_conjugate(sound: Sound) -> Columns:
+    return scalar_last(conjugate(sound))
+
+
+def transposed(sound: Sound) -> Columns:
+    R = rows_of(sound, MATRIX).reshape(-1, 3, 3)
+    return replaced(sound, MATRIX, R.transpose(0, 2, 1).reshape(-1, 9))
+
+
+def in_degrees(sound: Sound) -> Columns:
+    return replaced(sound, OMEGA, np.degrees(rows_of(sound, OMEGA)))
+
+
+def in_space_axes(sound: Sound) -> Columns:
+    R = rotations(rows_of(sound, QUATERNION))
+    return replaced(sound, OMEGA, (R @ rows_of(sound, OMEGA)[:, :, None])[:, :, 0])
+
+
+def in_milliseconds(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [1000 * t for t in sound["t"]]}
+
+
+def late(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [t + 5e-4 for t in sound["t"]]}
+
+
+def of_another_epoch(sound: Sound) -> Columns:
+    return {**{k: list(v) for k, v in sound.items()}, "t": [t + 1024 for t in sound["t"]]}
+
+
+def permuted(sound: Sound) -> Columns:
+    """The body's axes in another order, for omega and the attitude alike."""
+    R = rotations(rows_of(sound, QUATERNION))[:, :, [1, 2, 0]]
+    turned = replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+    return replaced(turned, QUATERNION, [quaternion(r) for r in R])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "subject", "words"),
+    [
+        (scalar_last, "quaternion", "the quaternion is scalar last"),
+        (conjugate, "quaternion", "are the conjugate"),
+        (scalar_last_and_conjugate, "quaternion", "scalar last; q0 q1 q2 q3 are the conjugate"),
+        (transposed, "attitude", "are transposed"),
+        (in_degrees, "omega", "in degrees"),
+        (in_space_axes, "omega", "in space axes"),
+        (in_milliseconds, "time", "thousandths"),
+        (late, "time", "late by 0.0005"),
+        (of_another_epoch, "time", "late by 1024"),
+        (
+            permuted,
+            "axes",
+            "the body has other axes: axis 1 is the file's 3, axis 2 is the file's 1",
+        ),
+    ],
+)
+def test_each_convention_is_found_and_mended_only_when_asked(
+    spoil: Callable[[Sound], Columns], subject: str, words: str, tmp_path: Path
+) -> None:
+    """A spoiled file fails with one finding that names the convention; accepted, it passes."""
+    scene = "euler/with-attitude"
+    spoiled = spoil(exact_columns(scene, matrix=spoil is transposed))
+    found = judged(tmp_path, scene, spoiled)
+    (finding,) = found.conventions
+    assert finding.subject == subject
+    assert words in finding.words
+    assert finding.is_certain
+    assert finding.after <= EXPLAINS * finding.before
+    assert Status.FAIL in statuses(found)
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_conventions_are_found_together(tmp_path: Path) -> None:
+    """A late file with degrees and a scalar at the end has three findings, and all are mended."""
+    scene = "euler/with-attitude"
+    spoiled = late(in_degrees(scalar_last(exact_columns(scene))))
+    found = judged(tmp_path, scene, spoiled)
+    assert [finding.subject for finding in found.conventions] == ["time", "omega", "quaternion"]
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_impulses_have_conventions_too(tmp_path: Path) -> None:
+    """The axes of the body and the unit of Omega are found in a file of a solid in a fluid."""
+    scene = "kirchhoff/whole-motion"
+    sound = exact_columns(scene)
+    spoiled = permuted(in_degrees(sound))
+    for names in (VECTORS["linear_impulse"], VECTORS["angular_impulse"]):
+        spoiled = replaced(spoiled, names, rows_of(sound, names)[:, [1, 2, 0]])
+    found = judged(tmp_path, scene, spoiled)
+    assert [finding.subject for finding in found.conventions] == ["axes", "omega"]
+    assert statuses(judged(tmp_path, scene, spoiled, accept=True)) == {Status.PASS}
+
+
+def test_products_of_inertia_with_the_other_sign_are_seen(tmp_path: Path) -> None:
+    """A body with +int xy dm for its products is named, and judged as that body when accepted."""
+    scene = load("euler/full-tensor")
+    assert isinstance(scene.body, RigidBody)
+    K = scene.body.inertia
+    turned = tuple(tuple(K[i][k] * (1 if i == k else -1) for k in range(3)) for i in range(3))
+    other = replace(scene, body=RigidBody(turned))
+    spoiled = columns_at(other, [*scene.clock.instants[:-1:4], scene.clock.instants[-1]])
+    (finding,) = judged(tmp_path, scene.name, spoiled).conventions
+    assert (finding.subject, finding.is_certain) == ("body", True)
+    assert "products of inertia" in finding.words
+    assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}
+
+
+@pytest.mark.slow
+def test_transposed_coupling_is_seen(tmp_path: Path) -> None:
+    """A coupling whose rows go with y is named."""
+    scene = load("kirchhoff/general-body")
+    assert isinstance(scene.body, ImmersedBody)
+    body = replace(scene.body, coupling=tensors.transpose(scene.body.coupling))
+    spoiled = columns_at(replace(scene, body=body), scene.clock.instants[:20])
+    del spoiled["w1"], spoiled["w2"], spoiled["w3"]
+    file = read(write_csv(tmp_path / "mine.csv", spoiled))
+    (finding,) = conventions(file, scene, rung("f64")).findings
+    assert finding.subject == "body"
+    assert "coupling B transposed" in finding.words
+
+
+@pytest.mark.parametrize("accept", [False, True])
+def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
+    accept: bool, tmp_path: Path
+) -> None:
+    """Columns of one size have other signs: nobody can say which of them is which axis."""
+    scene = tmp_path / "equal.toml"
+    scene.write_text(
+        'title = "Three equal components"\nmodel = "euler"\n[body]\ninertia = [2, 2, 2]\n'
+        "[initial]\nomega = [0.5, 0.5, 0.5]\n[time]\nend = 10\nsamples = 11\n"
+    )
+    spoiled = {
+        "t": list(range(11)),
+        **{n: [v] * 11 for n, v in zip(OMEGA, (-0.5, -0.5, 0.5), strict=True)},
+    }
+    found = judged(tmp_path, str(scene), spoiled, accept)
+    (finding,) = found.conventions
+    assert not finding.is_certain
+    assert "ambiguous" in finding.sentence
+    assert Status.FAIL in statuses(found)
+
+
+def test_sound_file_has_no_conventions(tmp_path: Path) -> None:
+    """Nothing is found in a file that is right, however symmetric its motion."""
+    for scene in ("euler/spherical", "euler/axisymmetric", "euler/with-attitude"):
+        assert judged(tmp_path, scene, exact_columns(scene)).conventions == ()
+
+
+def test_an_error_of_ones_own_is_no_convention(tmp_path: Path) -> None:
+    """A file that is wrong by a slow growth and a noise of 1e-6 is not explained away."""
+    scene = "euler/with-attitude"
+    sound = exact_columns(scene)
+    noise = 1 + 1e-6 * np.random.default_rng(7).standard_normal((len(sound["t"]), 3))
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * noise)
+    found = judged(tmp_path, scene, spoiled)
+    assert found.conventions == ()
+    assert Status.FAIL in statuses(found)
+
+
+def test_poor_answers_show_their_conventions(tmp_path: Path) -> None:
+    """Conventions are found in an answer that is good to three digits only."""
+    scene = "euler/with-attitude"
+    sound = exact_columns(scene)
+    poor = replaced(
+        sound, QUATERNION, rows_of(sound, QUATERNION) + 1e-3 * np.sin(sound["t"])[:, None]
+    )
+    (finding,) = judged(tmp_path, scene, scalar_last(poor)).conventions
+    assert "scalar last" in finding.words
+
+
+# What is no convention.
+
+
+def test_one_reflected_component_is_an_error(tmp_path: Path) -> None:
+    """A sign of one component of omega is no change of axes: the attitude in the file is right."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA) * [1, -1, 1])
+    found = judged(tmp_path, "euler/with-attitude", spoiled, accept=True)
+    assert found.conventions == ()
+    assert Status.FAIL in statuses(found)
+    # Nor is it one where omega is all that the file has.
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    assert judged(tmp_path, "euler/with-attitude", alone, accept=True).conventions == ()
+
+
+def test_axes_of_omega_alone_are_no_convention_beside_an_attitude(tmp_path: Path) -> None:
+    """A permutation of omega must be one of the attitude's body axes too; alone in a file it may stand."""
+    sound = exact_columns("euler/with-attitude")
+    spoiled = replaced(sound, OMEGA, rows_of(sound, OMEGA)[:, [1, 2, 0]])
+    assert judged(tmp_path, "euler/with-attitude", spoiled, accept=True).conventions == ()
+    alone = {name: spoiled[name] for name in ("t", *OMEGA)}
+    (finding,) = judged(tmp_path, "euler/with-attitude", alone).conventions
+    assert finding.subject == "axes"
+    assert finding.words.endswith("other axes: axis 1 is w3, axis 2 is w1, axis 3 is w2")
+
+
+SYMMETRIC = (
+    'title = "Symmetric"\nmodel = "euler"\ntrack = ["omega", "attitude"]\n[body]\n'
+    "inertia = [1.3, 1.3, 0.7]\n[initial]\nomega = [0.5, 0.2, 1.5]\nattitude = [1, 2, -1, 3]\n"
+    "[time]\nend = 20\nsamples = 21\n"
+)
+
+
+@pytest.mark.parametrize("with_attitude", [False, True])
+@pytest.mark.parametrize("angle", [0.3, -0.3])
+def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_path: Path) -> None:
+    """A symmetric body that starts turned about its axis looks late; its initial state fails."""
+    name = tmp_path / "symmetric.toml"
+    name.write_text(SYMMETRIC)
+    scene = load(str(name))
+    assert isinstance(scene.initial, Spin)
+    c, s = np.cos(angle), np.sin(angle)
+    w1, w2, w3 = map(float, scene.initial.omega)
+    turned = tuple(Fraction(v) for v in (float(c * w1 - s * w2), float(s * w1 + c * w2), w3))
+    initial = replace(scene.initial, omega=turned)
+    columns = columns_at(replace(scene, initial=initial), scene.clock.instants)
+    if not with_attitude:
+        columns = {n: columns[n] for n in ("t", *OMEGA)}
+    found = judged(tmp_path, str(name), columns, accept=True)
+    assert found.conventions == ()
+    first = found.verdicts[0]
+    assert (first.quantity, first.verdict) == ("initial state", Status.FAIL)
+
+
+def test_a_body_that_stands_still_has_no_unit_of_time(tmp_path: Path) -> None:
+    """A constant omega is not counted in nanoseconds, in which the truth does not move either."""
+    sound = exact_columns("euler/with-attitude")
+    still = replaced(sound, OMEGA, [rows_of(sound, OMEGA)[0]] * len(sound["t"]))
+    for columns in (still, {n: still[n] for n in ("t", *OMEGA)}):
+        assert judged(tmp_path, "euler/with-attitude", columns).conventions == ()
+
+
+# Honest files of first-order engines, whose later rows are off by far more than a hundredth.
+
+
+def identical(columns: Columns) -> Columns:
+    return columns
+
+
+def all_at_once(columns: Columns) -> Columns:
+    return scalar_last(in_degrees(in_space_axes(columns)))
+
+
+# A start in line with the axes of space shows space axes only after a while.
+@pytest.mark.parametrize(
+    ("scene", "rows"),
+    [("euler/with-attitude", 5), ("euler/with-attitude", 1001), ("euler/nesc-brick", 1001)],
+)
+@pytest.mark.parametrize(
+    ("spoil", "subjects"),
+    [
+        (identical, []),
+        (scalar_last, ["quaternion"]),
+        (conjugate, ["quaternion"]),
+        (in_space_axes, ["omega"]),
+        (in_degrees, ["omega"]),
+        (permuted, ["axes"]),
+        (all_at_once, ["omega", "quaternion"]),
+    ],
+)
+def test_the_first_rows_of_an_engine_decide(
+    scene: str, rows: int, spoil: Callable[[Sound], Columns], subjects: list[str], tmp_path: Path
+) -> None:
+    """Of semi-implicit Euler at h = 0.01 the first five rows suffice, and a long file hides nothing."""
+    file = read(write_csv(tmp_path / "mine.csv", spoil(first_order(scene, rows))))
+    found = conventions(file, load(scene), rung("f64")).findings
+    assert [finding.subject for finding in found] == subjects
+    assert all(finding.is_certain for finding in found)
+
+
+def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: Path) -> None:
+    """The start and the first step are right to a hundredth even where omega never changes."""
+    scene = "euler/with-attitude"
+    columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
+    found = judged(tmp_path, scene, columns)
+    assert [finding.subject for finding in found.conventions] == ["omega", "quaternion"]
+    assert [cause.name for cause in found.causes] == ["no gyroscopic term"]
+
+
+@cache
+def first_order(scene: str, rows: int) -> Columns:
+    return engine(scene, explicit, 0.01, rows)
+
+
+# Readings.
+
+
+def test_axes_are_the_24_rotations_of_a_cube() -> None:
+    """All are signed permutations of determinant 1, all are different, and none is a reflection."""
+    matrices = [axes.vectors(np.eye(3)).T for axes in AXES]
+    assert len({m.tobytes() for m in matrices}) == 24
+    for axes, P in zip(AXES, matrices, strict=True):
+        assert np.array_equal(P @ P.T, np.eye(3))
+        assert np.linalg.det(P) == pytest.approx(1)
+        assert np.allclose(rotations(np.array([axes.quaternion], dtype=float))[0], P, atol=1e-15)
+
+
+def test_renaming_both_frames_is_a_conjugation() -> None:
+    """left and right by P together are P R P^T, as renaming all axes asks for."""
+    R = rotations(np.array([[0.3, -0.5, 0.7, 0.2]]))
+    for axes in AXES:
+        P = axes.vectors(np.eye(3)).T
+        assert np.allclose(axes.left(axes.right(R))[0], P @ R[0] @ P.T, atol=1e-15)
+
+
+def test_renamed_quaternions_are_those_of_the_renamed_matrices() -> None:
+    """A quaternion under other axes is that of Q R P^T, and keeps its length."""
+    q = 0.5 * np.array([[0.3, -0.5, 0.7, 0.2]])
+    for frames in (f for a in AXES for f in (Frames(body=a), Frames(space=a), Frames(a, a))):
+        turned = frames.quaternions(q)
+        assert np.allclose(rotations(turned), frames.attitudes(rotations(q)), atol=1e-15)
+        assert np.linalg.norm(turned) == pytest.approx(np.linalg.norm(q), rel=1e-15)
+
+
+@pytest.mark.parametrize("group", ["omega", "quaternion", "attitude", "centre", "linear_impulse"])
+def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
+    """What is tried in float64 is what is corrected in exact numbers."""
+    width = {"quaternion": 4, "attitude": 9}.get(group, 3)
+    rows = np.random.default_rng(1).standard_normal((2, width))
+    R = rotations(np.random.default_rng(2).standard_normal((2, 4)))
+    with mp.workdps(30):
+        held, frames = (np.vectorize(mpf, otypes=[object])(a) for a in (rows, R))
+        renamed = Frames(AXES[5], AXES[17])
+        for reading in (*readings(group), *readings(group, renamed)):
+            exact = reading.read(held, frames).astype(float)
+            assert np.allclose(reading.read(rows, R), exact, rtol=1e-13, atol=1e-13)
+
+
+def test_first_reading_is_the_scenes_own() -> None:
+    """The one reading without cost leaves columns as they are, quaternions with their length."""
+    for group in ("omega", "quaternion", "attitude", "centre", "angular_impulse"):
+        costs = [reading.cost for reading in readings(group)]
+        assert costs.count(0) == 1
+        assert costs[0] == 0
+    q = np.array([[2.0, 0.0, 0.0, 0.0]])
+    assert np.array_equal(readings("quaternion")[0].read(q, q), q)
+
+
+def test_quaternion_of_the_tests_is_the_one_of_its_matrix() -> None:
+    """R(q(R)) = R, so that the files of these tests say what they mean."""
+    q = np.array([[0.1, -0.8, 0.5, 0.3]])
+    R = rotations(q)
+    again = rotations(np.array([[float(v) for v in quaternion(R[0])]]))
+    assert np.allclose(R, again, atol=1e-15)
+
+
+def test_accepting_says_what_was_corrected(tmp_path: Path) -> None:
+    """The document lists what was found, with both errors, and whether it was corrected."""
+    scene = "euler/with-attitude"
+    spoiled = in_degrees(exact_columns(scene))
+    for accept in (False, True):
+        (entry,) = judged(tmp_path, scene, spoiled, accept).document()["conventions"]
+        assert entry["about"] == "omega"
+        assert entry["corrected"] is accept
+        assert entry["error_with"] < EXPLAINS * entry["error_without"]
+
+
+def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
+    """A shift of 1/8192 is found to the last digit, so that the corrected file passes."""
+    scene = load("euler/with-attitude")
+    instants = [t + Fraction(1, 8192) for t in scene.clock.instants[::4]]
+    sound = exact_columns(scene.name)
+    spoiled = {**sound, "t": [float(t) for t in instants]}
+    found = judged(tmp_path, scene.name, spoiled)
+    shifts = [v.time_shift for v in found.verdicts if v.time_shift is not None]
+    assert shifts == pytest.approx([1 / 8192] * 2, rel=1e-9)
+    assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}

@@ -1,0 +1,306 @@
+"""The order of convergence of a fixed-step answer: read where it shows, and told with its reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from taylor_verify.judge.series.convergence import Sweep, convergence, sweep
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, Any]
+HALVED = [2.0**-k for k in range(1, 11)]
+FLOOR = 1e-14
+
+
+def errors_of(order: float, steps: list[float] = HALVED, constant: float = 0.1) -> list[float]:
+    return [constant * h**order for h in steps]
+
+
+# What a sweep of numbers shows.
+
+
+@given(st.floats(0.8, 8), st.floats(1e-3, 10))
+def test_a_power_of_the_step_has_that_order(order: float, constant: float) -> None:
+    """e = C h^p has order p, with no scatter, over all the steps that rounding leaves clear."""
+    found = convergence(HALVED, errors_of(order, constant=constant), 1e-40)
+    assert found.order == pytest.approx(order, abs=1e-9)
+    # Half an interval of nothing but the roundings of ten logarithms.
+    assert found.spread <= 1e-9
+    assert found.steps == tuple(HALVED)
+    assert found.level is None
+
+
+@given(st.permutations(range(len(HALVED))))
+def test_steps_come_in_any_order(places: list[int]) -> None:
+    """The order in which a sweep was made says nothing."""
+    errors = errors_of(4)
+    shuffled = convergence([HALVED[k] for k in places], [errors[k] for k in places], FLOOR)
+    assert shuffled == convergence(HALVED, errors, FLOOR)
+
+
+@given(st.integers(1, 6), st.integers(0, 2**32))
+def test_rounding_hides_no_order(order: int, seed: int) -> None:
+    """With noise of the floor added to every error the order is still read, from the steps above it."""
+    noise = np.random.default_rng(seed).uniform(0, FLOOR, len(HALVED))
+    found = convergence(HALVED, list(errors_of(order) + noise), FLOOR, expected=order)
+    assert found.is_expected
+    # Ten floors of error have a tenth of noise at most: log2(1.1) over one halving.
+    assert found.order == pytest.approx(order, abs=0.14)
+
+
+def test_errors_that_stop_falling_at_the_floor_are_rounding() -> None:
+    """The words say where, and that it is rounding; the steps beyond are not used."""
+    errors = [max(e, 3e-14) for e in errors_of(4, constant=1e-3)]
+    found = convergence(HALVED, errors, FLOOR)
+    assert found.reason.endswith("errors stop falling at 3e-14: rounding")
+    assert found.level == 3e-14
+    assert found.steps[-1] > max(h for h, e in zip(HALVED, errors, strict=True) if e == 3e-14)
+
+
+def test_errors_that_stop_far_above_the_floor_are_no_rounding() -> None:
+    """What no step removes and no rounding explains is told with its multiple of the floor."""
+    found = convergence(HALVED, [e + 2e-5 for e in errors_of(2)], FLOOR)
+    assert "errors stop falling at 2e-05: 2e+09 times what rounding leaves" in found.reason
+    assert "not by rounding" in found.reason
+    assert not found.reason.endswith(": rounding")
+
+
+def test_rounding_that_grows_with_the_number_of_steps_has_no_order() -> None:
+    """Errors like h^-1/2 beyond the best step are not read as an order."""
+    errors = [
+        e + 1e-14 / math.sqrt(h) for e, h in zip(errors_of(4, constant=1e-3), HALVED, strict=True)
+    ]
+    found = convergence(HALVED, errors, [1e-14 / math.sqrt(h) for h in HALVED], expected=4)
+    assert found.is_expected
+    assert "rounding" in found.reason
+
+
+def test_large_steps_are_not_asymptotic_yet() -> None:
+    """A first-order method whose next term is large has order 1, and the large steps are left out."""
+    errors = [0.001 * h + 10 * h**4 for h in HALVED]
+    found = convergence(HALVED, errors, FLOOR, expected=1)
+    assert found.is_expected
+    assert "larger ones are not asymptotic yet" in found.reason
+    assert found.steps[0] < 0.1
+
+
+def test_an_order_that_is_not_the_expected_one_is_said() -> None:
+    """`order 1.02, expected 4`: both numbers, first thing."""
+    found = convergence(HALVED, errors_of(1.02), FLOOR, expected=4)
+    assert found.reason.startswith("order 1.02, expected 4;")
+    assert not found.is_expected
+
+
+@given(st.integers(0, 2**32))
+def test_scatter_is_no_order(seed: int) -> None:
+    """Errors drawn at random have no order that agrees with an expected fourth one."""
+    errors = list(10 ** np.random.default_rng(seed).uniform(-6, -5, len(HALVED)))
+    assert not convergence(HALVED, errors, FLOOR, expected=4).is_expected
+
+
+def test_two_steps_show_no_order() -> None:
+    """One ratio of errors agrees with itself: it takes a third step to disagree."""
+    found = convergence([0.2, 0.1], [1.6e-3, 1e-4], FLOOR)
+    assert found.order is None
+    assert found.reason.startswith("no order: 2 steps show an error of the method, and it takes 3")
+
+
+@pytest.mark.parametrize("broken", [None, math.nan, math.inf])
+def test_a_step_without_an_answer_is_named_and_not_scored(broken: float | None) -> None:
+    """A run that broke is no error of zero and none of any size."""
+    errors: list[float | None] = list(errors_of(4))
+    errors[0] = broken
+    found = convergence(HALVED, errors, FLOOR, expected=4)
+    assert found.is_expected
+    assert found.reason.endswith("no answer with step 0.5") or "no answer with step 0.5;" in (
+        found.reason
+    )
+    assert 0.5 not in found.steps
+
+
+def test_an_answer_without_error_at_any_step_has_no_order() -> None:
+    """Zero is below every floor, also below a floor of zero."""
+    for floor in (0.0, FLOOR):
+        assert convergence(HALVED, [0.0] * len(HALVED), floor).order is None
+
+
+@pytest.mark.parametrize("steps", [[0.1, 0.1, 0.2], [0.1, 0.0, 0.2], [0.1, -0.1, 0.2]])
+def test_steps_are_positive_and_distinct(steps: list[float]) -> None:
+    """Else the call is wrong, and says so."""
+    with pytest.raises(ValueError, match="expected positive steps, no two the same"):
+        convergence(steps, [1.0, 1.0, 1.0])
+
+
+def test_every_step_has_an_error() -> None:
+    """Unlike lengths are a wrong call."""
+    with pytest.raises(ValueError, match="got 2 errors and 3 floors"):
+        convergence([0.1, 0.2, 0.4], [1.0, 2.0])
+
+
+# Small fixed-step integrators of the test's own.
+
+
+def short(name: str, span: int = 4) -> Scene:
+    """A shipped scene asked at every unit of a short time."""
+    return replace(
+        load(name), clock=Clock(Fraction(0), tuple(Fraction(k) for k in range(span + 1)))
+    )
+
+
+def euler_rates(problem: Problem, number: type) -> Callable[[Floats], Floats]:
+    inertia = np.array(problem.given.body.inertia, dtype=float)
+    inverse = np.linalg.inv(inertia).astype(number)
+    inertia = inertia.astype(number)
+    return lambda w: inverse @ np.cross(inertia @ w, w)
+
+
+def explicit_euler(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+    return w + h * f(w), w
+
+
+def rk4(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+    """The step, and the mean of the angular velocities at its four stages."""
+    two = type(h)(2)
+    k1 = f(w)
+    w2 = w + h / two * k1
+    k2 = f(w2)
+    w3 = w + h / two * k2
+    k3 = f(w3)
+    w4 = w + h * k3
+    weights = (w + two * w2 + two * w3 + w4) / type(h)(6)
+    return w + h / type(h)(6) * (k1 + two * k2 + two * k3 + f(w4)), weights
+
+
+def turned(q: Floats, angle: Floats) -> Floats:
+    """q times the exponential of half a rotation vector in body axes."""
+    size = float(np.linalg.norm(angle))
+    s, v = math.cos(size / 2), math.sin(size / 2) / size * angle
+    return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))])
+
+
+def fixed_step(
+    method: Callable[..., tuple[Floats, Floats]], number: type = np.float64, attitude: bool = False
+) -> Callable[[Problem, float], Floats]:
+    def solve(problem: Problem, step: float) -> Floats:
+        f = euler_rates(problem, number)
+        initial = problem.given.initial
+        w = np.array([float(v) for v in initial.omega]).astype(number)
+        q = np.array([float(v) for v in initial.attitude])
+        q /= np.linalg.norm(q)
+        rows = [[*w, *q] if attitude else [*w]]
+        for a, b in pairwise(float(t) for t in problem.given.clock.elapsed):
+            count = round((b - a) / step)
+            h = number((b - a) / count)
+            for _ in range(count):
+                w, mean = method(f, w, h)
+                q = turned(q, float(h) * mean.astype(float)) if attitude else q
+            rows.append([*w, *q] if attitude else [*w])
+        return np.array(rows)
+
+    return solve
+
+
+COARSE = [2.0**-k for k in range(1, 7)]
+
+
+@pytest.fixture(scope="module")
+def averaged() -> Sweep:
+    scene = short("euler/with-attitude")
+    return sweep(scene, fixed_step(rk4, attitude=True), COARSE, expected=4)
+
+
+def test_attitude_by_one_exponential_of_averaged_velocities_is_second_order(
+    averaged: Sweep,
+) -> None:
+    """omega is 4th order and the attitude only 2nd: velocities at four times do not commute."""
+    assert averaged.reason.startswith("omega is 4th order, attitude 2nd, T ")
+    assert averaged.quantities["omega"].is_expected
+    attitude = averaged.quantities["attitude"]
+    assert not attitude.is_expected
+    assert attitude.reason.startswith(f"order {attitude.order:.2f}, expected 4")
+    assert attitude.order == pytest.approx(2, abs=0.25)
+
+
+def test_printed_it_is_read_at_a_glance(averaged: Sweep) -> None:
+    """The orders in a line, and below a line for every quantity with its reason."""
+    first, *rest = str(averaged).splitlines()
+    assert first == averaged.reason
+    told = [(line.split()[0], line.split(maxsplit=1)[1]) for line in rest]
+    assert told == [(name, found.reason) for name, found in averaged.quantities.items()]
+
+
+def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
+    """Of the conserved quantities those in body axes are of omega's order; H in space is not."""
+    orders = {name: found.order for name, found in averaged.quantities.items()}
+    assert orders["H_space"] == pytest.approx(2, abs=0.25)
+    # Of energy and momentum RK4 loses one order less than of the state.
+    assert min(orders["T"], orders["H2"]) >= 3.75
+
+
+def test_explicit_euler_is_first_order() -> None:
+    """Said beside the order that was expected of it."""
+    steps = [2.0**-k for k in range(5, 11)]
+    found = sweep(short("euler/generic"), fixed_step(explicit_euler), steps, expected=4)
+    omega = found.quantities["omega"]
+    assert omega.order == pytest.approx(1, abs=0.1)
+    assert omega.reason.startswith(f"order {omega.order:.2f}, expected 4")
+
+
+def test_arithmetic_in_float32_stops_above_the_rounding_of_float64() -> None:
+    """On f64 the level is no rounding; on f32, whose floor is as high, it is."""
+    solve, scene = fixed_step(rk4, np.float32), short("euler/generic")
+    steps = [2.0**-k for k in range(0, 8)]
+    leak = sweep(scene, solve, steps, "f64", expected=4).quantities["omega"]
+    assert "so not by rounding" in leak.reason
+    assert 1e-9 < leak.level < 1e-5
+    honest = sweep(scene, solve, steps, "f32", expected=4).quantities["omega"]
+    assert "not by rounding" not in honest.reason
+    assert "rounding" in honest.reason
+
+
+def test_a_solver_that_breaks_at_large_steps_is_judged_by_the_others() -> None:
+    """A raised error at one step is named, and the order is that of the rest."""
+    sound = fixed_step(rk4)
+
+    def fragile(problem: Problem, step: float) -> Floats:
+        if step > 0.3:
+            raise ArithmeticError("the step is too large")
+        return sound(problem, step)
+
+    omega = sweep(short("euler/generic"), fragile, COARSE, expected=4).quantities["omega"]
+    assert omega.is_expected
+    assert "no answer with step 0.5" in omega.reason
+
+
+def test_a_wrong_equation_converges_to_something_else() -> None:
+    """A solver of another body has no order: its error is the same at every step."""
+    sound = fixed_step(rk4)
+
+    def other(problem: Problem, step: float) -> Floats:
+        body = replace(problem.given.body, inertia=((1, 0, 0), (0, 2, 0), (0, 0, Fraction("3.01"))))
+        return sound(replace(problem, given=replace(problem.given, body=body)), step)
+
+    omega = sweep(short("euler/generic"), other, COARSE[2:], expected=4).quantities["omega"]
+    assert not omega.is_expected
+    assert "so not by rounding" in omega.reason
+
+
+def test_errors_that_fall_faster_and_faster_have_not_stalled() -> None:
+    """Steps that are too large for a method show a low order first: no error is left that none removes."""
+    found = convergence([0.2, 0.1, 0.05, 0.025], [0.233, 0.199, 0.14, 0.0838])
+    assert found.stalls_at is None
+    noise = convergence([0.2, 0.1, 0.05, 0.025], [1e-12, 1.1e-12, 0.9e-12, 1e-12])
+    assert noise.stalls_at == 0.2

@@ -1,0 +1,106 @@
+"""The gyroscopic term: how an engine treats it is named where that explains its omega, and only there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from first_order import Kick, engine, explicit, implicit, in_space_axes, none
+from trajectories import VECTORS, Columns, columns_at, exact_columns, write_csv
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.scenes.reading.reader import load
+
+OMEGA = VECTORS["omega"]
+WORDS = {
+    none: "no gyroscopic term",
+    explicit: "explicit gyroscopic step",
+    implicit: "implicit gyroscopic step",
+}
+
+
+def causes(path: Path, scene: str, columns: Columns) -> list[str]:
+    """The causes of a file: they name the gyroscopic term."""
+    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
+    assert isinstance(found, FileJudgement)
+    return [cause.sentence for cause in found.causes]
+
+
+@pytest.mark.parametrize("scene", ["euler/with-attitude", "euler/full-tensor"])
+@pytest.mark.parametrize("kick", WORDS)
+@pytest.mark.parametrize(("h", "every"), [(0.01, 1), (0.002, 50)])
+def test_each_treatment_is_named(
+    scene: str, kick: Kick, h: float, every: int, tmp_path: Path
+) -> None:
+    """Rows that are the steps, and rows many steps apart, show what the engine does and its step."""
+    (cause,) = causes(tmp_path, scene, engine(scene, kick, h, 41, every))
+    assert cause.startswith(f"{WORDS[kick]}: ")
+    assert kick is none or f"with h = {h:g}; " in cause
+    # Of rows that are steps all is explained but roundings.
+    assert "this explains 100 % of the error of omega" in cause
+
+
+def test_a_moment_is_no_gyroscopic_term(tmp_path: Path) -> None:
+    """Under a moment an engine without the term still has omega grow by I^-1 M."""
+    columns = engine("euler/constant-moment", none, 0.01, 21)
+    assert columns["w1"][0] != columns["w1"][-1] or columns["w3"][0] != columns["w3"][-1]
+    (cause,) = causes(tmp_path, "euler/constant-moment", columns)
+    assert cause.startswith("no gyroscopic term: ")
+
+
+def test_omega_in_space_axes_is_taken_to_the_body_first(tmp_path: Path) -> None:
+    """The engine's own attitude takes omega to body axes, so that its errors do not hide the cause."""
+    (cause,) = causes(
+        tmp_path,
+        "euler/with-attitude",
+        in_space_axes(engine("euler/with-attitude", explicit, 0.01, 201)),
+    )
+    assert cause.startswith("explicit gyroscopic step: ")
+
+
+def late(sound: Columns) -> Columns:
+    return sound | {"t": [t + 0.005 for t in sound["t"]]}
+
+
+def scaled(sound: Columns) -> Columns:
+    return sound | {"w2": [1.001 * w for w in sound["w2"]]}
+
+
+def noisy(sound: Columns) -> Columns:
+    noise = np.random.default_rng(3).standard_normal(len(sound["t"]))
+    return sound | {"w1": [float(w + 1e-6 * e) for w, e in zip(sound["w1"], noise, strict=True)]}
+
+
+@pytest.mark.parametrize("spoil", [late, scaled, noisy])
+def test_another_error_is_not_called_a_gyroscopic_one(
+    spoil: Callable[[Columns], Columns], tmp_path: Path
+) -> None:
+    """A late clock, a wrong scale and noise have no such cause, nor has a sound file."""
+    sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
+    assert causes(tmp_path, "euler/with-attitude", spoil(sound)) == []
+    assert causes(tmp_path, "euler/with-attitude", sound) == []
+
+
+def test_the_other_sign_is_named(tmp_path: Path) -> None:
+    """The motion back in time is the one that a gyroscopic term of the other sign makes."""
+    sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
+    back = columns_at(load("euler/with-attitude"), [-Fraction(t) for t in sound["t"]])
+    turned = sound | {name: back[name] for name in OMEGA}
+    (cause,) = causes(tmp_path, "euler/with-attitude", turned)
+    assert cause.startswith("gyroscopic term with the other sign: ")
+
+
+def test_the_command_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A constant omega is no unit of time and no slow clock: its engine lacks the gyroscopic term."""
+    columns = engine("euler/with-attitude", none, 0.5, 41)
+    file = write_csv(tmp_path / "mine.csv", columns)
+    assert main(["check", file, "--scene", "euler/with-attitude", "--accept-conventions"]) == 1
+    printed = capsys.readouterr().out
+    assert "no gyroscopic term" in printed
+    assert "nanoseconds" not in printed
+    assert "its clock runs" not in printed

@@ -1,0 +1,336 @@
+"""The judgement: errors in their units, floors from the orbit, gates that NaN and doubt cannot pass."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Settled, Unsettled
+from taylor_verify.judge.errors.drifts import drifts
+from taylor_verify.judge.errors.state import Errors, arc_length, largest, state_errors
+from taylor_verify.judge.floor.attainable import Floor, floor
+from taylor_verify.judge.gates import index_of_largest, judge
+from taylor_verify.models.problem import pose
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.reason import Reason
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, exit_status, summary
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor.driver import Taylor
+
+
+def errors_of(values: list[float], radius: float = 0.0) -> Errors:
+    column = np.array([mpf(v) for v in values], dtype=object)
+    radii = np.array([mpf(radius)] * len(values), dtype=object)
+    return Errors("omega", "max|omega|", column, radii, {"omega": mpf(1)})
+
+
+def motion_of(**quantities: list[list[object]]) -> Motion:
+    arrays = {name: np.array(rows, dtype=object) for name, rows in quantities.items()}
+    count = len(next(iter(arrays.values())))
+    return Motion(arrays, np.array([mpf(0)] * count, dtype=object))
+
+
+# Gates.
+
+TERMS = Reason()
+
+
+def test_gate_stands_at_ten_times_the_attainable_error() -> None:
+    """An error of exactly the bound passes, one unit above it fails."""
+    attainable = np.array([1e-15, 2e-15])
+    bound = GATE_FACTOR * attainable[1]
+    assert GATE_FACTOR == 10
+    assert judge(errors_of([0.0, bound]), attainable, TERMS).status is Status.PASS
+    above = math.nextafter(bound, 1)
+    assert judge(errors_of([0.0, above]), attainable, TERMS).status is Status.FAIL
+
+
+def test_gate_asks_every_sample() -> None:
+    """A small error at a time when nothing is excused fails, though a later, larger one is allowed."""
+    attainable = np.array([1e-16, 1e-12])
+    finding = judge(errors_of([1e-14, 5e-12]), attainable, TERMS)
+    assert finding.status is Status.FAIL
+    assert (finding.worst, finding.ratio_at) == (1, 0)
+
+
+@given(st.integers(0, 4), st.floats(0, 1e-3))
+def test_nan_fails_wherever_it_stands(place: int, other: float) -> None:
+    """One NaN among the errors is a fail, never undecided, vacuous or a pass."""
+    values = [other] * 5
+    values[place] = math.nan
+    for attainable in (1e-16, 1e-3, 10.0):
+        finding = judge(errors_of(values), np.full(5, attainable), TERMS)
+        assert finding.status is Status.FAIL
+        assert finding.worst == place
+
+
+@given(st.lists(st.floats(0, 1e9), min_size=1), st.integers(0, 100))
+def test_largest_does_not_lose_a_nan(values: list[float], place: int) -> None:
+    """`largest` is max where all are numbers, and NaN where one is not, wherever it stands."""
+    numbers = [mpf(v) for v in values]
+    assert largest(numbers) == max(numbers)
+    assert values[index_of_largest(np.array(values))] == max(values)
+    numbers.insert(place % (len(numbers) + 1), mp.nan)
+    assert mp.isnan(largest(numbers))
+    doubles = np.array([float(number) for number in numbers])
+    assert np.isnan(doubles[index_of_largest(doubles)])
+
+
+def test_an_error_below_every_double_is_an_error() -> None:
+    """Where the floor is zero nothing may move: 10^-400 is no zero, and zero itself passes."""
+    floor = np.zeros(2)
+    assert judge(errors_of([mpf(0), mpf("1e-400")]), floor, TERMS).status is Status.FAIL
+    assert judge(errors_of([mpf(0), mpf(0)]), floor, TERMS).status is Status.PASS
+
+
+def test_truth_wider_than_a_sixteenth_of_the_bound_decides_nothing() -> None:
+    """A truth with a radius over bound/16 makes a gate undecided, for right and wrong alike."""
+    attainable = np.array([1e-15])
+    width = GATE_FACTOR * 1e-15 / 16
+    assert judge(errors_of([0.0], width), attainable, TERMS).status is Status.PASS
+    for error in (0.0, 1.0):
+        finding = judge(errors_of([error], 1.01 * width), attainable, TERMS)
+        assert finding.status is Status.UNDECIDED
+
+
+def test_floor_that_reaches_the_motion_is_vacuous_but_excuses_nothing_before() -> None:
+    """Where ten times the floor exceeds the motion the gate is vacuous; earlier samples still count."""
+    attainable = np.array([1e-15, 0.2])
+    assert judge(errors_of([1e-15, 0.9]), attainable, TERMS).status is Status.VACUOUS
+    assert judge(errors_of([1e-13, 0.9]), attainable, TERMS).status is Status.FAIL
+
+
+def test_what_left_the_orbit_does_not_come_back() -> None:
+    """After a bound as large as the motion a smaller one binds nobody, and counts for no ratio."""
+    attainable = np.array([1e-15, 0.2, 1e-3])
+    finding = judge(errors_of([2e-15, 0.9, 0.9]), attainable, TERMS)
+    assert finding.status is Status.VACUOUS
+    assert (finding.ratio, finding.ratio_at) == (pytest.approx(2), 0)
+    assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, TERMS).status is Status.FAIL
+
+
+def test_no_floor_and_an_error_is_a_fail() -> None:
+    """Where nothing can be lost (a body at rest) any error is infinitely many times the floor."""
+    finding = judge(errors_of([0.0, 1e-300]), np.zeros(2), TERMS)
+    assert finding.status is Status.FAIL
+    assert finding.ratio == math.inf
+    assert judge(errors_of([0.0, 0.0]), np.zeros(2), TERMS).status is Status.PASS
+
+
+# Verdicts.
+
+
+def verdict_of(status: Status, **numbers: float) -> Verdict:
+    return Verdict("s", "taylor", "f64", "", "omega", status, "reached the last sample", **numbers)
+
+
+@pytest.mark.parametrize(
+    ("found", "status"),
+    [
+        ([Status.PASS], 0),
+        ([Status.PASS, Status.UNAVAILABLE], 0),
+        ([Status.PASS, Status.UNDECIDED], 3),
+        ([Status.VACUOUS], 3),
+        ([Status.REFUSED], 3),
+        ([Status.UNDECIDED, Status.FAIL], 1),
+    ],
+)
+def test_exit_status_is_green_for_passes_alone(found: list[Status], status: int) -> None:
+    """0 if all that could run passed, 1 if anything failed, 3 if something is open."""
+    assert exit_status([verdict_of(s) for s in found]) == status
+
+
+def test_summary_counts_every_status() -> None:
+    """Every status is named in the summary, the vacuous and unavailable ones too."""
+    counts = summary([verdict_of(Status.PASS), verdict_of(Status.VACUOUS)])
+    assert counts == {
+        "pass": 1, "fail": 0, "undecided": 0, "vacuous": 1, "refused": 0, "unavailable": 0
+    }  # fmt: skip
+
+
+def test_row_holds_no_number_that_json_cannot() -> None:
+    """NaN and infinity become null in a row."""
+    row = verdict_of(Status.FAIL, max=math.nan, ratio=math.inf, mean=1.0).row()
+    assert (row["max"], row["ratio"], row["mean"]) == (None, None, 1.0)
+
+
+# Errors.
+
+
+def scene_of(model: str, *track: str) -> Scene:
+    scene = load("euler/generic" if model == "euler" else "kirchhoff/screw")
+    return replace(scene, track=frozenset(track))
+
+
+def test_impulse_scales_x_and_y_apart_and_takes_the_larger() -> None:
+    """An error of 1e-3 in y of size 1e-3 is an error of one, whatever the size of x."""
+    truth = motion_of(linear_impulse=[[mpf(5), 0, 0]], angular_impulse=[[mpf("1e-3"), 0, 0]])
+    answer = motion_of(linear_impulse=[[mpf(5), 0, 0]], angular_impulse=[[mpf("2e-3"), 0, 0]])
+    (impulse,) = state_errors(scene_of("kirchhoff"), truth, answer)
+    assert float(impulse.values[0]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("angle", [1e-30, 1e-3, 1.0, 3.0])
+def test_attitude_error_is_the_angle_between_two_frames(angle: float) -> None:
+    """A frame turned by an angle about any axis is wrong by that angle, however small."""
+    with mp.workdps(60):
+        c, s = mp.cos(mpf(angle)), mp.sin(mpf(angle))
+        turned = [[c, -s, mpf(0)], [s, c, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
+        same = [[mpf(int(i == j)) for j in range(3)] for i in range(3)]
+        omega = [[mpf(1), mpf(0), mpf(0)]]
+        truth = motion_of(omega=omega, attitude=[same])
+        answer = motion_of(omega=omega, attitude=[turned])
+        _, attitude = state_errors(scene_of("euler", "attitude"), truth, answer)
+        # 60 digits less the 30 that the cosine loses at the smallest angle.
+        assert abs(attitude.values[0] / mpf(angle) - 1) <= mpf("1e-25")
+
+
+def test_quaternion_and_its_negative_are_one_attitude() -> None:
+    """The sign of an answer's quaternion changes no error."""
+    problem = pose(load("euler/with-attitude"), rung("f64"))
+    sound = Taylor().solve(problem)
+    flipped = replace(
+        sound, quantities=dict(sound.quantities) | {"quaternion": -sound.quantities["quaternion"]}
+    )
+    one, other = sound.motion(200)["attitude"], flipped.motion(200)["attitude"]
+    assert np.array_equal(one, other)
+
+
+def test_arc_length_of_a_steady_screw_is_speed_times_time() -> None:
+    """A centre that moves at a constant speed travels speed times span."""
+    scene = load("kirchhoff/steady-spin")
+    with mp.workdps(30):
+        truth = solution(scene).motion(scene.clock.elapsed, 20)
+        U = tensors.apply(scene.body.linear, scene.initial.linear)
+        U = tensors.plus(U, tensors.apply(scene.body.coupling, scene.initial.angular))
+        speed = mp.sqrt(mp.convert(tensors.dot(U, U)))
+        expected = speed * mp.convert(abs(scene.clock.elapsed[-1]))
+        assert abs(arc_length(scene, truth) / expected - 1) <= mpf("1e-18")
+
+
+# Drift and balance.
+
+
+def test_balance_of_the_exact_motion_under_load_is_zero() -> None:
+    """With moments the work balance of the truth itself closes to the digits of the truth."""
+    scene = load("euler/constant-moment")
+    scene = replace(scene, clock=Clock(Fraction(0), (Fraction(1), Fraction(3))))
+    exact = solution(scene)
+    with mp.workdps(40):
+        truth = exact.motion(scene.clock.elapsed, 40)
+        start = exact.motion([Fraction(0)], 40)
+        for _, errors in drifts(scene, start, truth, truth.quantities, 35):
+            # Three terms of 35 digits each.
+            assert all(error <= mpf("1e-33") for error in errors.values)
+
+
+def test_energy_alone_is_not_conserved_under_load() -> None:
+    """What the balance closes is not trivial: T itself changes by more than a tenth of its value."""
+    scene = load("euler/constant-moment")
+    exact = solution(scene)
+    with mp.workdps(30):
+        omega = exact.motion([Fraction(0), *scene.clock.elapsed], 20)["omega"]
+        I = np.array([[mp.convert(v) for v in row] for row in scene.body.inertia], dtype=object)
+        before, *after = (w @ I @ w for w in omega)
+    assert max(abs(T / before - 1) for T in after) > 0.1
+
+
+# The floor.
+
+
+def test_floor_of_a_body_at_constant_spin_is_a_random_walk() -> None:
+    """A spherical body only adds up roundings: the floor after N steps is u sqrt(N) |omega|."""
+    times = tuple(Fraction(k) for k in range(65))
+    body = RigidBody(tensors.diagonal((Fraction(2),) * 3))
+    spin = Spin((Fraction(1), Fraction(2), Fraction(2)))
+    scene = Scene("ball", "", "euler", frozenset(), body, spin, Clock(Fraction(0), times))
+    found = _floor_of(scene, steps=6400)
+    (errors,) = state_errors(scene, _truth(scene), _truth(scene))
+    # One injection at the start besides the 6400, hence a per cent.
+    assert found.of_state(errors)[-1] == pytest.approx(2.0**-53 * 80, rel=0.01)
+
+
+def test_floor_grows_with_the_orbit_as_a_perturbation_does() -> None:
+    """Near the unstable axis the floor follows e^(lambda t): a rounding there is carried to the flip.
+
+    In axes that are not principal, where a rounding of the large components is one of the small.
+    """
+    times = tuple(Fraction(k, 2) for k in range(41))
+    moments = tuple(Fraction(v) for v in (1, 2, 3))
+    c, s, nil = Fraction(3, 5), Fraction(4, 5), Fraction(0)
+    turn = ((c, -s, nil), (s, c, nil), (nil, nil, Fraction(1)))
+    spin = Spin(tensors.apply(turn, (Fraction(1, 10**12), Fraction(1), nil)))
+    turned = tensors.product(turn, tensors.diagonal(moments))
+    body = RigidBody(tensors.product(turned, tensors.transpose(turn)))
+    scene = Scene("edge", "", "euler", frozenset(), body, spin, Clock(Fraction(0), times))
+    (errors,) = state_errors(scene, _truth(scene), _truth(scene))
+    found = _floor_of(scene, steps=60).of_state(errors)
+    rate = math.sqrt(1 / 3)
+    assert math.log(found[40] / found[20]) == pytest.approx(10 * rate, rel=0.05)
+
+
+def _truth(scene: Scene) -> Motion:
+    return solution(scene).motion(scene.clock.elapsed, 25)
+
+
+def _floor_of(scene: Scene, steps: int) -> Floor:
+    return floor(scene, scene, Fraction(1, 2**53), steps)
+
+
+def test_sound_solver_stays_near_the_floor_and_not_far_below() -> None:
+    """On a regular orbit heyoka's error is between a hundredth of the attainable one and all of it."""
+    (_, omega, *_) = run("euler/generic", "taylor", "f64").verdicts
+    assert omega.verdict is Status.PASS
+    assert 0.01 <= omega.ratio <= 3
+
+
+# Truths that cannot be had.
+
+
+class Doubtful(Settled):
+    """A truth whose two evaluations never agree."""
+
+    route, regime = "mpmath", "generic"
+
+    def evaluate(self, elapsed: list[Fraction], digits: int) -> dict[str, object]:
+        return {"omega": np.array([[mpf(digits)] * 3 for _ in elapsed], dtype=object)}
+
+
+def test_truth_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where two precisions never agree there is no verdict but undecided, and it is not green."""
+    from taylor_verify.judge import judgement
+
+    with pytest.raises(Unsettled):
+        Doubtful().motion([Fraction(1)], 20)
+    monkeypatch.setattr(judgement, "solution", lambda scene: Doubtful())
+    verdicts = run("euler/generic", "taylor", "f64").verdicts
+    assert [v.verdict for v in verdicts] == [Status.UNDECIDED]
+    assert exit_status(verdicts) == 3
+
+
+def test_one_ulp_too_many_in_one_sample_is_seen_in_the_ratio() -> None:
+    """The error of a sample moved by 2^-40 is that much: nothing is lost between answer and verdict."""
+
+    def moved(problem: object) -> object:
+        states = Taylor().solve(problem).quantities["omega"].astype(float)
+        states[50] *= 1 + 2.0**-40
+        return states
+
+    (start, omega, T, H2) = run("euler/generic", Callback(moved), "f64").verdicts
+    assert start.verdict is Status.PASS
+    assert {omega.verdict, T.verdict, H2.verdict} == {Status.FAIL}
+    assert H2.max == pytest.approx(2 * 2.0**-40, rel=1e-3)

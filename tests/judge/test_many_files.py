@@ -1,0 +1,545 @@
+"""Several files of one solver at several steps: `check` judges each, and says the order of them all."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+from test_convergence import explicit_euler, fixed_step, rk4
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.judgement import NotPassed
+from taylor_verify.judge.series.files import FilesJudgement
+from taylor_verify.models.problem import pose
+from taylor_verify.publish.pictures import order as order_picture
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.records.answers import Order, Stall
+from taylor_verify.records.schema import schema
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows
+
+Floats = np.ndarray[Any, Any]
+Method = Callable[..., tuple[Floats, Floats]]
+Captured = pytest.CaptureFixture[str]
+
+SCENE = """
+title = "A short motion with its attitude"
+model = "euler"
+track = ["attitude"]
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [1, 0.4, 0.3]
+[time]
+end = 4
+samples = 5
+"""
+STEPS = (0.25, 0.125, 0.0625, 0.03125)
+NAMES = ("w1", "w2", "w3", "q0", "q1", "q2", "q3")
+
+
+def midpoint(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+    """The explicit midpoint rule; the attitude turns with the angular velocity of the middle."""
+    middle = w + h / type(h)(2) * f(w)
+    return w + h * f(middle), middle
+
+
+def with_euler_attitude(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+    """The classical method for omega; the attitude turns with the angular velocity of the beginning."""
+    return rk4(f, w, h)[0], w
+
+
+def rows_of(scene: Path, method: Method, step: float, number: type = np.float64) -> Floats:
+    problem = pose(load(str(scene)), rung("f64"))
+    return fixed_step(method, number, attitude=True)(problem, step)
+
+
+def write(
+    file: Path, rows: Floats, text: Callable[[float], str] = repr, head: str = "", spacing: int = 1
+) -> str:
+    lines = [*head.splitlines(), ",".join(("t", *NAMES[: rows.shape[1]]))]
+    for k, row in enumerate(rows):
+        lines.append(",".join([str(k * spacing), *(text(float(value)) for value in row)]))
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return str(file)
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("scene") / "short.toml"
+    file.write_text(SCENE, encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def files(scene: Path) -> list[str]:
+    """Runge-Kutta's answers, the step in the name of each."""
+    return [
+        write(scene.with_name(f"run_h{step}.csv"), rows_of(scene, rk4, step)[:, :3])
+        for step in STEPS
+    ]
+
+
+@pytest.fixture(scope="module")
+def judged(scene: Path, files: list[str]) -> FilesJudgement:
+    return taylor_verify.check(scene, files, partial=True)
+
+
+def order_of(judged: FilesJudgement, quantity: str) -> Order:
+    return next(order for order in judged.order if order.quantity == quantity)
+
+
+# The order.
+
+
+@pytest.mark.parametrize(("method", "expected"), [(explicit_euler, 1), (midpoint, 2), (rk4, 4)])
+def test_the_order_of_a_method_is_found(
+    method: Method, expected: int, scene: Path, tmp_path: Path
+) -> None:
+    """Euler's method, the midpoint rule and the classical Runge-Kutta method, from their files alone."""
+    steps = [step / (8 if expected == 1 else 1) for step in STEPS]
+    made = [
+        write(tmp_path / f"dt={step}.csv", rows_of(scene, method, step)[:, :3]) for step in steps
+    ]
+    omega = order_of(taylor_verify.check(scene, made, partial=True), "omega")
+    assert omega.order == pytest.approx(expected, abs=0.2)
+    assert omega.best_step == steps[-1]
+    assert [point.step for point in omega.points] == steps
+
+
+def test_an_attitude_of_a_lower_order_is_seen(scene: Path, tmp_path: Path) -> None:
+    """omega of order 4 beside an attitude of order 1: a line for each, and a sentence on the difference."""
+    made = [
+        write(tmp_path / f"h{step}.csv", rows_of(scene, with_euler_attitude, step))
+        for step in STEPS
+    ]
+    found = taylor_verify.check(scene, made)
+    assert order_of(found, "omega").order == pytest.approx(4, abs=0.2)
+    assert order_of(found, "attitude").order == pytest.approx(1, abs=0.2)
+    assert any("attitude has a lower order (1.0) than omega (4.0)" in note for note in found.notes)
+
+
+def test_in_float32_the_best_step_is_not_the_smallest(scene: Path, tmp_path: Path) -> None:
+    """Judged as float32 it is roundoff that takes over; judged as float64 it is something else."""
+    steps = [0.5 * 2.0**-k for k in range(9)]
+    made = [
+        write(tmp_path / f"h{step}.csv", rows_of(scene, rk4, step, np.float32)[:, :3])
+        for step in steps
+    ]
+    honest = order_of(taylor_verify.check(scene, made, "f32", partial=True), "omega")
+    assert honest.best_step is not None
+    assert honest.best_step > steps[-1]
+    assert honest.stall is Stall.ROUNDOFF
+    assert "roundoff takes over" in honest.sentence
+    leak = order_of(taylor_verify.check(scene, made, "f64", partial=True), "omega")
+    assert leak.stall is Stall.OTHER
+
+
+def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> None:
+    """With the second step told wrong no one order fits, and the file is named with the step it has."""
+    steps = (STEPS[0], 0.09, *STEPS[2:])
+    omega = order_of(taylor_verify.check(scene, files, partial=True, steps=steps), "omega")
+    assert omega.order is None
+    assert omega.suspect == files[1]
+    assert omega.suspect_step == pytest.approx(STEPS[1], rel=0.03)
+    assert "no one order fits" in omega.sentence
+
+
+# The steps.
+
+
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        ("run_h0.01.csv", 0.01),
+        ("dt=0.01.csv", 0.01),
+        ("rk4-dt1e-3.csv", 1e-3),
+        ("rk4h0.5.csv", 0.5),
+        ("run_h0p05.csv", 0.05),
+        ("step_0.5s.csv", None),
+        ("time-step=0.5.npz", 0.5),
+        ("h0.1/run.csv", 0.1),
+        ("step3.csv", None),
+        ("ch0.1.csv", None),
+        ("dt10ms.csv", None),
+        ("h0.csv", None),
+        ("h0.1_dt0.2.csv", None),
+        ("h1e999999999.csv", None),
+        ("run.csv", None),
+    ],
+)
+def test_a_name_states_a_step_or_none(name: str, step: float | None) -> None:
+    """h, dt or step before a number; an index, a unit, a zero and two steps that differ state none."""
+    found = step_in_name(name)
+    assert (found.value if found else None) == step
+
+
+@pytest.mark.parametrize(
+    ("ending", "content", "step"),
+    [
+        (".csv", "# h = 0.25\nt,w1,w2,w3\n0,1,0,0\n1,1,0,0\n", 0.25),
+        (".csv", "# rk4, time step: 2.5e-1 s\nt,w1,w2,w3\n0,1,0,0\n1,1,0,0\n", 0.25),
+        (".csv", "t,w1,w2,w3,dt\n0,1,0,0,0.25\n1,1,0,0,0.25\n", 0.25),
+        (".csv", "t,w1,w2,w3,dt\n0,1,0,0,0.25\n1,1,0,0,0.5\n", None),
+        (".csv", "t,w1,w2,w3\n0,1,0,0\n1,1,0,0\n", None),
+        (".json", '{"dt": 0.25, "t": [0, 1], "w1": [1, 1], "w2": [0, 0], "w3": [0, 0]}', 0.25),
+    ],
+)
+def test_a_file_states_a_step_or_none(
+    ending: str, content: str, step: float | None, tmp_path: Path
+) -> None:
+    """A comment, a column of one value, a key of the JSON object; a column that changes states none."""
+    file = tmp_path / f"run_h9{ending}"
+    file.write_text(content, encoding="utf-8")
+    assert read(file).step == (FileStep(step, Source.FILE) if step else None)
+
+
+def test_a_step_inside_a_file_comes_before_that_of_its_name(scene: Path, tmp_path: Path) -> None:
+    """And one that the caller states comes before both."""
+    rows = rows_of(scene, rk4, 0.25)[:, :3]
+    one = write(tmp_path / "h9.csv", rows, head="# h = 0.25")
+    other = write(tmp_path / "h0.5.csv", rows_of(scene, rk4, 0.5)[:, :3])
+    found = taylor_verify.check(scene, [one, other], partial=True)
+    assert [step and step.value for step in found.steps] == [0.25, 0.5]
+    assert "the steps are from the files themselves and the names of the files" in found.notes[0]
+    said = taylor_verify.check(scene, [one, other], partial=True, steps=[1, Fraction(1, 2)])
+    assert [step and (step.value, step.source) for step in said.steps] == [
+        (1.0, Source.CALL),
+        (0.5, Source.CALL),
+    ]
+
+
+def test_rows_are_taken_for_steps_only_where_they_differ(scene: Path, tmp_path: Path) -> None:
+    """The spacing of the rows is an assumption, said as such; equal spacings are no steps."""
+    rows = {step: rows_of(scene, rk4, 0.25)[:: round(step), :3] for step in (1, 2)}
+    made = [write(tmp_path / f"{k}.csv", rows[k], spacing=k) for k in (1, 2)]
+    found = taylor_verify.check(scene, made, partial=True)
+    assert [step and step.value for step in found.steps] == [1.0, 2.0]
+    assert found.notes[0].startswith("assumed: the spacing of the rows is the step")
+    alike = [write(tmp_path / f"{k}.csv", rows[1]) for k in ("a", "b")]
+    found = taylor_verify.check(scene, alike, partial=True)
+    assert found.order == ()
+    assert "the steps of the files are not known; say them with --steps 0.1,0.05" in found.notes[0]
+    assert step_of_rows([Fraction(0), Fraction(1), Fraction(3)]) is None
+
+
+def test_a_file_of_unknown_step_is_judged_alone(
+    scene: Path, files: list[str], tmp_path: Path
+) -> None:
+    """The others show their order, and it is said that this one has no part in it."""
+    other = write(tmp_path / "other.csv", rows_of(scene, rk4, 0.5)[:, :3])
+    found = taylor_verify.check(scene, [*files, other], partial=True)
+    assert len(found.files) == 5
+    assert len(order_of(found, "omega").points) == 4
+    assert f"the step of {other} is not known: it has no part in the order" in found.notes
+
+
+def test_two_files_of_one_step_have_no_order(scene: Path, files: list[str], tmp_path: Path) -> None:
+    """Their names are in the sentence; steps that the caller repeats are refused."""
+    again = write(tmp_path / "again_h0.25.csv", rows_of(scene, midpoint, 0.25)[:, :3])
+    found = taylor_verify.check(scene, [*files, again], partial=True)
+    assert found.order == ()
+    assert any(f"{files[0]} and {again} have the same step, h = 0.25" in n for n in found.notes)
+    with pytest.raises(ValueError, match=r"no two of which are the same, got 0.1 again @ steps"):
+        taylor_verify.check(scene, files[:2], steps=[0.1, 0.1])
+
+
+def test_a_file_that_ends_early_has_no_part_in_the_order(
+    scene: Path, files: list[str], tmp_path: Path
+) -> None:
+    """Its error is that of a shorter time."""
+    cut = write(tmp_path / "cut_h0.5.csv", rows_of(scene, rk4, 0.5)[:3, :3])
+    found = taylor_verify.check(scene, [cut, *files], partial=True)
+    assert f"{cut} ends before the others do, and has no part in the order" in found.notes
+    assert order_of(found, "omega").order == pytest.approx(4, abs=0.2)
+
+
+# The Python call.
+
+
+def test_a_list_of_files_has_one_judgement(judged: FilesJudgement, files: list[str]) -> None:
+    """Verdicts of all files, told apart by their setting; each file's own judgement; a table of pandas."""
+    assert isinstance(judged, FilesJudgement)
+    assert [one.file.name for one in judged.files] == files
+    assert judged.verdicts == tuple(v for one in judged.files for v in one.verdicts)
+    assert {verdict.setting for verdict in judged.verdicts} == {*files}
+    assert not judged.passed
+    assert not judged
+    with pytest.raises(NotPassed, match="f64 omega: 5 digits are right"):
+        judged.raise_for_failure()
+    assert len(judged.to_dataframe()) == len(judged.verdicts)
+    assert repr(judged).startswith("<FilesJudgement of 4 files on ")
+    assert "omega: order 4.0" in judged._repr_html_()
+
+
+def test_a_file_in_a_list_is_judged_as_it_is_alone(
+    scene: Path, judged: FilesJudgement, files: list[str]
+) -> None:
+    """The verdicts of the third file are those of `check` of this file."""
+    alone = taylor_verify.check(scene, files[2], partial=True)
+    assert judged.files[2].verdicts == alone.verdicts
+
+
+def test_one_file_in_a_list_shows_no_order(scene: Path, files: list[str]) -> None:
+    """It is judged, and a sentence says why there is no order."""
+    found = taylor_verify.check(scene, files[:1], partial=True)
+    assert found.order == ()
+    assert found.notes == ("no order of convergence: one file alone shows none",)
+
+
+@pytest.mark.parametrize(
+    ("asked", "options", "sentence"),
+    [
+        ([], {}, "expected at least one trajectory file, got an empty list"),
+        (
+            ["a.csv", "b.csv"],
+            {"steps": [0.1]},
+            "expected a step for each of 2 files, got 1 @ steps",
+        ),
+        (["a.csv", "b.csv"], {"steps": "0.1,0.2"}, "expected a step for each of 2 files"),
+        (["a.csv", "b.csv"], {"steps": [0.1, 0]}, r"a positive number, got 0 @ steps\[1\]"),
+        (
+            ["a.csv", "./a.csv", "a.csv"],
+            {},
+            "expected every file once, got ./a.csv again\nexpected",
+        ),
+        ("a.csv", {"steps": [0.1]}, "expected a list of files with steps, got one answer @ steps"),
+        (
+            [lambda problem: [[0, 0, 0, 1, 0, 0, 0]]],
+            {},
+            "expected trajectory files alone in a list",
+        ),
+        ([3], {}, "expected a callable solve.problem., a trajectory file, .*, got int: 3"),
+    ],
+)
+def test_a_wrong_call_is_refused(
+    asked: Any,
+    options: Mapping[str, Any],
+    sentence: str,
+    scene: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each in one sentence."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.csv", "b.csv"):
+        write(Path(name), rows_of(scene, rk4, 1.0))
+    with pytest.raises(ValueError, match=sentence):
+        taylor_verify.check(scene, asked, **options)
+
+
+def test_the_faults_of_all_files_are_told(scene: Path, files: list[str], tmp_path: Path) -> None:
+    """One that is not there and one of the other model: both, and none is judged halfway."""
+    foreign = tmp_path / "foreign.csv"
+    foreign.write_text("t,x1,x2,x3,y1,y2,y3\n0,1,0,0,1,0,0\n1,1,0,0,1,0,0\n")
+    with pytest.raises(Refused) as refused:
+        taylor_verify.check(scene, [files[0], str(foreign), "none.csv"])
+    assert "@ none.csv" in str(refused.value)
+    assert f"@ {foreign}" in str(refused.value)
+
+
+# The command.
+
+
+def called(capsys: Captured, *words: Any) -> tuple[int, str, str]:
+    status = main([str(word) for word in ("check", *words)])
+    return status, *capsys.readouterr()
+
+
+def exact_file(file: Path, scene: Path, rows: int = 5) -> str:
+    times = list(range(rows))
+    found = taylor_verify.exact(scene, times, 20)
+    return write(file, np.array(found["omega"], dtype=float))
+
+
+def test_the_command_says_the_order_first(scene: Path, files: list[str], capsys: Captured) -> None:
+    """The orders stand above the table of files, which goes from the largest step to the smallest."""
+    status, out, _ = called(capsys, *reversed(files), "--scene", scene, "--partial")
+    assert status == 1
+    assert out.index("omega: order 4.0 from h = 0.25 to 0.03125") < out.index(files[0])
+    places = [out.index(file) for file in files]
+    assert places == sorted(places)
+    assert "the steps are from the names of the files; --steps says others" in out
+
+
+def test_files_may_stand_on_both_sides_of_the_options(
+    scene: Path, files: list[str], capsys: Captured
+) -> None:
+    """argparse takes them in one place alone."""
+    _, out, _ = called(capsys, files[0], "--scene", scene, *files[1:], "--json")
+    assert [one["file"]["name"] for one in json.loads(out)["files"]] == files
+
+
+def test_the_worst_file_decides_the_exit_status(
+    scene: Path, files: list[str], tmp_path: Path, capsys: Captured
+) -> None:
+    """Two that pass: 0; one of them cut short: 3; one that fails: 1; one that cannot be read: 2."""
+    exact = [exact_file(tmp_path / f"h0.{k}.csv", scene) for k in (1, 2)]
+    cut = exact_file(tmp_path / "h0.3.csv", scene, rows=3)
+    assert called(capsys, *exact, "--scene", scene, "--partial")[0] == 0
+    assert called(capsys, exact[0], cut, "--scene", scene)[0] == 3
+    assert called(capsys, *exact, files[0], "--scene", scene, "--partial")[0] == 1
+    assert called(capsys, *exact, "none.csv", "--scene", scene)[0] == 2
+
+
+def test_the_document_is_of_the_published_schema(
+    scene: Path, files: list[str], judged: FilesJudgement, capsys: Captured
+) -> None:
+    """A document for each file, as `check` prints it of the file alone, and the order of all."""
+    _, out, _ = called(capsys, *files, "--scene", scene, "--partial", "--json")
+    document = json.loads(out)
+    errors = [error.message for error in Draft202012Validator(schema()).iter_errors(document)]
+    assert errors == []
+    assert set(document) == {"files", "order", "notes", "summary"}
+    assert document["order"] == json.loads(json.dumps(judged.document()["order"]))
+    assert [one["step"] for one in document["files"]] == list(STEPS)
+    _, out, _ = called(capsys, files[1], "--scene", scene, "--partial", "--json")
+    alone = json.loads(out)
+    assert {name: document["files"][1][name] for name in alone} == alone
+    broken = {**document, "order": [{**document["order"][0], "points": None}]}
+    assert not Draft202012Validator(schema()).is_valid(broken)
+    del broken["order"]
+    assert not Draft202012Validator(schema()).is_valid(broken)
+
+
+def test_a_ci_tells_the_files_apart(
+    scene: Path, files: list[str], tmp_path: Path, capsys: Captured
+) -> None:
+    """Their own document is a baseline; a row that grew names its file, in words and in JUnit."""
+    call = [*files[:2], "--scene", scene, "--partial"]
+    _, out, _ = called(capsys, *call, "--json")
+    base, results = tmp_path / "base.json", tmp_path / "r.xml"
+    base.write_text(out, encoding="utf-8")
+    _, _, said = called(capsys, *call, "--baseline", base)
+    assert "0 regressions" in said
+    document = json.loads(out)
+    row = next(v for v in document["files"][1]["verdicts"] if v["quantity"] == "omega")
+    row["max"] /= 1e3
+    base.write_text(json.dumps(document), encoding="utf-8")
+    status, _, said = called(capsys, *call, "--baseline", base, "--junit", results, "--github")
+    assert status == 1
+    (regression,) = [
+        line for line in said.splitlines() if "regression: " in line and "::" not in line
+    ]
+    assert regression.endswith(f"omega max ({files[1]})")
+    suites = ElementTree.parse(results).getroot()
+    assert [suite.get("name", "").rpartition(" ")[2] for suite in suites] == files[:2]
+    cases = [(case.get("classname"), case.get("name")) for case in suites.iter("testcase")]
+    assert len(cases) == len(set(cases))
+    told = [text for text in suites[1].itertext() if "regression: " in text]
+    assert len(told) == 1
+    assert not any("regression: " in text for text in suites[0].itertext())
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--steps", "0.1"], "expected a step for each of 2 files, got 1"),
+        (["--steps", "0.1,x"], "expected a number (an integer, a decimal or \"a/b\"), got 'x'"),
+        (["--steps", "0.1,-1"], "expected a positive step, got '-1' @ --steps"),
+        (["--steps", "0.1,0.1"], "expected steps no two of which are the same, got 0.1 again"),
+        (["--picture", "a.gif"], "expected a file that ends in .svg, .pdf, .png, got 'a.gif'"),
+        (
+            ["none.csv", "none.json"],
+            "got no such file @ none.csv\nexpected a trajectory file, got no",
+        ),
+        (["--scene", "euler/none"], "got euler/none"),
+    ],
+)
+def test_a_wrong_command_is_refused(
+    words: Sequence[str], sentence: str, scene: Path, files: list[str], capsys: Captured
+) -> None:
+    """Exit status 2 and a sentence; nothing on stdout, and nothing is judged."""
+    status, out, said = called(capsys, *files[:2], "--scene", scene, *words)
+    assert (status, out) == (2, "")
+    assert sentence in said
+
+
+def test_a_file_given_twice_is_refused(
+    scene: Path, files: list[str], tmp_path: Path, capsys: Captured
+) -> None:
+    """By one path or by two; the fault of another file is told with it."""
+    link = tmp_path / "link.csv"
+    link.symlink_to(files[0])
+    status, _, said = called(capsys, files[0], link, files[0], "none.csv", "--scene", scene)
+    assert status == 2
+    assert f"expected every file once, got {link} again" in said
+    assert f"expected every file once, got {files[0]} again" in said
+    assert "@ none.csv" in said
+
+
+def test_steps_and_pictures_are_of_several_files(
+    scene: Path, files: list[str], capsys: Captured
+) -> None:
+    """Both are refused with one file, and a picture with files of unknown steps too."""
+    status, _, said = called(capsys, files[0], "--scene", scene, "--steps", "0.1")
+    assert (status, "expected several files with --steps" in said) == (2, True)
+    status, _, said = called(capsys, files[0], "--scene", scene, "--picture", "a.svg")
+    assert (status, "expected several files whose steps are known" in said) == (2, True)
+
+
+# The picture.
+
+
+@pytest.mark.parametrize("ending", ["svg", "pdf", "png"])
+def test_a_picture_is_written(
+    ending: str, scene: Path, files: list[str], tmp_path: Path, capsys: Captured
+) -> None:
+    """In each format, and beside the answer; no half-written file stays in the folder."""
+    file = tmp_path / "new" / f"order.{ending}"
+    status, _, said = called(capsys, *files, "--scene", scene, "--partial", "--picture", file)
+    assert (status, f"wrote {file}" in said) == (1, True)
+    marks = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}
+    assert file.read_bytes().startswith(marks[ending])
+    assert [*file.parent.iterdir()] == [file]
+
+
+def test_the_picture_shows_every_error(judged: FilesJudgement) -> None:
+    """A line for each quantity through its errors, its floor, and the sentences as its alt text."""
+    picture = order_picture.picture("short on f64", judged.order)
+    assert all(order.sentence in picture.alt for order in judged.order)
+    with plotting():
+        figure = picture.figure()
+    lines = {line.get_gid(): line for axes in figure.axes for line in axes.lines}
+    for order in judged.order:
+        assert list(lines[order.quantity].get_ydata()) == [p.error for p in order.points]
+    floors = [line for axes in figure.axes for line in axes.lines if line.get_gid() == "floor"]
+    assert len(floors) == len(judged.order)
+
+
+def test_without_matplotlib_the_mend_is_said(
+    scene: Path, files: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    """Before anything is judged."""
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    file = tmp_path / "order.svg"
+    status, out, said = called(capsys, *files, "--scene", scene, "--picture", file)
+    assert (status, out) == (2, "")
+    assert "pip install 'taylor-verify[plots]'" in said
+    assert not file.exists()
+
+
+def test_files_of_another_start_are_named(scene: Path, files: list[str], tmp_path: Path) -> None:
+    """One file, of some, that does not begin as the scene does may be of another scene."""
+    rows = rows_of(scene, rk4, 0.5)[:, :3] * math.sqrt(2)
+    other = write(tmp_path / "other_h0.5.csv", rows)
+    found = taylor_verify.check(scene, [*files, other], partial=True)
+    assert (
+        found.notes[-1]
+        == f"{other} does not start as the scene does: is it a file of another scene?"
+    )
+    assert any(v.verdict is Status.FAIL for v in found.files[-1].verdicts)

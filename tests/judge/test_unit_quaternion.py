@@ -1,0 +1,118 @@
+"""The length of an answer's quaternions: no row where it is 1 to roundoff, else a row that fails."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from trajectories import QUATERNION, columns_at, exact_columns, write_csv
+
+import taylor_verify
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
+
+SCENE = "euler/with-attitude"
+SOUND = exact_columns(SCENE)
+ROWS = len(SOUND["t"])
+
+
+def stretched(factors: Sequence[float]) -> dict[str, list[float]]:
+    """The sound file with the quaternion of every row longer by a factor."""
+    return {
+        name: [v * f if name in QUATERNION else v for v, f in zip(values, factors, strict=True)]
+        for name, values in SOUND.items()
+    }
+
+
+def row(found: Judgement) -> Verdict | None:
+    return next((v for v in found.verdicts if v.quantity == UNIT_QUATERNION), None)
+
+
+def checked(path: Path, columns: Mapping[str, Sequence[Any]], **options: Any) -> Judgement:
+    return taylor_verify.check(SCENE, write_csv(path / "mine.csv", columns), **options)
+
+
+@pytest.mark.parametrize(
+    ("factors", "size", "said"),
+    [
+        ([0.5] * ROWS, 0.5, "the length of q0 q1 q2 q3 is 0.5"),
+        (np.linspace(1, 100, ROWS).tolist(), 99.0, "the length of q0 q1 q2 q3 is 1 to 100"),
+        ([1.0] * (ROWS - 1) + [1 + 1e-12], 1e-12, "is 1 to 1+1e-12"),
+    ],
+)
+def test_another_length_fails_with_its_size(
+    factors: list[float], size: float, said: str, tmp_path: Path
+) -> None:
+    """The attitude is read from any length and passes; the row of the length alone fails."""
+    found = checked(tmp_path, stretched(factors))
+    (failed,) = [v for v in found.verdicts if v.verdict is Status.FAIL]
+    assert failed.quantity == UNIT_QUATERNION
+    assert failed.max == pytest.approx(size, rel=1e-3)
+    assert said in failed.because
+    assert "attainable = u N" in failed.because
+
+
+def test_roundings_in_every_step_are_no_failure(tmp_path: Path) -> None:
+    """A length that grows by u a row is within roundoff times steps, and has no row."""
+    factors = [1 + 2.0**-53 * k for k in range(ROWS)]
+    assert row(checked(tmp_path, stretched(factors))) is None
+    assert row(checked(tmp_path, SOUND)) is None
+
+
+def test_the_order_of_the_quaternion_does_not_hide_its_length(tmp_path: Path) -> None:
+    """A quaternion that is corrected from scalar last is still half as long as it should be."""
+    half = stretched([0.5] * ROWS)
+    last = {f"q{i}": half[f"q{(i + 1) % 4}"] for i in range(4)}
+    failed = row(checked(tmp_path, half | last, accept_conventions=True))
+    assert failed is not None
+    assert failed.max == pytest.approx(0.5)
+
+
+def test_both_directions_of_time_are_looked_at(tmp_path: Path) -> None:
+    """A row before the start with a long quaternion fails as one after it."""
+    columns = columns_at(load(SCENE), [-2, -1, 0, 1, 2])  # type: ignore[list-item]
+    for name in QUATERNION:
+        columns[name][0] *= 1.5
+    failed = row(checked(tmp_path, columns))
+    assert failed is not None
+    assert (failed.at, failed.max) == (-2.0, pytest.approx(0.5))
+
+
+def test_a_quaternion_without_a_number_is_the_attitudes_failure(tmp_path: Path) -> None:
+    """NaN has no length: the attitude fails, and no second row says so."""
+    columns = stretched([1.0] * ROWS)
+    columns["q2"][3] = float("nan")
+    assert row(checked(tmp_path, columns)) is None
+
+
+def test_an_answer_of_a_callable_is_asked_too() -> None:
+    """The scene's own quaternion, which is not of unit length, does not pass as an attitude's."""
+
+    def solve(problem: Problem) -> Any:
+        motion = solution(problem.given).evaluate(problem.given.clock.elapsed, 30)
+        columns = columns_at(problem.given, problem.given.clock.instants)
+        start = problem.scene.initial
+        assert isinstance(start, Spin)
+        length = float(sum(q * q for q in start.attitude)) ** 0.5
+        q = length * np.array([columns[name] for name in QUATERNION]).T
+        return np.concatenate([motion["omega"].astype(float), q], axis=1)
+
+    failed = row(taylor_verify.check(SCENE, solve))
+    assert failed is not None
+    assert failed.max == pytest.approx(15**0.5 - 1)
+
+
+def test_our_own_solver_has_no_such_row() -> None:
+    """The Taylor solver keeps quaternions to roundoff, so that its tables stay as they are."""
+    for rung in ("f32", "f64"):
+        assert row(run(SCENE, "taylor", rung)) is None

@@ -1,0 +1,103 @@
+"""A picture in fewer bytes is the same picture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from io import StringIO
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from test_reach_page import study
+
+from taylor_verify.publish.pictures.compact_svg import compact
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.studies.reach import picture as digits_map
+from taylor_verify.studies.site.drawing import smaller
+
+SVG = "{http://www.w3.org/2000/svg}"
+HEAD = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">'
+HUNDREDTH = 0.005001
+
+
+@pytest.fixture(scope="module")
+def drawn() -> str:
+    """A map of digits as matplotlib writes it: cells, hatching, marks, words."""
+    with plotting():
+        file = StringIO()
+        figure = digits_map.picture(study().families[0], study().rows).figure()
+        figure.savefig(file, format="svg", metadata={"Title": "A map", "Date": None})
+    return file.getvalue()
+
+
+def marks(svg: str) -> Iterator[tuple[str, dict[str, str], str]]:
+    """Every mark with its style written out and its own words, without names of groups."""
+    root = ElementTree.fromstring(svg)
+    sheet = "".join(one.text or "" for one in root.iter(f"{SVG}style"))
+    styles = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", sheet))
+    for element in root.iter():
+        if element.tag in {SVG + name for name in ("path", "use", "text", "rect", "tspan")}:
+            given = dict(element.attrib)
+            given["style"] = given.get("style") or styles.get(given.pop("class", ""), "")
+            yield element.tag, given, (element.text or "").strip()
+
+
+def points(path: str) -> list[tuple[str, list[float]]]:
+    """The commands of a path, each with its letter and numbers."""
+    parts = re.findall(r"([A-Za-z]?)([^A-Za-z]*)", re.sub(r"([MLz])", r" \1 ", path))
+    return [(letter, [float(n) for n in numbers.split()]) for letter, numbers in parts if letter]
+
+
+def flat(path: str) -> list[float]:
+    return [number for _, numbers in points(path) for number in numbers]
+
+
+def test_every_mark_is_there_with_its_style_and_words(drawn: str) -> None:
+    """Marks come in the same order, in the same style, at the same places to a hundredth of a point."""
+    before, after = list(marks(drawn)), list(marks(compact(drawn)))
+    assert len(before) > 50
+    for (tag, old, words), (tag_now, new, words_now) in zip(before, after, strict=True):
+        assert (tag, words, old["style"]) == (tag_now, words_now, new["style"])
+        for name in ("clip-path", f"{'{http://www.w3.org/1999/xlink}'}href", "width"):
+            assert old.get(name) == new.get(name)
+        for name in ("x", "y"):
+            assert abs(float(old.get(name, 0)) - float(new.get(name, 0))) <= HUNDREDTH
+        pairs = zip(flat(old.get("d", "")), flat(new.get("d", "")), strict=True)
+        assert all(abs(a - b) <= HUNDREDTH for a, b in pairs)
+
+
+def test_it_is_less_than_half_and_stays_as_it_is(drawn: str) -> None:
+    """Made compact twice it is the same, and each version is smaller than the one before."""
+    once = compact(drawn)
+    assert compact(once) == once
+    assert len(once) < len(drawn) / 2
+    assert len(smaller(once)) < len(once)
+
+
+def test_what_is_referred_to_keeps_its_name(drawn: str) -> None:
+    """Every reference to a marker, a clip or a hatching has its target, once."""
+    text = compact(drawn)
+    targets = re.findall(r' id="([^"]*)"', text)
+    assert len(set(targets)) == len(targets)
+    used = set(re.findall(r'url\(#([^)]*)\)|href="#([^"]*)"', text))
+    assert {a or b for a, b in used} == set(targets)
+
+
+def test_words_keep_their_numbers() -> None:
+    """A label is text and no coordinate: none of its digits goes."""
+    svg = f'{HEAD}<title>0.123456</title><text x="1.23456">0.98765</text></svg>'
+    for made in (compact(svg), smaller(compact(svg))):
+        assert "0.123456" in made
+        assert '<text x="1.23">0.98765</text>' in made
+
+
+@given(st.lists(st.tuples(st.floats(-999, 999), st.floats(-999, 999)), min_size=2, max_size=9))
+def test_a_path_keeps_its_corners(corners: list[tuple[float, float]]) -> None:
+    """Whatever the numbers, large, small or in powers of ten, each corner is where it was."""
+    d = " \n".join(f"{'L' if k else 'M'} {x!r} {y!r}" for k, (x, y) in enumerate(corners))
+    (made,) = re.findall(r' d="([^"]*)"', compact(f'{HEAD}<path d="{d} z"/></svg>'))
+    assert made.endswith("z")
+    expected = [number for corner in corners for number in corner]
+    assert flat(made) == pytest.approx(expected, abs=HUNDREDTH)

@@ -1,0 +1,638 @@
+"""Pictures: every solver is told from the others, nothing false is joined, no name hides another."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations, pairwise
+from math import inf, log10, nan
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from taylor_verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
+from taylor_verify.publish.pictures.panels import panels_of
+from taylor_verify.publish.pictures.picture import Picture, plotting, save
+from taylor_verify.publish.pictures.ratio import Ratio
+from taylor_verify.publish.pictures.series import front_of, series_of
+from taylor_verify.publish.pictures.style import (
+    KINDS,
+    PAGE_WIDTH,
+    kind_of,
+    look_of,
+    look_of_line,
+    look_of_rung,
+)
+from taylor_verify.publish.pictures.wording import label_of, power_of_ten
+from taylor_verify.records.quantities import bits_of, place_of_rung
+from taylor_verify.studies.prices import picture as prices
+from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade
+
+RUNGS = ("f32", "f64", "f80", "f128", "mp237")
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def row(family: str, rung: str, requested: float, error: float | None, **other: Any) -> dict:
+    """A point as `Point.row` gives it, sound unless it says otherwise."""
+    made = {
+        "solver": family.replace(" ", ":"),
+        "setting": f"tol={requested:g}",
+        "rung": rung,
+        "family": family,
+        "asked": "tolerance",
+        "requested": requested,
+        "requested_digits": -log10(requested),
+        "achieved_digits": -log10(error) if error else None,
+        "error": error,
+        "steps": 100,
+        "evaluations": 1000,
+        "seconds": 0.01,
+        "spread": 1.5,
+        "first_seconds": 0.5,
+        "standing": "sound",
+        "because": "",
+    }
+    return made | other
+
+
+def family(name: str, rung: str, start: float, order: float, finest: int = 12) -> list[dict]:
+    """Work that grows by ``order`` decades of error a decade, from ``start`` seconds on."""
+    rows = []
+    for digits in range(3, finest + 1, 3):
+        work = 10 ** (digits / order)
+        counts = {"steps": int(20 * work), "evaluations": int(200 * work)}
+        rows.append(
+            row(name, rung, 10.0**-digits, 3 * 10.0**-digits, seconds=start * work, **counts)
+        )
+    return rows
+
+
+def fallen(name: str, rung: str, digits: int, standing: str) -> dict:
+    """A setting that is no answer."""
+    error = 2.0 if standing == "false success" else None
+    seconds = 0.02 if error else None
+    return row(name, rung, 10.0**-digits, error, standing=standing, seconds=seconds)
+
+
+OTHERS = [entry[0] for kind in KINDS for entry in kind.looks]
+
+
+def document(rows: list[dict], **other: Any) -> dict[str, Any]:
+    return {"scene": "euler/generic", "track": [], "points": rows, "timing": {"repeats": 5}} | other
+
+
+def many() -> dict[str, Any]:
+    """All solvers that have a look of their own, and two that have none."""
+    rows = [
+        one
+        for i, rung in enumerate(RUNGS)
+        for one in family(f"taylor {rung}", rung, 0.001 * 3**i, 14.0, (6, 15, 18, 33, 60)[i])
+    ]
+    for i, name in enumerate([*OTHERS, "process:./mine", "unheard of"]):
+        rows += family(name, "f64", 0.002 * 1.4 ** (i % 7), 3.0 + i % 5)
+    at = {(one["family"], one["requested"]): i for i, one in enumerate(rows)}
+    rows[at["scipy rk45", 1e-6]] = fallen("scipy rk45", "f64", 6, "failed")
+    rows[at["scipy bdf", 1e-3]] = fallen("scipy bdf", "f64", 3, "false success")
+    rows[at["cvode bdf", 1e-12]] = fallen("cvode bdf", "f64", 12, "failed")
+    rows[at["closed form", 1e-12]] |= {"error": 0.0, "achieved_digits": None}
+    return document(rows, attainable={"f64": 1e-15, "f128": 1e-34})
+
+
+def few(*kinds: str) -> dict[str, Any]:
+    """The kinds named, with one of everything that a legend explains."""
+    rows = [one for one in many()["points"] if one["family"].startswith(kinds)]
+    exact = row("scipy radau", "f64", 1e-13, 0.0)
+    return document([*rows, exact], attainable={"f64": 1e-15}, track=["attitude", "omega"])
+
+
+def figures(document: Mapping[str, Any]) -> Iterator[tuple[str, Figure]]:
+    for picture in trade.pictures(document):
+        with plotting():
+            figure = picture.figure()
+        yield picture.stem.rpartition("-")[2], figure
+
+
+@pytest.fixture(scope="module")
+def crowded() -> dict[str, Figure]:
+    return dict(figures(many()))
+
+
+# Looks
+
+
+def test_every_family_has_its_own_colour_and_marker() -> None:
+    """No two of all known families and rungs share a colour and a marker."""
+    looks = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
+    pairs = {(look.colour, look.marker) for look in looks}
+    assert len(pairs) == len(looks) >= 24
+
+
+def test_neighbours_differ_in_grey() -> None:
+    """Families next to each other in one panel, and rungs on the ladder, differ by 10 in lightness.
+
+    Ten of CIE lightness is one step of value in Munsell's scale, on which neighbours are told apart.
+    """
+    ladder = [look_of_rung(rung).colour for rung in RUNGS[:4]]
+    kinds = [[entry[1] for entry in kind.looks] for kind in KINDS]
+    lines = [look_of_line(i).colour for i in range(12)]
+    for colours in (ladder, *kinds, lines):
+        for one, other in pairwise(colours):
+            assert abs(lightness(one) - lightness(other)) >= 10
+
+
+def test_a_longer_rung_is_darker() -> None:
+    """Lightness falls along the ladder of precision."""
+    found = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
+    assert found == sorted(found, reverse=True)
+
+
+def test_lines_and_text_stand_out_from_paper() -> None:
+    """Lines have the contrast of 3 and text that of 4.5, which WCAG 2.1 asks for (1.4.11, 1.4.3)."""
+    names = [*OTHERS, *(f"unknown {i}" for i in range(50))]
+    colours = {look_of(name, "f64").colour for name in names}
+    colours |= {look_of_rung(rung).colour for rung in RUNGS}
+    assert all(contrast(colour) >= 3 for colour in colours)
+    assert all(contrast(for_text(colour)) >= 4.5 for colour in colours)
+    assert min(contrast(INK), contrast(QUIET)) >= 4.5
+
+
+@pytest.mark.parametrize(
+    ("colour", "light", "against_white"),
+    [("#FFFFFF", 100, 1), ("#000000", 0, 21), ("#777777", 50.0, 4.48), ("#FF0000", 53.2, 4.0)],
+)
+def test_lightness_and_contrast_are_those_of_the_standards(
+    colour: str, light: float, against_white: float
+) -> None:
+    """L of CIE 1976 and the contrast of WCAG 2, at values that are published to so many decimals."""
+    assert lightness(colour) == pytest.approx(light, abs=0.05)
+    assert contrast(colour) == pytest.approx(against_white, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("name", "same"),
+    [
+        ("scipy RK45", "scipy:RK45?rtol=1e-3&atol=1e-6"),
+        ("geometric preprocessed-moser-veselov", "geometric:preprocessed-moser-veselov?step=1/4"),
+        ("CVODE Adams", "sundials cvode adams"),
+    ],
+)
+def test_a_solver_looks_the_same_however_it_is_set(name: str, same: str) -> None:
+    """Options and punctuation change no look."""
+    assert look_of(name, "f64") == look_of(same, "f64")
+    assert kind_of(name) == kind_of(same)
+
+
+def test_a_longer_name_is_another_solver() -> None:
+    """moser-veselov is not taken for its preprocessed kin, whose name contains it."""
+    plain, preprocessed = "geometric moser-veselov", "geometric preprocessed-moser-veselov"
+    assert look_of(plain, "f64") != look_of(preprocessed, "f64")
+
+
+def test_a_program_of_ones_own_borrows_no_look() -> None:
+    """A command that names taylor or SciPy is still somebody's program."""
+    known = {(look.colour, look.marker) for look in (look_of(n, "f64") for n in OTHERS)}
+    known |= {(look_of_rung(rung).colour, look_of_rung(rung).marker) for rung in RUNGS}
+    for command in ("process:./taylor f64", "process:./scipy_rk45", "taylorseries.jl"):
+        look = look_of(command, "f64")
+        assert (look.colour, look.marker) not in known
+        assert kind_of(command) == "others"
+
+
+def test_an_unknown_look_is_the_same_in_every_process() -> None:
+    """Not even with another hash seed does an unknown name look different."""
+    code = (
+        "from taylor_verify.publish.pictures.style import look_of;"
+        "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
+    )
+    seen = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1")
+    }
+    assert len(seen) == 1
+    assert "Look(" in seen.pop()
+
+
+def test_rungs_are_in_order_of_their_bits() -> None:
+    """The ladder's order and the bits of a significand agree, and what is no rung has no bits."""
+    assert sorted(RUNGS, key=place_of_rung) == sorted(RUNGS, key=bits_of) == list(RUNGS)
+    assert bits_of("double") == bits_of("mp") == 0
+
+
+# What is joined
+
+
+def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) -> None:
+    """Every drawn line is a run of settings next to each other in their family, all of them sound."""
+    rows = many()["points"]
+    keys = {"time": "seconds", "evaluations": "evaluations", "steps": "steps"}
+    checked = 0
+    for name, key in keys.items():
+        for axes in crowded[name].axes:
+            for line in axes.get_lines():
+                its = [one for one in rows if one["family"] == line.get_gid()]
+                if not its:
+                    continue
+                spots = [(one[key], one["error"]) for one in its if one["standing"] == "sound"]
+                order = [(one[key], one["error"]) for one in its]
+                drawn = [tuple(spot) for spot in line.get_xydata()]
+                assert set(drawn) <= set(spots)
+                places = [order.index(spot) for spot in drawn]
+                assert places == list(range(places[0], places[0] + len(places)))
+                checked += 1
+    assert checked >= 3 * 26
+
+
+def test_every_sound_point_is_drawn_once_a_panel(crowded: dict) -> None:
+    """Nothing sound is left out: each point of a family is on one of its lines or at the border."""
+    for one in many()["points"]:
+        if one["standing"] != "sound" or one["error"] == 0:
+            continue
+        spot = (one["seconds"], one["error"])
+        panels = [
+            sum(spot == tuple(xy) for line in axes.get_lines() for xy in line.get_xydata()
+                if line.get_gid() == one["family"])
+            for axes in crowded["time"].axes
+        ]  # fmt: skip
+        assert max(panels) == 1
+
+
+def test_what_is_no_answer_stands_alone_at_the_border(crowded: dict) -> None:
+    """Failures are crosses, false successes hollow, each a mark without a line, each at its time."""
+    marks = [
+        (line.get_gid(), line)
+        for axes in crowded["time"].axes
+        for line in axes.get_lines()
+        if line.get_gid() in ("failed", "false success", "exact")
+    ]
+    assert sorted(gid for gid, _ in marks) == ["exact", "failed", "failed", "false success"]
+    for gid, line in marks:
+        assert line.get_linestyle() == "None"
+        assert len(line.get_xydata()) == 1
+        # A failed run was not timed again: its only time is that of the first solve.
+        assert line.get_xdata()[0] == {"failed": 0.5, "false success": 0.02}.get(
+            gid, line.get_xdata()[0]
+        )
+    shapes = {gid: line.get_marker() for gid, line in marks}
+    assert shapes["failed"] == "x"
+    hollow = next(line for gid, line in marks if gid == "false success")
+    assert hollow.get_markerfacecolor() == "#FFFFFF" != hollow.get_markeredgecolor()
+
+
+def test_the_front_is_that_of_the_trade(crowded: dict) -> None:
+    """The stairs of each panel are the same, fall all the way, and no sound point is below them."""
+    stairs = [
+        [tuple(spot) for spot in line.get_xydata()]
+        for axes in crowded["time"].axes
+        for line in axes.get_lines()
+        if line.get_gid() == "front"
+    ]
+    assert len(stairs) == len(panels_of(series_of(many())))
+    sound = [one for one in many()["points"] if one["standing"] == "sound" and one["error"]]
+    for corners in stairs:
+        assert all(x <= x_next and y >= y_next for (x, y), (x_next, y_next) in pairwise(corners))
+        for one in sound:
+            reached = min(y for x, y in corners if x <= one["seconds"])
+            assert one["error"] >= reached
+
+
+def test_the_front_agrees_with_the_judgement() -> None:
+    """The front of a real trade-off, from its document alone, is the one that the trade names."""
+    from taylor_verify.scenes.reading.reader import load
+    from taylor_verify.studies.tradeoff.setting import settings as all_settings
+    from taylor_verify.studies.tradeoff.trade_off import trade_off
+
+    scene = load("euler/generic")
+    asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
+    made = trade_off(scene, asked, repeats=1).document()
+    found = front_of(made["points"], "seconds", "error")
+    assert [label_of(one) for one in found] == made["front"]
+    assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
+
+
+def test_the_diagonal_is_where_asked_and_achieved_agree(crowded: dict) -> None:
+    """Every panel of digits has it, and the points are the rows' own digits."""
+    digits = {(one["requested_digits"], one["achieved_digits"]) for one in many()["points"]}
+    for axes in crowded["digits"].axes:
+        (diagonal,) = [line for line in axes.get_lines() if line.get_gid() == "diagonal"]
+        assert all(x == y for x, y in diagonal.get_xydata())
+        for line in axes.get_lines():
+            if line.get_gid() in {one["family"] for one in many()["points"]}:
+                assert {tuple(spot) for spot in line.get_xydata()} <= digits
+
+
+def test_a_step_asks_for_no_digits() -> None:
+    """A family with a fixed step is not among the digits."""
+    rows = family("taylor f64", "f64", 0.01, 9.0)
+    for one in family("geometric splitting", "f64", 0.01, 3.0):
+        rows.append(one | {"asked": "step", "requested_digits": None})
+    drawn = {
+        line.get_gid()
+        for axes in dict(figures(document(rows)))["digits"].axes
+        for line in axes.get_lines()
+    }
+    assert "taylor f64" in drawn
+    assert "geometric splitting" not in drawn
+
+
+def test_floors_are_drawn_where_their_rung_is(crowded: dict) -> None:
+    """The attainable error of a rung stands in every panel with taylor on that rung."""
+    floors = [
+        sorted(line.get_ydata()[0] for line in axes.get_lines() if line.get_gid() == "floor")
+        for axes in crowded["time"].axes
+    ]
+    assert [1e-34, 1e-15] in floors
+    assert floors.count([1e-15]) == len(panels_of(series_of(many()))) - 1
+
+
+# Names
+
+
+def boxes(figure: Figure) -> list[tuple[Any, Any]]:
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    return [
+        (axes, text.get_window_extent(renderer))
+        for axes in figure.axes
+        for text in axes.texts
+        if text.get_gid() == "name"
+    ]
+
+
+def assert_names_are_apart(figure: Figure) -> None:
+    found = boxes(figure)
+    for axes, box in found:
+        frame = axes.get_window_extent()
+        assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
+        assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
+    for (axes, one), (other_axes, other) in combinations(found, 2):
+        assert axes is not other_axes or not one.overlaps(other)
+
+
+@pytest.mark.parametrize("name", ["time", "evaluations", "steps", "digits"])
+def test_no_name_overlaps_another(crowded: dict, name: str) -> None:
+    """With all solvers there are, each has its name in its panel, and no two names touch."""
+    assert_names_are_apart(crowded[name])
+    written = {text.get_text() for axes in crowded[name].axes for text in axes.texts}
+    for series in series_of(many()):
+        assert {series.family, series.label} & written
+
+
+@given(st.lists(st.tuples(st.floats(1, 12), st.floats(0, 4)), min_size=2, max_size=12))
+@settings(max_examples=8, deadline=None)
+def test_names_keep_apart_wherever_the_points_are(places: list[tuple[float, float]]) -> None:
+    """Twelve solvers of one point each, however close, have names that do not touch."""
+    rows = [
+        row(f"solver {i}", "f64", 1e-6, 10**-digits, seconds=10**-time)
+        for i, (digits, time) in enumerate(places)
+    ]
+    assert_names_are_apart(
+        next(figure for name, figure in figures(document(rows)) if name == "time")
+    )
+
+
+@pytest.mark.parametrize(
+    ("kinds", "panels"),
+    [(["scipy"], 1), (["taylor", "scipy"], 2), (["taylor", "scipy", "geometric"], 3)],
+)
+def test_nothing_is_cut_off(kinds: list[str], panels: int) -> None:
+    """Headings, numbers, axis names and the legend are on the page, and headings do not touch.
+
+    With one or two panels the legend is at the foot, with three it is beside the last.
+    """
+    assert len(panels_of(series_of(few(*kinds)))) == panels
+    for _, figure in figures(few(*kinds)):
+        assert_all_is_on_the_page(figure)
+
+
+def test_nothing_of_many_is_cut_off(crowded: dict) -> None:
+    """Nor is it with all solvers there are."""
+    assert_all_is_on_the_page(crowded["time"])
+
+
+def assert_all_is_on_the_page(figure: Figure) -> None:
+    canvas = FigureCanvasAgg(figure)
+    with plotting():
+        canvas.draw()
+    renderer = canvas.get_renderer()
+    everything = figure.get_tightbbox(renderer)
+    width, height = figure.get_size_inches()
+    assert width == PAGE_WIDTH
+    assert everything.x0 >= 0 <= everything.y0
+    assert everything.x1 <= width
+    assert everything.y1 <= height
+    headings = [axes._left_title.get_window_extent(renderer) for axes in figure.axes]
+    assert not any(one.overlaps(other) for one, other in combinations(headings, 2))
+
+
+# Files
+
+
+def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
+    """Drawn twice, in another order and with other settings of the user, every file is the same."""
+    rows = family("taylor f64", "f64", 0.01, 9.0) + family("scipy RK45", "f64", 0.05, 4.0)
+    made = [trade.pictures(document(rows))[0], priced()]
+    first = save(made, tmp_path / "a")
+    with matplotlib.rc_context({"font.size": 20, "lines.linewidth": 9, "svg.hashsalt": "other"}):
+        save(reversed(made), tmp_path / "b")
+    assert len(first) == 4
+    for path in first:
+        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+
+
+def test_a_trade_off_has_four_pictures_in_two_formats(tmp_path: Path) -> None:
+    """Each is an SVG for pages and a PDF for print, named for its scene."""
+    found = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
+    assert [path.name for path in found] == [
+        f"euler-generic-{what}.{ending}"
+        for what in ("time", "evaluations", "steps", "digits")
+        for ending in ("svg", "pdf")
+    ]
+    assert sorted(found) == sorted(tmp_path.iterdir())
+
+
+def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
+    """The SVG parses, its words are text, it tells what it shows; neither it nor the PDF has a date."""
+    picture = trade.pictures(few("taylor", "scipy"))[0]
+    svg, pdf = save([picture], tmp_path)
+    root = ElementTree.fromstring(svg.read_bytes())
+    words = {"".join(text.itertext()).strip() for text in root.iter(f"{SVG}text")}
+    assert {"f128", "rk45", "taylor f64", "time of a solve, best of 5 (s)"} <= words
+    assert root.find(f"{SVG}title").text == picture.title
+    assert picture.alt in {text.text for text in root.iter() if text.tag.endswith("description")}
+    assert not [tag for tag in root.iter() if tag.tag.endswith("}date")]
+    assert b"CreationDate" not in pdf.read_bytes()
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert b"/FontFile2" in pdf.read_bytes()
+
+
+def test_settings_of_the_user_stay(tmp_path: Path) -> None:
+    """Drawing leaves matplotlib's settings as they were."""
+    before = dict(matplotlib.rcParams)
+    save([priced()], tmp_path)
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
+    """If one of the pictures cannot be drawn, none is written, and nothing is left lying about."""
+
+    def broken() -> Figure:
+        raise ZeroDivisionError
+
+    save([priced()], tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    sound = replace(priced(), figure=lambda: Figure())
+    with pytest.raises(ZeroDivisionError):
+        save([sound, Picture("broken", "", "", broken)], tmp_path)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_without_matplotlib_the_error_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One sentence with the extra's name, and no file."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
+        save([priced()], tmp_path / "there")
+    assert not (tmp_path / "there").exists()
+
+
+def test_alt_texts_need_no_matplotlib() -> None:
+    """A page can be made anew where matplotlib is missing: names and alt texts are without it."""
+    rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
+    code = (
+        "import sys, json; sys.modules['matplotlib'] = None\n"
+        "from taylor_verify.publish.pictures import trade, prices, time_by_rung\n"
+        f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
+    )
+    made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "taylor f64" in made.stdout
+
+
+def test_the_alt_text_has_the_numbers() -> None:
+    """It names the fastest and the most accurate, and counts what is no answer."""
+    time = trade.pictures(many())[0].alt
+    front = front_of(many()["points"], "seconds", "error")
+    assert label_of(front[0]) in time
+    assert label_of(front[-1]) in time
+    assert time.endswith("Marked at the border: 1 false success, 2 failed.")
+
+
+def test_a_document_without_an_answer_is_refused() -> None:
+    """Where nothing is sound there is nothing to draw, and the error says where it looked."""
+    rows = [fallen("scipy RK45", "f64", 3, "failed")]
+    with pytest.raises(
+        ValueError, match=r"expected a sound point, got none @ euler/generic\.points"
+    ):
+        trade.pictures(document(rows))
+
+
+def test_uncounted_work_makes_no_picture() -> None:
+    """A solver that counts nothing has a picture of its time, and none of its steps."""
+    rows = [one | {"steps": 0, "evaluations": 0} for one in family("other", "f64", 0.1, 4.0)]
+    stems = [picture.stem for picture in trade.pictures(document(rows))]
+    assert stems == ["euler-generic-time", "euler-generic-digits"]
+
+
+# Ratios
+
+
+PRICES = (
+    Ratio("omega", "f64", 1.0, 1.0, 1.2),
+    Ratio("attitude", "f64", 2.1),
+    Ratio("omega", "f32", 0.8, 0.7, 1.1),
+    Ratio("attitude", "mp237", 214.0, 200.0, 290.0),
+)
+TIMES_BY_RUNG = tuple(
+    Ratio(label, rung, factor * (bits_of(rung) / 53) ** 2)
+    for label, factor in (("euler", 1), ("kirchhoff", 1.3))
+    for rung in reversed(RUNGS)
+)
+
+
+def priced(ratios: Sequence[Ratio] = PRICES) -> Picture:
+    return prices.picture("euler/generic", "omega on f64", ratios)
+
+
+def test_a_bar_ends_at_its_ratio() -> None:
+    """Every bar reaches from 1 to its ratio, the cheaper ones to the left, with the number beside."""
+    with plotting():
+        (axes,) = priced().figure().axes
+    ends = [{bar.get_x(), bar.get_x() + bar.get_width()} for bar in axes.patches]
+    for found, one in zip(ends, PRICES, strict=True):
+        assert min(found) == pytest.approx(min(1, one.ratio), rel=1e-15)
+        assert max(found) == pytest.approx(max(1, one.ratio), rel=1e-15)
+    numbers = [text.get_text() for text in axes.texts if text.get_gid() == "number"]
+    assert [float(text.split()[0]) for text in numbers] == [1.0, 2.1, 0.8, 214.0]
+
+
+def test_numbers_of_bars_are_on_the_page() -> None:
+    """Neither the names on the left nor the numbers on the right are cut off."""
+    long = replace(PRICES[3], label="attitude, centre, force and couple", ratio=288.0)
+    with plotting():
+        figure = priced([*PRICES, long]).figure()
+        everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
+    assert everything.x0 >= 0
+    assert everything.x1 <= PAGE_WIDTH
+
+
+def test_time_is_drawn_by_bits() -> None:
+    """Each label is one line from the shortest rung to the longest, its ratios as given."""
+    with plotting():
+        figure = time_by_rung.picture("two scenes", TIMES_BY_RUNG).figure()
+        (axes,) = figure.axes
+    assert_names_are_apart(figure)
+    for label, factor in (("euler", 1), ("kirchhoff", 1.3)):
+        (line,) = [line for line in axes.get_lines() if line.get_gid() == label]
+        assert list(line.get_xdata()) == [24, 53, 64, 113, 237]
+        assert list(line.get_ydata()) == [
+            factor * (bits / 53) ** 2 for bits in (24, 53, 64, 113, 237)
+        ]
+
+
+@pytest.mark.parametrize(
+    ("ratios", "said"),
+    [
+        ([], r"expected ratios, got none @ ratios"),
+        ([Ratio("", "f64", 1)], r"expected a text, got '' @ ratios\[0\]\.label"),
+        ([Ratio("a", "f64", nan)], r"got nan @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", inf)], r"got inf @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", -1)], r"got -1 @ ratios\[0\]\.ratio"),
+        ([Ratio("a", "f64", 1, low=0.0)], r"got 0.0 @ ratios\[0\]\.low"),
+        ([Ratio("a", "f64", 3, high=2)], r"between 3 and 2, got 3"),
+    ],
+)
+def test_a_ratio_that_is_none_is_refused(ratios: list[Ratio], said: str) -> None:
+    """What has no text, no positive number or is outside its range is named with its place."""
+    with pytest.raises(ValueError, match=said):
+        priced(ratios)
+
+
+def test_every_fault_is_said_at_once() -> None:
+    """Two faulty ratios give two lines."""
+    with pytest.raises(ValueError, match=r"ratios\[0\]\.ratio\n.*ratios\[1\]\.rung"):
+        priced([Ratio("a", "f64", 0), Ratio("b", "", 1)])
+
+
+def test_a_rung_without_bits_is_refused() -> None:
+    """A rung without a number of bits has no place on the axis."""
+    with pytest.raises(ValueError, match=r"expected a rung.*, got 'double' @ ratios\[0\]"):
+        time_by_rung.picture("two scenes", [Ratio("a", "double", 1)])
+
+
+@pytest.mark.parametrize(("value", "text"), [(1.0, "10⁰"), (1e-33, "10⁻³³"), (1e12, "10¹²")])
+def test_a_decade_is_plain_text(value: float, text: str) -> None:
+    """Its exponent is raised, and no markup is needed."""
+    assert power_of_ten(value) == text

@@ -1,0 +1,94 @@
+"""Keys that people try: each is refused with what to write instead, or with why it is not modelled."""
+
+from __future__ import annotations
+
+import pytest
+
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.hints import hints
+from taylor_verify.scenes.reading.reader import read
+
+BODIES = {
+    "euler": "inertia = [1, 2, 3]",
+    "kirchhoff": "clebsch = { p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 0.5 }",
+}
+STARTS = {
+    "euler": "omega = [1, 2, 3]",
+    "kirchhoff": "linear_impulse = [1, 2, 3]\nangular_impulse = [1, 2, 3]",
+}
+# The keys that a scene of each model may have, so that none of them is hinted at.
+KNOWN = {
+    ("body", "euler"): {"inertia", "moment"},
+    ("body", "kirchhoff"): {"clebsch", "energy", "ellipsoid", "mass_matrix", "force", "couple"},
+    ("initial", "euler"): {"omega", "attitude"},
+    ("initial", "kirchhoff"): {
+        *("linear_impulse", "angular_impulse", "linear_velocity", "angular_velocity"),
+        *("attitude", "centre"),
+    },
+    ("time", ""): {"start", "end", "samples", "at"},
+    ("", ""): {"title", "model", "source", "track", "body", "initial", "time", "manufactured"},
+}
+
+
+def refusal(model: str, part: str, key: str) -> str:
+    """The one fault of a sound scene with one key more."""
+    extra = {name: f"{key} = 1" if name == part else "" for name in ("", "body", "initial", "time")}
+    text = (
+        f'title = "x"\nmodel = "{model}"\n{extra[""]}\n[body]\n{BODIES[model]}\n{extra["body"]}\n'
+        f"[initial]\n{STARTS[model]}\n{extra['initial']}\n[time]\nend = 1\nsamples = 2\n{extra['time']}\n"
+    )
+    with pytest.raises(Refused) as refused:
+        read(text, "a test")
+    (line,) = refused.value.faults
+    return line
+
+
+TRIED = [
+    *(("kirchhoff", "body", key, "`mass_matrix`") for key in ("mass", "added_mass", "inertia")),
+    *(("kirchhoff", "body", key, "weight and buoyancy") for key in ("gravity", "buoyancy")),
+    ("kirchhoff", "body", "drag", "ideal"),
+    ("kirchhoff", "body", "torque", "`couple`"),
+    ("kirchhoff", "body", "damping", "not modelled yet"),
+    ("kirchhoff", "initial", "velocity", "`linear_velocity`"),
+    ("kirchhoff", "initial", "omega", "`angular_velocity`"),
+    ("kirchhoff", "initial", "position", "`centre`"),
+    ("kirchhoff", "initial", "quaternion", "`attitude = [q0, q1, q2, q3]`"),
+    ("euler", "body", "mass", "does not enter"),
+    ("euler", "body", "added_mass", '`model = "kirchhoff"`'),
+    ("euler", "body", "gravity", "no moment about the centre of mass"),
+    ("euler", "body", "torque", "`moment`"),
+    ("euler", "body", "Ixx", "`inertia`"),
+    ("euler", "body", "rotor", "not modelled yet"),
+    ("euler", "body", "damping", "not modelled yet"),
+    ("euler", "initial", "angular_velocity", "`omega`"),
+    ("euler", "initial", "velocity", "not modelled"),
+    ("euler", "initial", "position", "not modelled"),
+    ("euler", "initial", "quaternion", "scalar first"),
+    ("euler", "time", "dt", "`samples`"),
+    ("euler", "", "gravity", "not modelled"),
+    ("euler", "", "tolerance", "holds no tolerance"),
+]
+
+
+@pytest.mark.parametrize(("model", "part", "key", "fragment"), TRIED)
+def test_a_key_that_people_try_is_answered(model: str, part: str, key: str, fragment: str) -> None:
+    """The key is refused at its place, in whatever letters, and the sentence in brackets helps."""
+    for spelling in (key, key.upper()):
+        line = refusal(model, part, spelling)
+        place = f"{part}.{spelling}" if part else spelling
+        assert line.startswith(f"expected a known key, got `{spelling}` @ {place} (")
+        assert fragment in line.split(" (", 1)[1]
+
+
+def test_a_key_that_nobody_thought_of_is_answered_with_the_nearest() -> None:
+    """Without a sentence of its own a key gets the known one most like it."""
+    assert "did you mean `moment`?" in refusal("euler", "body", "momant")
+
+
+@pytest.mark.parametrize(("part", "model"), KNOWN)
+def test_no_sentence_is_for_a_key_that_is_read(part: str, model: str) -> None:
+    """A sentence for a known key would never be shown; a key in capitals would never be met."""
+    keys = hints(part, model)
+    assert keys
+    assert not KNOWN[part, model].intersection(keys)
+    assert all(key == key.lower() for key in keys)

@@ -1,0 +1,161 @@
+"""Scenes that mean harm: refused at once, in a bounded text, whatever is in them."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+from samples import LISTED_INSTANTS
+
+from taylor_verify.scenes.reading.clock import MOST_SAMPLES
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import MOST_BYTES, load, read
+
+# What a scene of a hundred kilobytes may take: a second where the machine is busy.
+PATIENCE = 5.0
+INSTANTS = '["0.5", 1, 2]'
+
+
+def refusal(text: str) -> Refused:
+    with pytest.raises(Refused) as refused:
+        read(text, "hostile")
+    return refused.value
+
+
+@pytest.mark.parametrize("name", ["pipe.toml", "pipe"])
+def test_a_pipe_is_never_opened(name: str, tmp_path: Path) -> None:
+    """A pipe would wait for a writer; it is refused by its kind, or is no scene's name."""
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(Refused, match=r"got a FIFO|expected a path or the name"):
+        load(tmp_path / name)
+
+
+def test_a_device_is_refused(tmp_path: Path) -> None:
+    """A device has no end."""
+    (tmp_path / "zero.toml").symlink_to("/dev/zero")
+    with pytest.raises(Refused, match="expected a readable scene file, got a device @"):
+        load(tmp_path / "zero.toml")
+
+
+def test_a_large_file_is_refused_by_its_size(tmp_path: Path) -> None:
+    """A scene is no larger than its million instants."""
+    (tmp_path / "large.toml").touch()
+    os.truncate(tmp_path / "large.toml", MOST_BYTES.most + 1)
+    with pytest.raises(
+        Refused, match=r"at most 33554432 bytes, got 33554433 .*\(a million instants"
+    ):
+        load(tmp_path / "large.toml")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["a\0b.toml", "\ud800.toml", "a\0b", "x" * 5000, "x" * 5000 + ".toml"],
+    ids=["NUL", "half a character", "NUL in a name", "long", "long path"],
+)
+def test_names_that_no_file_has_are_refused(name: str) -> None:
+    """A NUL, half a character and a name beyond any file system's are no fault of this package."""
+    with pytest.raises(Refused, match="expected a"):
+        load(name)
+
+
+def test_instants_are_no_more_than_samples() -> None:
+    """`at` holds as many instants as `samples` may ask for, and no more."""
+    listed = "[" + ",".join(map(str, range(1, MOST_SAMPLES + 2))) + "]"
+    (fault,) = refusal(LISTED_INSTANTS.replace(INSTANTS, listed)).faults
+    assert fault == "expected at most 1000000 numbers, got 1000001 @ time.at"
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        "a." * 50_000 + "a = 1",
+        "[" + "a." * 50_000 + "a]",
+        '"a" . ' * 50_000 + "a = 1",
+        "x = {" + "a." * 50_000 + "a = 1}",
+    ],
+    ids=["dotted", "header", "quoted", "inline"],
+)
+def test_keys_of_many_parts_are_refused_at_once(key: str) -> None:
+    """The reader of TOML takes the square of their number in time and memory; it is not asked."""
+    began = time.perf_counter()
+    (fault,) = refusal(f"{LISTED_INSTANTS}\n{key}\n").faults
+    assert time.perf_counter() - began <= PATIENCE
+    assert fault.startswith("expected a key of at most 16 parts, got more @ hostile, line ")
+
+
+def test_a_sentence_with_dots_is_no_key() -> None:
+    """Initials in a title, and paths in a comment, are left alone."""
+    sentence = (
+        "# " + "a." * 40 + "\n" + LISTED_INSTANTS.replace('title = "', 'title = "' + "A. " * 40)
+    )
+    assert read(sentence, "dots").title.startswith("A. A. ")
+
+
+@pytest.mark.parametrize("deep", ["[" * 50_000 + "]" * 50_000, "{a=" * 50_000 + "1" + "}" * 50_000])
+def test_deep_nesting_is_refused(deep: str) -> None:
+    """Brackets beyond the stack are a fault of the text."""
+    assert "nested too deeply" in str(refusal(f"{LISTED_INSTANTS}\nx = {deep}\n"))
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        "1" * 1_000_000,
+        "1." + "1" * 1_000_000,
+        "0x" + "f" * 1_000_000,
+        "1e999999999",
+        '"1e999999999"',
+    ],
+    ids=["integer", "decimal", "hexadecimal", "exponent", "text"],
+)
+def test_numbers_of_a_million_digits_are_refused(number: str) -> None:
+    """Nothing is built of a number that is too long, and the refusal is short."""
+    began = time.perf_counter()
+    fault = str(refusal(LISTED_INSTANTS.replace(INSTANTS, f"[{number}]")))
+    assert time.perf_counter() - began <= PATIENCE
+    assert len(fault) <= 300
+
+
+@pytest.mark.parametrize(
+    "extra",
+    [
+        "".join(f"k{i} = 1\n" for i in range(50_000)),
+        "k" * 1_000_000 + " = 1\n",
+    ],
+    ids=["many keys", "a long key"],
+)
+def test_the_refusal_of_many_faults_is_short(extra: str) -> None:
+    """A hundred faults are told, each cut short; a million would be read by nobody."""
+    began = time.perf_counter()
+    fault = refusal(f"{extra}{LISTED_INSTANTS}")
+    assert time.perf_counter() - began <= PATIENCE
+    assert len(fault.faults) <= 101
+    assert len(str(fault)) <= 30_000
+
+
+def test_many_wrong_instants_are_told_by_the_hundred() -> None:
+    """The line after the hundredth says that there are more."""
+    listed = "[" + ", ".join(['"x"'] * 10_000) + "]"
+    faults = refusal(LISTED_INSTANTS.replace(INSTANTS, listed)).faults
+    assert len(faults) == 101
+    assert faults[-1] == "and more faults beyond these hundred"
+
+
+def test_a_title_fits_into_a_cell() -> None:
+    """A title of a million characters would fill the terminal."""
+    long = LISTED_INSTANTS.replace('title = "', 'title = "' + "x" * 1_000_000)
+    (fault,) = refusal(long).faults
+    assert fault.startswith("expected at most 1000 characters, got 10000")
+
+
+def test_a_byte_order_mark_is_no_content(tmp_path: Path) -> None:
+    """A scene from another editor is the same scene."""
+    (tmp_path / "mine.toml").write_bytes(b"\xef\xbb\xbf" + LISTED_INSTANTS.encode())
+    assert load(tmp_path / "mine.toml").digest == read(LISTED_INSTANTS, "mine").digest
+
+
+def test_a_fault_is_one_line() -> None:
+    """A file's name may hold a line break; what a runner reads at a line's start is never a name."""
+    assert Refused(["a\n::error::b"]).faults == ("a\\n::error::b",)

@@ -1,0 +1,166 @@
+"""Bodies by mass matrix and starts by velocity: both exact, by two routes."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from flint import arb, arb_mat, ctx
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_scenes import remus_inertia
+
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.ellipsoid import inertias
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.precision import float_text
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+VELOCITIES = 'linear_velocity = [1.5, "1/3", -0.2]\nangular_velocity = [0.1, 0, "-2/7"]'
+U, OMEGA = (
+    (Fraction(3, 2), Fraction(1, 3), Fraction(-1, 5)),
+    (Fraction(1, 10), Fraction(0), Fraction(-2, 7)),
+)
+ELLIPSOID = "ellipsoid = { semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }"
+CLEBSCH = "clebsch = { p = 1, p_prime = 2, q = 0.1, q_prime = 0.2, r = 1, r_prime = 0.5 }"
+
+ENTRY = st.fractions(-5, 5, max_denominator=50)
+# L L^T + 1 is symmetric and positive definite, whatever L.
+FACTOR = st.lists(st.lists(ENTRY, min_size=6, max_size=6), min_size=6, max_size=6)
+VECTOR = st.tuples(ENTRY, ENTRY, ENTRY)
+
+
+def vehicle(body: str, start: str = VELOCITIES) -> Scene:
+    return read(
+        f'title = "x"\nmodel = "kirchhoff"\n[body]\n{body}\n[initial]\n{start}\n'
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+
+
+def solid(scene: Scene) -> ImmersedBody:
+    assert isinstance(scene.body, ImmersedBody)
+    return scene.body
+
+
+def impulses(scene: Scene) -> Vector:
+    assert isinstance(scene.initial, Impulse)
+    return scene.initial.linear + scene.initial.angular
+
+
+def written(matrix: Matrix) -> str:
+    rows = ", ".join("[" + ", ".join(f'"{entry}"' for entry in row) + "]" for row in matrix)
+    return f"mass_matrix = [{rows}]"
+
+
+def positive(factor: list[list[Fraction]]) -> Matrix:
+    rows = tuple(map(tuple, factor))
+    one = tensors.diagonal((Fraction(1),) * 6)
+    return tuple(map(tensors.plus, tensors.product(rows, tensors.transpose(rows)), one))
+
+
+@given(FACTOR, VECTOR, VECTOR)
+@settings(max_examples=25, deadline=None)
+def test_the_matrix_is_inverted_and_the_impulses_formed_exactly(
+    factor: list[list[Fraction]], velocity: Vector, turning: Vector
+) -> None:
+    """M times [[A, B], [B^T, C]] is 1; half v.M v is T of the impulses; these give the velocities back."""
+    matrix = positive(factor)
+    body = ImmersedBody.of_mass_matrix(matrix)
+    assert tensors.product(matrix, body.energy_matrix) == tensors.diagonal((Fraction(1),) * 6)
+    assert body.mass_matrix == matrix
+    x, y = body.impulses(velocity, turning)
+    v = velocity + turning
+    twice_energy = tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y))
+    assert twice_energy == tensors.dot(v, tensors.apply(matrix, v))
+    back = (
+        tensors.plus(tensors.apply(body.linear, x), tensors.apply(body.coupling, y)),
+        tensors.plus(
+            tensors.apply(tensors.transpose(body.coupling), x), tensors.apply(body.angular, y)
+        ),
+    )
+    assert back == (velocity, turning)
+
+
+def test_the_inverse_lies_in_the_balls_of_another_library() -> None:
+    """FLINT's inverse of the same matrix, in balls of 200 bits, meets every coefficient."""
+    matrix = remus_inertia()
+    found = solid(vehicle(written(matrix))).energy_matrix
+    with ctx.workprec(200):
+        balls = arb_mat([[ball(entry) for entry in row] for row in matrix]).inv()
+        for i in range(6):
+            for k in range(6):
+                assert balls[i, k].overlaps(ball(found[i][k]))
+                assert balls[i, k].rad() < arb(2) ** -150
+
+
+def test_a_mass_matrix_is_the_body_that_its_inverse_is() -> None:
+    """The inertia of the REMUS, read as a mass matrix, is the body that is shipped as an energy."""
+    shipped = load("kirchhoff/remus-100")
+    start = "linear_velocity = [1.5, 0.1, -0.2]\nangular_velocity = [0.5, 0.3, 0.2]"
+    scene = vehicle(written(remus_inertia()), start)
+    assert scene.body == shipped.body
+    assert impulses(scene) == impulses(shipped)
+
+
+@pytest.mark.parametrize("form", [CLEBSCH, ELLIPSOID, written(remus_inertia())])
+def test_velocities_start_a_body_of_every_form(form: str) -> None:
+    """U = A x + B y and Omega = B^T x + C y of the impulses formed are the velocities written."""
+    scene = vehicle(form)
+    assert tensors.apply(solid(scene).energy_matrix, impulses(scene)) == U + OMEGA
+
+
+def test_the_impulses_of_an_ellipsoid_are_those_of_lambs_integrals() -> None:
+    """(M + m_i) U_i and (I_i + j_i) Omega_i in balls agree with the impulses to 400 bits, less three."""
+    scene = vehicle(ELLIPSOID)
+    shape = solid(scene).ellipsoid
+    assert shape is not None
+    found = inertias(shape, COEFFICIENT_BITS + 40)
+    with ctx.workprec(COEFFICIENT_BITS + 80):
+        masses = [found.mass + m for m in found.added_mass]
+        masses += [I + j for I, j in zip(found.inertia, found.added_inertia, strict=True)]
+        for mass, v, impulse in zip(masses, U + OMEGA, impulses(scene), strict=True):
+            if v == 0:
+                assert impulse == 0
+            else:
+                assert abs(ball(impulse) / (mass * ball(v)) - 1) < arb(2) ** (3 - COEFFICIENT_BITS)
+
+
+def test_the_vehicle_that_is_shipped_is_the_remus_with_its_centre_of_mass_below() -> None:
+    """M of auv-turn is that of remus-100 plus the terms m z_g, 1.96 cm below the origin."""
+    offset = Fraction("30.48") * Fraction("0.0196")
+    terms = {(0, 4): offset, (4, 0): offset, (1, 3): -offset, (3, 1): -offset}
+    expected = tuple(
+        tuple(entry + terms.get((i, k), 0) for k, entry in enumerate(row))
+        for i, row in enumerate(remus_inertia())
+    )
+    scene = load("kirchhoff/auv-turn")
+    assert solid(scene).mass_matrix == expected
+    assert solid(scene).axis_of_symmetry is None
+    v = tensors.apply(solid(scene).energy_matrix, impulses(scene))
+    assert v == tuple(map(Fraction, ("1.5", "-0.1", "0", "0", "0", "0.2")))
+
+
+def test_explain_shows_the_inverse_and_says_that_it_is_exact() -> None:
+    """The body of a mass matrix is told with the six rows of its inverse, and how the start was formed."""
+    scene = load("kirchhoff/auv-turn")
+    body = explanation(scene, "f64")["body"]
+    assert "its inverse" in body[0]
+    assert "exactly, in rationals" in body[0]
+    rows = solid(scene).energy_matrix
+    for i, row in enumerate(rows, 1):
+        assert f"Row {i} of the inverse: {', '.join(map(float_text, row))}." in body
+    assert "(x, y) = M (U, Omega) are formed exactly" in body[-1]
+
+
+def test_a_body_by_its_coefficients_has_nothing_to_note() -> None:
+    """What is read as it is written is not commented."""
+    assert load("kirchhoff/remus-100").notes == ()
+    assert load("euler/generic").notes == ()
+    (note,) = vehicle(ELLIPSOID).notes
+    assert f"rounded to {COEFFICIENT_BITS} bits" in note

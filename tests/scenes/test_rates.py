@@ -1,0 +1,145 @@
+"""Angular velocities with a unit: exact multiples of one rational, so that regimes are decided as ever."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from flint import arb, ctx
+
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.route import solution
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.rates import degree
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Vector, apply
+
+
+def body(omega: str, inertia: str = "[1, 2, 3]") -> Scene:
+    return read(
+        f'title = "x"\nmodel = "euler"\n[body]\ninertia = {inertia}\n[initial]\nomega = {omega}\n'
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+
+
+def rate(omega: str) -> Vector:
+    initial = body(omega).initial
+    assert isinstance(initial, Spin)
+    return initial.omega
+
+
+def test_a_degree_is_pi_over_180_to_400_bits() -> None:
+    """The rational has 400 bits, and is nearer to pi/180 than 2^-400 of it."""
+    assert degree().numerator.bit_length() <= COEFFICIENT_BITS
+    assert degree().denominator & (degree().denominator - 1) == 0
+    with ctx.workprec(2 * COEFFICIENT_BITS):
+        assert abs(ball(degree()) * 180 / arb.pi() - 1) <= arb(2) ** -COEFFICIENT_BITS
+
+
+def test_zero_is_zero_and_ratios_are_those_written() -> None:
+    """0, "0" and "0 deg/s" are 0; 2 to -1 stays 2 to -1; a fraction is exact as well."""
+    one = degree()
+    assert rate('["2 deg/s", "0", "-1 deg/s"]') == (2 * one, 0, -one)
+    assert rate('["1/3 deg/s", 0, "0 deg/s"]') == (one / 3, 0, 0)
+    assert rate('["2deg/s", "+2.0  deg/s", "0.2e1 deg/s"]') == (2 * one,) * 3
+
+
+def test_units_may_stand_beside_each_other() -> None:
+    """A turn a minute is six degrees a second, and radians a second are the number itself."""
+    assert rate('["1 rpm", "6 deg/s", "0.1 rad/s"]') == (
+        6 * degree(),
+        6 * degree(),
+        Fraction(1, 10),
+    )
+    assert body('["0.1 rad/s", "1 rad/s", 0]').notes == ()
+
+
+# For moments 2, 3, 6 the separatrix is 2 w1^2 = 18 w3^2.
+REGIMES = {
+    "steady": ("[0, 30, 0]", '[0, "30 deg/s", 0]'),
+    "separatrix": ("[3, 7, 1]", '["3 deg/s", "7 deg/s", "1 deg/s"]'),
+    "generic": ("[3, 10, 2]", '["3 deg/s", "10 deg/s", "2 deg/s"]'),
+}
+
+
+@pytest.mark.parametrize(("bare", "degrees"), REGIMES.values(), ids=REGIMES)
+def test_the_regime_is_that_of_the_numbers_without_their_unit(bare: str, degrees: str) -> None:
+    """A common factor changes no regime: not even the separatrix, which a rounded rate would miss."""
+    found = solution(body(degrees, "[2, 3, 6]"), "arb").regime
+    assert found == solution(body(bare, "[2, 3, 6]"), "arb").regime
+
+
+def test_the_separatrix_is_met_exactly_in_degrees() -> None:
+    """2T J2 = H^2 in rationals."""
+    J = (2, 3, 6)
+    w = rate('["3 deg/s", "7 deg/s", "1 deg/s"]')
+    assert sum((a * b) ** 2 for a, b in zip(J, w, strict=True)) == J[1] * sum(
+        a * b**2 for a, b in zip(J, w, strict=True)
+    )
+
+
+def test_explain_says_how_degrees_were_formed() -> None:
+    """The shipped satellite is told with its unit, the bits, and what it means for ratios."""
+    scene = load("euler/satellite-degrees")
+    assert isinstance(scene.initial, Spin)
+    assert scene.initial.omega == (2 * degree(), 0, -degree())
+    (sentence,) = explanation(scene, "f64")["body"]
+    assert "initial.omega is given in deg/s" in sentence
+    assert "400 bits" in sentence
+    assert "exact multiple" in sentence
+
+
+def test_the_angular_velocity_of_a_vehicle_takes_units() -> None:
+    """`angular_velocity` in degrees is the Omega of the impulses, exactly."""
+    scene = read(
+        'title = "x"\nmodel = "kirchhoff"\n[body]\n'
+        "ellipsoid = { semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }\n[initial]\n"
+        'linear_velocity = [1, 0, 0]\nangular_velocity = ["1 rpm", 0, "-1 deg/s"]\n'
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    assert apply(scene.body.angular, scene.initial.angular) == (6 * degree(), 0, -degree())
+    assert "given in rpm and deg/s" in scene.notes[0]
+
+
+REFUSED = {
+    '["2 deg", 0, 0]': "an angular velocity in rad/s, deg/s or rpm",
+    '["2 deg/h", 0, 0]': "an angular velocity in rad/s, deg/s or rpm",
+    '["2 °/s", 0, 0]': "an angular velocity in rad/s, deg/s or rpm",
+    '["2 deg/s", 1, 0]': "a unit, as its neighbours have one",
+    '["1/0 deg/s", 0, 0]': "a denominator that is not zero",
+    '["1e99999 deg/s", 0, 0]': "powers of ten up to 5000",
+    '["nan deg/s", 0, 0]': "a number",
+    '["deg/s", 0, 0]': "a number",
+    '["1 deg/s", 0]': "3 numbers",
+    '"1 deg/s"': "3 numbers",
+}
+
+
+@pytest.mark.parametrize(("omega", "expected"), REFUSED.items())
+def test_what_is_no_rate_is_refused(omega: str, expected: str) -> None:
+    """One line, with what is expected and where."""
+    with pytest.raises(Refused) as refused:
+        body(omega)
+    (line,) = refused.value.faults
+    assert line.startswith(f"expected {expected}") or f"with {expected}" in line
+    assert "@ initial.omega" in line
+
+
+def test_a_unit_stands_nowhere_else() -> None:
+    """In a moment, a time, a moment of inertia it is refused with the sentence that says so."""
+    with pytest.raises(Refused) as refused:
+        read(
+            'title = "x"\nmodel = "euler"\n[body]\ninertia = [1, 2, "3 kg m^2"]\n'
+            'moment = ["1 N m", 0, 0]\n[initial]\nomega = [1, 2, 3]\n[time]\nend = "10 s"\nsamples = 2\n',
+            "a test",
+        )
+    assert len(refused.value.faults) == 3
+    assert all("expected a number without a unit" in line for line in refused.value.faults)

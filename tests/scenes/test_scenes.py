@@ -1,0 +1,789 @@
+"""What a scene file means: exact numbers, defaults, instants, and the scenes that are shipped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from hashlib import sha256
+from itertools import accumulate, dropwhile, pairwise, permutations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.regime import regime
+from taylor_verify.exact.route import solution
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import IDENTITY, Impulse, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.body import obeys_triangle_inequality
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+ORDERS = tuple(permutations(range(3)))
+INTEGERS = st.integers(-(10**12), 10**12)
+
+
+def euler(
+    body: str = "inertia = [1, 2, 3]", time: str = "end = 10\nsamples = 11", **more: str
+) -> Scene:
+    """A free body of the model euler, with parts of its text replaced."""
+    return read(
+        f'title = "x"\nmodel = "euler"\n{more.get("top", "")}\n[body]\n{body}\n'
+        f"[initial]\nomega = [0.1, 1, 0.3]\n{more.get('initial', '')}\n[time]\n{time}\n",
+        "a test",
+    )
+
+
+def kirchhoff(top: str = "") -> Scene:
+    """Clebsch's body, with lines put at the top of its text."""
+    return read(
+        f'title = "x"\nmodel = "kirchhoff"\n{top}\n[body]\n'
+        "clebsch = { p = 1, p_prime = 2, q = 0.1, q_prime = 0.2, r = 1, r_prime = 0.5 }\n"
+        "[initial]\nlinear_impulse = [0.1, 0.2, 1]\nangular_impulse = [0.3, 0, 1]\n"
+        "[time]\nend = 1\nsamples = 2\n",
+        "a test",
+    )
+
+
+# Numbers
+
+
+def test_a_decimal_is_the_rational_it_writes() -> None:
+    """0.1 is one tenth, and not the binary number beside it."""
+    assert euler().initial.omega == (Fraction(1, 10), Fraction(1), Fraction(3, 10))
+
+
+@given(INTEGERS, st.integers(1, 10**12))
+def test_a_fraction_in_a_string_is_exact(a: int, b: int) -> None:
+    """``"a/b"`` is a divided by b."""
+    assert exact_number(f"{a}/{b}") == Fraction(a, b)
+
+
+@given(INTEGERS, st.integers(-LARGEST_EXPONENT, LARGEST_EXPONENT - 13))
+def test_an_exponent_shifts_the_decimal_point(digits: int, exponent: int) -> None:
+    """``12e-3`` is 12/1000, in a string as well as bare, up to the largest exponent allowed."""
+    expected = digits * Fraction(10) ** exponent
+    scene = euler(body=f"inertia = [1, 2, 3]\nmoment = [{digits}e{exponent}, 0, 0]")
+    assert isinstance(scene.body, RigidBody)
+    assert scene.body.moment[0] == expected == exact_number(f"{digits}e{exponent}")
+
+
+# Defaults
+
+
+def test_omega_or_the_impulse_alone_is_tracked_by_default() -> None:
+    """A scene that does not say ``track``, or names only what is always there, requires no more."""
+    assert euler().track == euler(top='track = ["omega"]').track == frozenset()
+    assert kirchhoff().track == kirchhoff('track = ["impulse"]').track == frozenset()
+
+
+def test_the_centre_brings_the_attitude() -> None:
+    """The centre moves by R U, so that tracking it tracks R."""
+    assert kirchhoff('track = ["centre"]').track == {"attitude", "centre"}
+
+
+def test_what_is_left_out_is_free_at_the_origin_and_not_turned() -> None:
+    """No moment, force or couple; identity attitude; centre 0; start 0; no source."""
+    rigid, immersed = euler(), kirchhoff()
+    assert rigid.body.is_free
+    assert immersed.body.is_free
+    assert isinstance(immersed.initial, Impulse)
+    assert rigid.initial.attitude == immersed.initial.attitude == IDENTITY
+    assert immersed.initial.centre == (0, 0, 0)
+    assert rigid.clock.start == 0
+    assert rigid.source == ""
+
+
+def test_a_quaternion_is_kept_as_written() -> None:
+    """The reader does not normalise: a norm is seldom rational, and the quotient would round."""
+    initial = euler(initial="attitude = [1, 2, -1, 3]").initial
+    assert isinstance(initial, Spin)
+    assert initial.attitude == (1, 2, -1, 3)
+
+
+# Instants
+
+
+def test_samples_are_equally_spaced_and_exact() -> None:
+    """Three samples a third apart are exact thirds, both ends included."""
+    clock = euler(time="end = 1\nsamples = 4").clock
+    assert clock.instants == (0, Fraction(1, 3), Fraction(2, 3), 1)
+
+
+@given(INTEGERS, INTEGERS.filter(bool), st.integers(2, 50))
+def test_samples_begin_at_the_start_and_end_at_the_end(start: int, span: int, samples: int) -> None:
+    """Whatever the sign of the span, the first sample is the start, the last one the end."""
+    clock = euler(time=f"start = {start}\nend = {start + span}\nsamples = {samples}").clock
+    assert len(clock.instants) == samples
+    assert (clock.instants[0], clock.instants[-1]) == (start, start + span)
+    assert clock.elapsed[-1] == span
+
+
+def test_listed_instants_are_taken_as_they_are() -> None:
+    """``at`` lists absolute instants, with or without the start, forward or backward."""
+    assert euler(time='at = ["1/3", 0.5, 7]').clock.instants == (Fraction(1, 3), Fraction(1, 2), 7)
+    assert euler(time="start = 1\nat = [1, 2]").clock.elapsed == (0, 1)
+    assert euler(time="start = 1\nat = [0.5, 0, -1]").clock.elapsed == (Fraction(-1, 2), -1, -2)
+
+
+# The triangle inequality
+
+
+def has_real_moments(a: Fraction, b: Fraction, c: Fraction) -> bool:
+    return a <= b + c and b <= c + a and c <= a + b
+
+
+MOMENT = st.fractions(Fraction(1, 100), 100)
+MOMENTS = st.tuples(MOMENT, MOMENT, MOMENT)
+FLAT = st.builds(lambda a, b: (a, b, a + b), MOMENT, MOMENT)
+
+
+@given(st.one_of(MOMENTS, FLAT), st.tuples(INTEGERS, INTEGERS, INTEGERS, INTEGERS).filter(any))
+def test_the_triangle_inequality_is_decided_in_any_axes(
+    moments: tuple[Fraction, Fraction, Fraction], q: tuple[int, int, int, int]
+) -> None:
+    """Turned by any rational rotation a tensor gives the answer of its principal moments, the flat
+    plate, which just obeys, included."""
+    turned = rotated(tensors.diagonal(moments), q)
+    assert obeys_triangle_inequality(turned) is has_real_moments(*moments)
+
+
+def rotated(tensor: Matrix, q: tuple[int, int, int, int]) -> Matrix:
+    """R I R^T for the rotation of an integer quaternion."""
+    s, *v = (Fraction(entry) for entry in q)
+    norm = s * s + sum(entry * entry for entry in v)
+    rotation = tensors.transpose(
+        tuple(turned(e, s, tuple(v), norm) for e in tensors.diagonal((1, 1, 1)))
+    )
+    return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
+
+
+def turned(e: Vector, s: Fraction, v: Vector, norm: Fraction) -> Vector:
+    """q e q^-1 = e + 2 (s v x e + v x (v x e)) / |q|^2."""
+    once = tensors.cross(v, e)
+    both = tensors.plus(tensors.scaled(s, once), tensors.cross(v, once))
+    return tensors.plus(e, tensors.scaled(2 / norm, both))
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_an_impossible_solid_is_a_warning_in_any_order_of_its_axes(order: tuple[int, ...]) -> None:
+    """Moments 1, 2, 4 are warned of, 1, 2, 3 (a flat plate) are not, and neither is refused."""
+    for moments, count in (((1, 2, 4), 1), ((1, 2, 3), 0)):
+        scene = euler(body=f"inertia = {[moments[i] for i in order]}")
+        assert len(scene.warnings) == count
+
+
+# Bodies
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_principal_moments_are_the_diagonal_tensor(order: tuple[int, ...]) -> None:
+    """Three moments and the diagonal matrix of the same three are one body, in every order."""
+    moments = [(2, 3, 4)[i] for i in order]
+    matrix = [[moments[i] if i == j else 0 for j in range(3)] for i in range(3)]
+    assert euler(body=f"inertia = {moments}").body == euler(body=f"inertia = {matrix}").body
+
+
+def test_clebschs_form_is_the_energy_it_abbreviates() -> None:
+    """T of 49 (1), written out in six coefficients, is T by the 6x6 matrix, at any x and y."""
+    body = kirchhoff().body
+    assert isinstance(body, ImmersedBody)
+    x, y = (Fraction(2), Fraction(-3), Fraction(5)), (Fraction(7), Fraction(1, 2), Fraction(-4))
+    # p = 1, p' = 2, q = 1/10, q' = 1/5, r = 1, r' = 1/2, as in the text above.
+    by_hand = (
+        (x[0] ** 2 + x[1] ** 2) / 2
+        + x[2] ** 2
+        + (x[0] * y[0] + x[1] * y[1]) / 10
+        + x[2] * y[2] / 5
+        + (y[0] ** 2 + y[1] ** 2) / 2
+        + y[2] ** 2 / 4
+    )
+    assert tensors.dot(x + y, tensors.apply(body.energy_matrix, x + y)) / 2 == by_hand
+
+
+def test_the_energy_of_the_remus_is_the_inverse_of_its_inertia() -> None:
+    """[[A, B], [B^T, C]] times the inertia in Prestero's tables is the identity,
+    and the initial impulses are that inertia times the velocities that the file names."""
+    scene = load("kirchhoff/remus-100")
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    inertia = remus_inertia()
+    ones = tensors.diagonal((Fraction(1),) * 6)
+    assert tensors.product(scene.body.energy_matrix, inertia) == ones
+    velocities = tuple(Fraction(v) for v in ("1.5", "0.1", "-0.2", "0.5", "0.3", "0.2"))
+    assert tensors.apply(inertia, velocities) == scene.initial.linear + scene.initial.angular
+
+
+def remus_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r: inertia minus added terms."""
+    mass, roll, pitch = Fraction("30.48"), Fraction("0.177"), Fraction("3.45")
+    added = {
+        **{(0, 0): "-0.930", (1, 1): "-35.5", (2, 2): "-35.5"},  # Xu', Yv', Zw'
+        **{(3, 3): "-0.0704", (4, 4): "-4.88", (5, 5): "-4.88"},  # Kp', Mq', Nr'
+        **{(1, 5): "1.93", (2, 4): "-1.93"},  # Yr', Zq'
+        **{(4, 2): "-1.93", (5, 1): "1.93"},  # Mw', Nv'
+    }
+    solid = (mass, mass, mass, roll, pitch, pitch)
+    return tuple(
+        tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
+        for i in range(6)
+    )
+
+
+def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_inverse_of_its_inertia() -> None:
+    """[[A, B], [B^T, C]] times the inertia that the file names is the identity, all 21 coefficients
+    differ from zero, and the initial impulses are that inertia times the velocities named."""
+    scene = load("kirchhoff/swimmer-vehicle")
+    assert isinstance(scene.body, ImmersedBody)
+    assert isinstance(scene.initial, Impulse)
+    inertia = swimmer_inertia()
+    energy = scene.body.energy_matrix
+    assert tensors.product(energy, inertia) == tensors.diagonal((Fraction(1),) * 6)
+    assert all(entry != 0 for row in energy for entry in row)
+    velocities = tuple(Fraction(v) for v in ("1.8", "0.1", "-0.15", "0.1", "0.15", "0.05"))
+    assert tensors.apply(inertia, velocities) == scene.initial.linear + scene.initial.angular
+
+
+def swimmer_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r, about the centre of buoyancy."""
+    length, mass, below = Fraction("5.3"), Fraction("5454.54"), Fraction("0.061")
+    entries = {
+        **{(i, i): mass for i in range(3)},
+        **{(3, 3): Fraction(2038), (4, 4): Fraction(13587), (5, 5): Fraction(13587)},
+        **{(i, j): Fraction("13.58") for i, j in ((3, 4), (4, 5), (3, 5))},
+        **{(0, 4): mass * below, (1, 3): -mass * below},
+    }
+    derivatives = {
+        **{(0, 0): "-7.6e-3", (1, 1): "-5.5e-2", (2, 2): "-2.4e-1"},  # Xu', Yv', Zw'
+        **{(1, 3): "1.2e-4", (1, 5): "1.2e-3", (2, 4): "-6.8e-3"},  # Yp', Yr', Zq'
+        **{(3, 3): "-1.0e-3", (4, 4): "-1.7e-2", (5, 5): "-3.4e-3"},  # Kp', Mq', Nr'
+        (3, 5): "-3.4e-5",  # Kr'
+    }
+    for (i, j), derivative in derivatives.items():
+        power = 3 + (i > 2) + (j > 2)
+        entries[i, j] = (
+            entries.get((i, j), Fraction(0)) - Fraction(derivative) * 500 * length**power
+        )
+    upper = [[entries.get((min(i, j), max(i, j)), Fraction(0)) for j in range(6)] for i in range(6)]
+    return tuple(tuple(row) for row in upper)
+
+
+# The upper triangle of the inverse inertia in Lauvdal's npsauv.m, as printed.
+PRINTED_INVERSE = """
+1.662e-4 1.846e-10 1.303e-7 3.726e-9 -1.132e-6 7.320e-10
+         1.052e-4 3.843e-10 9.638e-6 -3.340e-9 2.368e-6
+                  4.315e-5 7.757e-9 -2.357e-6 1.524e-9
+                           2.431e-4 -6.742e-8 -7.740e-7
+                                    2.049e-5 -1.324e-8
+                                             4.838e-5
+"""
+
+
+def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_printed_inverse() -> None:
+    """Every coefficient is the one in the transcription, to half a unit of its fourth digit: mass,
+    sign of the products of inertia, offset of the centre of mass and powers of the length are right.
+    """
+    body = load("kirchhoff/swimmer-vehicle").body
+    assert isinstance(body, ImmersedBody)
+    printed = iter(PRINTED_INVERSE.split())
+    for i in range(6):
+        for j in range(i, 6):
+            text = next(printed)
+            half_unit = Fraction(10) ** int(text.split("e")[1]) / 2000
+            assert abs(body.energy_matrix[i][j] - Fraction(text)) <= half_unit
+    assert next(printed, None) is None
+
+
+# The shipped scenes
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_every_shipped_scene_loads_without_a_warning(name: str) -> None:
+    """It is read under its own name, as its folder's model, with a digest of its text."""
+    scene = load(name)
+    assert scene.name == name
+    folder, rest = name.split("/")
+    assert scene.model == (rest.split("-")[0] if folder == "manufactured" else folder)
+    assert scene.warnings == ()
+    assert scene.digest == sha256(library.find(name).read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_every_shipped_scene_says_why_it_is_there(name: str) -> None:
+    """The first line begins with ``# Why:``, and the reason is a sentence."""
+    lines = library.find(name).read_text().splitlines()
+    comment = " ".join(line.lstrip("# ") for line in lines if line.startswith("#"))
+    assert lines[0].startswith("# Why: ")
+    assert comment.endswith(".")
+
+
+def test_every_shipped_scene_is_in_the_table_of_the_readme() -> None:
+    """cases/README.md has a row for each scene of the standard set, and for nothing else."""
+    readme = (library.cases_directory() / "README.md").read_text()
+    rows = [
+        line.split("`")[1]
+        for line in readme.splitlines()
+        if line.startswith(("| `e", "| `k", "| `m"))
+    ]
+    assert sorted(row for row in rows if "/" in row) == sorted(library.names())
+
+
+@pytest.mark.parametrize("folder", ["euler", "kirchhoff"])
+def test_there_are_enough_shipped_scenes(folder: str) -> None:
+    """At least sixteen of each model, so that an empty folder cannot pass for a suite."""
+    assert sum(name.startswith(f"{folder}/") for name in library.names()) >= 16
+
+
+@pytest.mark.parametrize(
+    ("name", "middle"),
+    [("euler/separatrix", Fraction(4, 3)), ("euler/separatrix-full-tensor", Fraction(32, 27))],
+)
+def test_the_separatrix_is_exact(name: str, middle: Fraction) -> None:
+    """H^2 = 2T J2 holds in rationals, and K and H are dyadic, so that it holds on every rung."""
+    scene = load(name)
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    omega, inverse = scene.initial.omega, scene.body.inverse_inertia
+    momentum = tensors.apply(scene.body.inertia, omega)
+    assert roots_below(scene.body.inertia, middle) == (1, 1)
+    assert tensors.dot(momentum, momentum) == tensors.dot(momentum, omega) * middle
+    assert all(is_exact_on_every_rung(entry) for row in (momentum, *inverse) for entry in row)
+
+
+def roots_below(inertia: Matrix, moment: Fraction) -> tuple[int, int]:
+    """How many principal moments lie below this one, and how many are equal to it.
+
+    Read off the signs of the characteristic polynomial of I - moment, whose roots are real
+    (Descartes' rule is then exact).
+    """
+    a, b, c = (tuple(inertia[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3))
+    trace = a[0] + b[1] + c[2]
+    pairs = ((0, 1), (1, 2), (2, 0))
+    rows = (a, b, c)
+    minors = sum(rows[i][i] * rows[j][j] - rows[i][j] ** 2 for i, j in pairs)
+    determinant = tensors.dot(a, tensors.cross(b, c))
+    # det(I - moment + s) = s^3 + trace s^2 + minors s + determinant has the roots moment - J.
+    coefficients = [Fraction(1), trace, minors, determinant]
+    equal = next(k for k, entry in enumerate(reversed(coefficients)) if entry != 0)
+    return changes([entry for entry in coefficients if entry != 0]), equal
+
+
+def is_exact_on_every_rung(value: Fraction) -> bool:
+    """A binary number of no more than the 24 bits of f32."""
+    return value.denominator & (value.denominator - 1) == 0 and abs(value.numerator) < 2**24
+
+
+def test_the_oblique_axis_of_symmetry_survives_rounding() -> None:
+    """I has the double moment 2 and no smaller one but 1.28, and its inverse is dyadic."""
+    body = load("euler/oblique-symmetry").body
+    assert isinstance(body, RigidBody)
+    assert roots_below(body.inertia, Fraction(2)) == (1, 2)
+    assert roots_below(body.inertia, Fraction(32, 25)) == (0, 1)
+    assert all(is_exact_on_every_rung(entry) for row in body.inverse_inertia for entry in row)
+    assert not tensors.is_diagonal(body.inertia)
+
+
+def test_every_regime_of_a_free_rigid_body_has_its_scene() -> None:
+    """Rest, spherical, steady, axisymmetric, separatrix and both families of orbits occur."""
+    scenes = [load(name) for name in library.names() if name.startswith("euler/")]
+    found = {solution(scene).regime for scene in scenes if scene.body.is_free}
+    assert found >= {
+        *("rest", "spherical", "steady", "axisymmetric", "separatrix", "max-axis", "min-axis"),
+    }
+
+
+def test_the_brick_ends_where_the_simulations_of_nasa_did() -> None:
+    """After 30 s the rates of check case 2 are those of the report, to the 0.004 deg/s within which
+    its own simulations agree; a wrong inertia, rate or sign of the gyroscopic term is far off."""
+    scene = load("euler/nesc-brick")
+    assert scene.clock.instants[-1] == 30
+    omega = solution(scene, "taylor").motion([Fraction(30)], 12)["omega"][0]
+    reported = (12.618, -17.397, 31.120)
+    for rate, degrees in zip(omega, reported, strict=True):
+        assert abs(math.degrees(rate) - degrees) <= 0.004
+
+
+ORBITS: dict[str, Callable[[Fraction], bool]] = {
+    "euler/generic": lambda excess: excess < 0,
+    "euler/about-max-axis": lambda excess: excess > 0,
+    "euler/tennis-racket": lambda excess: 0 < excess < Fraction(1, 1000),
+}
+
+
+@pytest.mark.parametrize("name", ORBITS)
+def test_each_orbit_lies_on_the_side_that_its_reason_says(name: str) -> None:
+    """H^2/(2T) - J2 is negative round the least axis, positive round the greatest, small by the
+    separatrix."""
+    scene = load(name)
+    assert isinstance(scene.body, RigidBody)
+    assert isinstance(scene.initial, Spin)
+    momentum = tensors.apply(scene.body.inertia, scene.initial.omega)
+    middle = sorted(scene.body.inertia[i][i] for i in range(3))[1]
+    ratio = tensors.dot(momentum, momentum) / tensors.dot(momentum, scene.initial.omega)
+    assert ORBITS[name](ratio - middle)
+
+
+# The words of exact/kirchhoff/regime.py, and the free bodies of Clebsch's form that move so.
+MOTIONS = {
+    "rest": ("rest",),
+    "euler-top": ("zero-impulse", "euler-top"),
+    "steady": ("steady-spin", "unstable-spin", "border-spin", "steady-precession"),
+    "trigonometric": (
+        *("trigonometric", "beside-a-stable-spin", "isotropic-helicoid"),
+        "ellipsoid-sphere",
+    ),
+    "hyperbolic": ("onto-the-axis", "falling-away"),
+    "algebraic": ("algebraic", "algebraic-path"),
+    "heteroclinic": ("half-turn", "half-turn-path"),
+    "cubic": ("cubic", "later-start"),
+    "four-roots": (
+        *("four-real-roots", "whole-motion", "planar-swing", "planar-turn"),
+        *("backward", "orthogonal-impulses", "through-the-pole"),
+        *("ellipsoid-prolate", "ellipsoid-disc"),
+    ),
+    "two-roots": (
+        *("two-real-roots", "screw", "listed-times"),
+        *("from-the-axis", "turning-point", "no-axial-impulse"),
+    ),
+}
+MOTION = {f"kirchhoff/{name}": word for word, names in MOTIONS.items() for name in names}
+
+
+def test_every_free_body_of_clebschs_form_has_its_motion_named() -> None:
+    """The table above lists the shipped free bodies of Clebsch's form, each once."""
+    bodies = {name: load(name).body for name in library.names() if name.startswith("kirchhoff/")}
+    assert set(MOTION) == {
+        name
+        for name, body in bodies.items()
+        if isinstance(body, ImmersedBody) and body.is_free and body.clebsch is not None
+    }
+    assert len(MOTION) == sum(map(len, MOTIONS.values()))
+
+
+@pytest.mark.parametrize("rung_name", [None, "f32", "f64", "f128"])
+@pytest.mark.parametrize("name", MOTION)
+def test_each_scene_moves_as_its_reason_says(name: str, rung_name: str | None) -> None:
+    """The regime is the one named, of the numbers as written and as rounded to a rung."""
+    scene = load(name)
+    given_to_solver = scene if rung_name is None else pose(scene, rung(rung_name)).given
+    assert isinstance(given_to_solver.initial, Impulse)
+    nutation = Nutation.of(clebsch(given_to_solver), given_to_solver.initial)
+    assert regime(nutation) == MOTION[name]
+
+
+@pytest.mark.parametrize("word", MOTIONS)
+def test_every_motion_is_shipped_with_its_path(word: str) -> None:
+    """In each regime some scene tracks attitude and centre."""
+    tracks = [load(f"kirchhoff/{name}").track for name in MOTIONS[word]]
+    assert {"attitude", "centre"} in tracks
+
+
+def test_no_word_for_a_motion_is_without_a_scene() -> None:
+    """The words of the table are those that the docstring of ``regime`` explains."""
+    lines = (regime.__doc__ or "").splitlines()
+    heads = [line.split(":")[0] for line in lines if line.strip().startswith("- ")]
+    assert {word for head in heads for word in head.strip("- ").split(", ")} == set(MOTIONS)
+
+
+# Degree of the polynomial and number of its distinct real roots.
+REGIMES = {
+    "kirchhoff/four-real-roots": (4, 4),
+    "kirchhoff/two-real-roots": (4, 2),
+    "kirchhoff/cubic": (3, 3),
+    "kirchhoff/trigonometric": (2, 2),
+    "kirchhoff/onto-the-axis": (4, 3),
+    "kirchhoff/half-turn": (4, 2),
+    "kirchhoff/algebraic": (4, 2),
+    "kirchhoff/beside-a-stable-spin": (4, 3),
+    "kirchhoff/falling-away": (4, 3),
+    "kirchhoff/half-turn-path": (4, 2),
+    "kirchhoff/algebraic-path": (4, 2),
+    "kirchhoff/isotropic-helicoid": (2, 2),
+    "kirchhoff/later-start": (3, 3),
+    "kirchhoff/no-axial-impulse": (4, 2),
+    "kirchhoff/planar-turn": (4, 4),
+}
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_each_clebsch_regime_has_its_real_roots(name: str) -> None:
+    """The polynomial under the root of 49 (9) has as many real roots as the file says, by Sturm."""
+    polynomial = nutation_polynomial(load(name))
+    assert (len(polynomial) - 1, real_roots(polynomial)) == REGIMES[name]
+
+
+# What the files say of the pole x3 = F: its multiplicity as a root, and the sign of A in 49 (25).
+POLES = {
+    "kirchhoff/onto-the-axis": (2, 1),
+    "kirchhoff/half-turn": (2, 1),
+    "kirchhoff/algebraic": (3, 0),
+    "kirchhoff/beside-a-stable-spin": (2, -1),
+    "kirchhoff/unstable-spin": (2, 1),
+    "kirchhoff/steady-spin": (2, -1),
+    "kirchhoff/through-the-pole": (1, 1),
+    "kirchhoff/from-the-axis": (1, -1),
+    "kirchhoff/falling-away": (2, 1),
+    "kirchhoff/algebraic-path": (3, 0),
+    "kirchhoff/border-spin": (3, 0),
+    "kirchhoff/planar-turn": (1, 1),
+}
+
+
+@pytest.mark.parametrize("name", POLES)
+def test_the_pole_is_a_root_as_often_as_the_reason_says(name: str) -> None:
+    """f and its derivatives at x3 = F, exactly; A = 4 F^2 (p'-p)/r + 4 F G (q'-q)/r - G^2."""
+    scene = load(name)
+    ff, fg, y3 = invariants(scene)
+    F = square_root(ff)
+    assert fg == F * y3
+    c = clebsch(scene)
+    border = 4 * (c.p_prime - c.p) / c.r * ff + 4 * (c.q_prime - c.q) / c.r * fg - y3**2
+    assert (multiplicity(nutation_polynomial(scene), F), sign(border)) == POLES[name]
+
+
+@pytest.mark.parametrize("name", ["kirchhoff/half-turn", "kirchhoff/half-turn-path"])
+def test_the_half_turn_ends_at_the_other_pole(name: str) -> None:
+    """Both poles are double roots, f = a0 (z^2 - F^2)^2, whether F is rational or not."""
+    polynomial = nutation_polynomial(load(name))
+    lead, ff = polynomial[0], invariants(load(name))[0]
+    assert polynomial == [lead, 0, -2 * lead * ff, 0, lead * ff**2]
+
+
+def test_the_half_turn_path_has_an_irrational_f() -> None:
+    """F^2 in lowest terms has a numerator that is no square."""
+    ff, _, _ = invariants(load("kirchhoff/half-turn-path"))
+    assert math.isqrt(ff.numerator) ** 2 != ff.numerator
+
+
+BORDERS = {
+    "kirchhoff/algebraic": -1,
+    "kirchhoff/algebraic-path": -1,
+    "kirchhoff/border-spin": 1,
+}
+
+
+@pytest.mark.parametrize("name", BORDERS)
+def test_beyond_the_border_b_decides(name: str) -> None:
+    """With A = 0 the sign of B = 2 F (p'-p)/r + G (q'-q)/r, 49 (25), is as the file says."""
+    scene = load(name)
+    c, (ff, fg, _) = clebsch(scene), invariants(scene)
+    # F B, so that G enters as FG.
+    assert sign((2 * ff * (c.p_prime - c.p) + fg * (c.q_prime - c.q)) / c.r) == BORDERS[name]
+
+
+@pytest.mark.parametrize("name", ["kirchhoff/algebraic-path", "kirchhoff/falling-away"])
+def test_what_starts_on_the_way_out_is_on_the_way_out(name: str) -> None:
+    """x3' = r (x1 y2 - x2 y1) is negative and x3 positive: the body leaves the axis."""
+    scene = load(name)
+    assert isinstance(scene.initial, Impulse)
+    x, y = scene.initial.linear, scene.initial.angular
+    assert x[0] * y[1] - x[1] * y[0] < 0 < x[2]
+
+
+@pytest.mark.parametrize(
+    ("name", "times"), [("kirchhoff/turning-point", 1), ("kirchhoff/steady-precession", 2)]
+)
+def test_a_start_without_speed_is_a_root_of_f(name: str, times: int) -> None:
+    """A turning point is a simple root, the place of a steady precession a double one, no pole."""
+    scene = load(name)
+    assert isinstance(scene.initial, Impulse)
+    z = scene.initial.linear[2]
+    assert multiplicity(nutation_polynomial(scene), z) == times
+    assert z**2 < invariants(scene)[0]
+
+
+VANISHING = {
+    "kirchhoff/orthogonal-impulses": (False, True, False),
+    "kirchhoff/no-axial-impulse": (False, False, True),
+    "kirchhoff/planar-turn": (False, True, True),
+    "kirchhoff/planar-swing": (False, True, True),
+    "kirchhoff/half-turn-path": (False, True, True),
+    "kirchhoff/euler-top": (True, True, False),
+    "kirchhoff/rest": (True, True, True),
+}
+
+
+@pytest.mark.parametrize("name", VANISHING)
+def test_what_vanishes_is_what_the_reason_says(name: str) -> None:
+    """Of F^2, FG and y3 those are zero, exactly, and no others."""
+    assert tuple(value == 0 for value in invariants(load(name))) == VANISHING[name]
+
+
+def test_a_thrown_body_starts_on_its_axis() -> None:
+    """x1 = x2 = 0, but y1 or y2 is not: no steady spin."""
+    initial = load("kirchhoff/from-the-axis").initial
+    assert isinstance(initial, Impulse)
+    assert not any(initial.linear[:2])
+    assert any(initial.angular[:2])
+
+
+@pytest.mark.parametrize(("name", "turns"), [("planar-swing", False), ("planar-turn", True)])
+def test_a_planar_motion_swings_or_turns_over(name: str, turns: bool) -> None:
+    """x2 = y1 = y3 = q = q' = 0 is kept by 48 (3), (4); the axis reaches both poles if
+    r y2^2 > (p'-p) (F^2 - x3^2), and neither if it is less."""
+    scene = load(f"kirchhoff/{name}")
+    assert isinstance(scene.initial, Impulse)
+    c, x, y = clebsch(scene), scene.initial.linear, scene.initial.angular
+    assert not any((x[1], y[0], y[2], c.q, c.q_prime))
+    excess = c.r * y[1] ** 2 - (c.p_prime - c.p) * x[0] ** 2
+    assert excess != 0
+    assert (excess > 0) is turns
+
+
+def test_the_isotropic_helicoid_has_no_axis() -> None:
+    """A, B and C are multiples of the unit matrix and B is not zero."""
+    c = clebsch(load("kirchhoff/isotropic-helicoid"))
+    assert (c.p, c.q, c.r) == (c.p_prime, c.q_prime, c.r_prime)
+    assert c.q != 0
+
+
+def test_time_runs_as_the_reasons_say() -> None:
+    """Backward through 0 from 12.3; forward from 1000.1, which no binary number is."""
+    backward, later = (load(f"kirchhoff/{name}").clock for name in ("backward", "later-start"))
+    assert backward.start == Fraction("12.3") > 0 > backward.instants[-1]
+    assert all(after < before for before, after in pairwise(backward.instants))
+    assert later.start == later.instants[0] == Fraction("1000.1")
+    assert not is_exact_on_every_rung(later.start)
+
+
+# Their degeneracy is a relation among several numbers, and would be lost if one were rounded.
+EXACT_BODIES = [
+    *("onto-the-axis", "half-turn", "algebraic", "beside-a-stable-spin", "unstable-spin"),
+    *("steady-precession", "through-the-pole", "planar-turn", "border-spin"),
+    *("falling-away", "half-turn-path", "algebraic-path"),
+]
+EXACT_STARTS = [*EXACT_BODIES, "orthogonal-impulses", "turning-point"]
+
+
+@pytest.mark.parametrize("name", EXACT_BODIES)
+def test_a_degenerate_body_is_the_same_on_every_rung(name: str) -> None:
+    """No coefficient of T needs more than the 24 bits of f32."""
+    body = load(f"kirchhoff/{name}").body
+    assert isinstance(body, ImmersedBody)
+    assert all(is_exact_on_every_rung(entry) for row in body.energy_matrix for entry in row)
+
+
+@pytest.mark.parametrize("name", EXACT_STARTS)
+def test_a_degenerate_start_is_the_same_on_every_rung(name: str) -> None:
+    """No component of an impulse needs more than the 24 bits of f32."""
+    initial = load(f"kirchhoff/{name}").initial
+    assert isinstance(initial, Impulse)
+    assert all(is_exact_on_every_rung(entry) for entry in initial.linear + initial.angular)
+
+
+def clebsch(scene: Scene) -> Clebsch:
+    assert isinstance(scene.body, ImmersedBody)
+    assert scene.body.clebsch is not None
+    return scene.body.clebsch
+
+
+def invariants(scene: Scene) -> tuple[Fraction, Fraction, Fraction]:
+    """F^2, FG and y3."""
+    assert isinstance(scene.initial, Impulse)
+    x, y = scene.initial.linear, scene.initial.angular
+    return tensors.dot(x, x), tensors.dot(x, y), y[2]
+
+
+def square_root(value: Fraction) -> Fraction:
+    """The root of a rational square."""
+    root = Fraction(math.isqrt(value.numerator), math.isqrt(value.denominator))
+    assert root**2 == value
+    return root
+
+
+def sign(value: Fraction) -> int:
+    return (value > 0) - (value < 0)
+
+
+def multiplicity(polynomial: list[Fraction], z: Fraction) -> int:
+    """How often z is a root, by synthetic division."""
+    times = 0
+    while True:
+        quotient = list(accumulate(polynomial, lambda total, entry: total * z + entry))
+        if quotient.pop() != 0:
+            return times
+        polynomial, times = quotient, times + 1
+
+
+def nutation_polynomial(scene: Scene) -> list[Fraction]:
+    """r X3 of 49 (8) as a polynomial of z = x3, highest power first."""
+    assert isinstance(scene.initial, Impulse)
+    c, x, y = clebsch(scene), scene.initial.linear, scene.initial.angular
+    ff, fg, y3 = invariants(scene)
+    z = x[2]
+    quadratic, linear = c.p - c.p_prime, 2 * (c.q - c.q_prime) * y3
+    constant = c.r * (y[0] ** 2 + y[1] ** 2) - quadratic * z**2 - linear * z
+    # (F^2 - z^2)(quadratic z^2 + linear z + constant) - r (FG - y3 z)^2
+    coefficients = [
+        -quadratic,
+        -linear,
+        ff * quadratic - constant - c.r * y3**2,
+        ff * linear + 2 * c.r * fg * y3,
+        ff * constant - c.r * fg**2,
+    ]
+    return list(dropwhile(lambda entry: entry == 0, coefficients))
+
+
+def real_roots(polynomial: list[Fraction]) -> int:
+    """Distinct real roots by Sturm's sequence, exactly."""
+    degree = len(polynomial) - 1
+    sequence = [polynomial, [a * (degree - i) for i, a in enumerate(polynomial[:-1])]]
+    while len(sequence[-1]) > 1:
+        sequence.append([-entry for entry in remainder(sequence[-2], sequence[-1])])
+    right = [p[0] for p in sequence if p]
+    left = [p[0] * (-1) ** (len(p) - 1) for p in sequence if p]
+    return changes(left) - changes(right)
+
+
+def remainder(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+    while len(a) >= len(b):
+        factor = a[0] / b[0]
+        a = [p - factor * q for p, q in zip(a, b + [Fraction(0)] * (len(a) - len(b)), strict=True)][
+            1:
+        ]
+    while a and a[0] == 0:
+        a = a[1:]
+    return a
+
+
+def changes(signs: list[Fraction]) -> int:
+    return sum(a * b < 0 for a, b in pairwise(signs))
+
+
+def test_a_path_is_a_path_and_a_name_a_name() -> None:
+    """The same scene by path and by name is the same question under another name."""
+    path = str(library.find("euler/generic"))
+    by_path, by_name = load(path), load("euler/generic")
+    assert by_path.name == path
+    assert (by_path.body, by_path.initial, by_path.clock) == (
+        by_name.body,
+        by_name.initial,
+        by_name.clock,
+    )
+    assert by_path.digest == by_name.digest
+
+
+def test_the_cases_must_exist(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a folder of cases there is an error, and not a green run of no scenes."""
+    monkeypatch.setattr(library, "__file__", "/nowhere/verify/taylor_verify/scenes/library.py")
+    with pytest.raises(FileNotFoundError, match="cases"):
+        library.names()
+
+
+def test_the_model_must_be_known_before_its_body_is_read() -> None:
+    """With no model the other parts are still read, and each of their faults is reported."""
+    with pytest.raises(Refused, match="@ model") as caught:
+        read("[body]\nanything = 1\n[initial]\nomega = 1\n[time]\nend = 0\nsamples = 1\n", "x")
+    assert [line.split(" @ ")[1].split()[0] for line in caught.value.faults] == [
+        "title",
+        "model",
+        "time.samples",
+    ]

@@ -1,0 +1,301 @@
+"""CCSDS attitude ephemerides: frames, directions, orders and epochs, as the standard defines them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import recordings
+from ccsds_ndm import mapping, ndm_io
+from ccsds_ndm.models import ndmxml2
+from recordings import OMEGA, QUATERNION, Columns
+from trajectories import columns_at
+
+import taylor_verify
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.files.formats.epochs import seconds
+
+SCENE = "euler/with-attitude"
+
+
+@pytest.fixture(scope="module")
+def columns() -> Columns:
+    """The exact motion of the scene at its start and some whole eighths of a second."""
+    return columns_at(load(SCENE), [Fraction(k, 8) for k in (0, 1, 9, 30, 77, 300)])
+
+
+def quaternions(columns: Columns) -> tuple[tuple[Fraction, ...], ...]:
+    """The decimals that the writers print."""
+    rows = zip(*(columns[name] for name in QUATERNION), strict=True)
+    return tuple(tuple(Fraction(repr(value)) for value in row) for row in rows)
+
+
+def conjugate(columns: Columns) -> Columns:
+    return {n: [-v for v in vs] if n in QUATERNION[1:] else vs for n, vs in columns.items()}
+
+
+# Version 2.
+
+
+def test_xml_holds_every_digit(columns: Columns, tmp_path: Path) -> None:
+    """Quaternions and epochs are read as the decimals that they are, and times from START_TIME."""
+    recordings.write_aem(tmp_path / "run.xml", recordings.aem(columns))
+    found = read(tmp_path / "run.xml")
+    assert found.times == tuple(map(Fraction, columns["t"]))
+    assert found.groups["quaternion"] == quaternions(columns)
+    assert found.digits == 17
+    assert found.notes == (
+        "t counts from START_TIME = 2024-03-01T00:00:00.0",
+        "EME2000 is taken for the space axes of the scene",
+    )
+
+
+def test_the_attitude_passes_and_its_conjugate_does_not(columns: Columns, tmp_path: Path) -> None:
+    """The quaternion from space to the body, as the standard has it, is ours from body to space."""
+    for name, turned, status in (("a", columns, "pass"), ("b", conjugate(columns), "fail")):
+        file = tmp_path / f"{name}.xml"
+        recordings.write_aem(file, recordings.aem(turned))
+        judged = taylor_verify.check(SCENE, file, partial=True)
+        (attitude,) = [one for one in judged.verdicts if one.quantity == "attitude"]
+        assert attitude.verdict.value == status
+
+
+def test_the_body_may_be_the_first_frame(columns: Columns, tmp_path: Path) -> None:
+    """Where REF_FRAME_A is the body the message holds the conjugate."""
+    frames = {"ref_frame_a": "SC_BODY", "ref_frame_b": "ICRF"}
+    recordings.write_aem(tmp_path / "run.xml", recordings.aem(conjugate(columns), **frames))
+    assert read(tmp_path / "run.xml").groups["quaternion"] == quaternions(columns)
+
+
+@pytest.mark.parametrize("frame", ["SC_BODY_1", "REF_FRAME_B", "EME2000", "REF_FRAME_A"])
+def test_angular_velocities_are_turned_into_the_body(
+    frame: str, columns: Columns, tmp_path: Path
+) -> None:
+    """ANGVEL is in degrees a second and in either frame; w1 w2 w3 are what the motion has."""
+    told = columns
+    if frame in ("EME2000", "REF_FRAME_A"):
+        told = {**columns, **dict(zip(OMEGA, in_space(columns).T.tolist(), strict=True))}
+    message = recordings.with_rates(recordings.aem(columns), told, frame)
+    recordings.write_aem(tmp_path / "run.xml", message)
+    omega = np.array(read(tmp_path / "run.xml").groups["omega"], dtype=float)
+    expected = np.array([columns[name] for name in OMEGA]).T
+    assert np.abs(omega - expected).max() <= 1e-15
+
+
+def in_space(columns: Columns) -> Any:
+    """R w by the matrix of the quaternion."""
+    q0, q1, q2, q3 = (np.array(columns[name]) for name in QUATERNION)
+    R = np.array(
+        [
+            [1 - 2 * (q2**2 + q3**2), 2 * (q1 * q2 - q0 * q3), 2 * (q1 * q3 + q0 * q2)],
+            [2 * (q1 * q2 + q0 * q3), 1 - 2 * (q1**2 + q3**2), 2 * (q2 * q3 - q0 * q1)],
+            [2 * (q1 * q3 - q0 * q2), 2 * (q2 * q3 + q0 * q1), 1 - 2 * (q1**2 + q2**2)],
+        ]
+    )
+    return np.einsum("ijn,jn->ni", R, np.array([columns[name] for name in OMEGA]))
+
+
+# Text. The library writes the scalar first in text of version 2, where the standard has it last.
+
+METADATA = {
+    "OBJECT_NAME": "TOP",
+    "OBJECT_ID": "2024-001A",
+    "REF_FRAME_A": "EME2000",
+    "REF_FRAME_B": "SC_BODY_1",
+    "TIME_SYSTEM": "UTC",
+    "START_TIME": "2024-061T00:00:00",
+    "STOP_TIME": "2024-061T00:00:10",
+    "ATTITUDE_TYPE": "QUATERNION",
+}
+STATE = "2024-061T00:00:00.25 0.1 0.2 -0.3 0.4"
+
+
+def text(*states: str, version: str = "2.0", **changed: str | None) -> str:
+    """A message in text with these data lines; a keyword that is None is left out."""
+    metadata = {name: value for name, value in {**METADATA, **changed}.items() if value}
+    lines = [f"CCSDS_AEM_VERS = {version}", "CREATION_DATE = 2024-061T00:00:00", "ORIGINATOR = X"]
+    lines += ["META_START", "COMMENT made by hand", *(f"{n} = {v}" for n, v in metadata.items())]
+    return "\n".join([*lines, "META_STOP", "", "DATA_START", *(states or (STATE,)), "DATA_STOP\n"])
+
+
+def written(folder: Path, content: str, name: str = "run.aem") -> Path:
+    (folder / name).write_text(content)
+    return folder / name
+
+
+@pytest.mark.parametrize("name", ["run.aem", "run.kvn", "run.txt", "RUN.AEM"])
+def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> None:
+    """A message in text is known by its first line, and its numbers are Q1 Q2 Q3 QC."""
+    found = read(written(tmp_path, text(), name))
+    assert found.times == (Fraction(1, 4),)
+    assert found.groups["quaternion"] == (
+        (Fraction(2, 5), Fraction(1, 10), Fraction(1, 5), Fraction(-3, 10)),
+    )
+
+
+def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
+    """With q' = q (0, w) / 2 the message tells w = 2 conj(q) q' / |q|^2, exactly."""
+    state = "2024-061T00:00:00 0 0 0 2 0.5 -0.25 1 0"
+    found = read(written(tmp_path, text(state, ATTITUDE_TYPE="QUATERNION/DERIVATIVE")))
+    assert found.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
+
+
+@pytest.mark.parametrize("order", ["FIRST", "LAST"])
+@pytest.mark.parametrize("direction", ["A2B", "B2A"])
+def test_version_1_says_order_and_direction(
+    order: str, direction: str, columns: Columns, tmp_path: Path
+) -> None:
+    """In text of version 1, by the library, the keywords say where the scalar is and what is turned."""
+    told = columns if direction == "A2B" else conjugate(columns)
+    message = version_1(told, order, direction)
+    ndm_io.NdmIo().to_file(message, mapping.NDMFileFormats.KVN, tmp_path / "run.aem")
+    assert f"QUATERNION_TYPE          = {order}" in (tmp_path / "run.aem").read_text()
+    found = read(tmp_path / "run.aem")
+    assert found.groups["quaternion"] == quaternions(columns)
+    assert found.times == tuple(map(Fraction, columns["t"]))
+
+
+def version_1(columns: Columns, order: str, direction: str) -> Any:
+    states = [
+        ndmxml2.AttitudeStateType(
+            quaternion_state=ndmxml2.QuaternionEphemerisType(
+                epoch=recordings.epoch(columns["t"][k]),
+                quaternion=ndmxml2.QuaternionType(
+                    **{
+                        key: columns[name][k]
+                        for key, name in zip(recordings.SCALAR_FIRST, QUATERNION, strict=True)
+                    }
+                ),
+            )
+        )
+        for k in range(len(columns["t"]))
+    ]
+    metadata = ndmxml2.AemMetadata(
+        object_name="TOP",
+        object_id="2024-001A",
+        center_name="EARTH",
+        ref_frame_a="EME2000",
+        ref_frame_b="SC_BODY_1",
+        attitude_dir=ndmxml2.RotDirectionType(direction),
+        time_system=ndmxml2.TimeSystemType.TAI,
+        start_time=recordings.epoch(columns["t"][0]),
+        stop_time=recordings.epoch(columns["t"][-1]),
+        attitude_type=ndmxml2.AttitudeTypeType.QUATERNION_1,
+        quaternion_type=ndmxml2.QuaternionTypeType(order),
+    )
+    data = ndmxml2.AemData(attitude_state=states)
+    header = ndmxml2.NdmHeader(creation_date="2024-03-01T00:00:00", originator="TESTS")
+    segment = ndmxml2.AemSegment(metadata=metadata, data=data)
+    return ndmxml2.Aem(header=header, body=ndmxml2.AemBody(segment=[segment]))
+
+
+def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Path) -> None:
+    """X_RATE ... of version 1 are rates of Euler angles: they are left out, and that is said."""
+    state = f"{STATE} 1 2 3"
+    content = text(state, version="1.0", ATTITUDE_TYPE="QUATERNION/RATE", QUATERNION_TYPE="LAST")
+    found = read(written(tmp_path, content))
+    assert set(found.groups) == {"quaternion"}
+    assert found.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
+
+
+def test_a_segment_is_named_by_its_number(tmp_path: Path) -> None:
+    """Of two segments none is taken; each is read by its number, from its own START_TIME."""
+    second = text(START_TIME="2024-061T00:00:00.125").split("ORIGINATOR = X\n")[1]
+    file = written(tmp_path, text() + second)
+    with pytest.raises(Refused, match=r"expected one segment, got 2 @ .*FILE#1 \.\.\. FILE#2"):
+        read(file)
+    assert [read(f"{file}#{n}").times for n in (1, 2)] == [(Fraction(1, 4),), (Fraction(1, 8),)]
+    with pytest.raises(Refused, match="expected a segment from 1 to 2, got `#3`"):
+        read(f"{file}#3")
+
+
+FAULTS: Mapping[str, tuple[str, str]] = {
+    "spin": (text(ATTITUDE_TYPE="SPIN"), "ATTITUDE_TYPE of quaternions .*got SPIN .*write QUATERN"),
+    "orbit": ("CCSDS_OEM_VERS = 2.0\n", "an attitude ephemeris .CCSDS_AEM_VERS., got CCSDS_OEM"),
+    "star tracker": (text(REF_FRAME_B="STARTRACKER_1"), "expected SC_BODY as one of REF_FRAME_A"),
+    "orbital frame": (text(REF_FRAME_A="LVLH"), "an inertial frame beside SC_BODY, got LVLH"),
+    "earth": (text(REF_FRAME_A="ITRF-97"), "an inertial frame beside SC_BODY, got ITRF-97"),
+    "no frame": (text(REF_FRAME_A=None), "got no REF_FRAME_A"),
+    "direction": (text(ATTITUDE_DIR="B"), "expected ATTITUDE_DIR = A2B or B2A, got B"),
+    "no order": (text(version="1.0"), "expected QUATERNION_TYPE = FIRST or LAST, got none"),
+    "clock": (text(TIME_SYSTEM="SCLK"), "expected a TIME_SYSTEM like UTC, TAI or TT, got SCLK"),
+    "start": (text(START_TIME="noon"), "an epoch like .*got noon @ .*START_TIME"),
+    "epoch": (text(STATE.replace("061", "367")), "an epoch on a day .* @ .*state 1, EPOCH"),
+    "number": (text(STATE.replace("0.2", "x")), "got 'x' @ .*state 1, Q2"),
+    "few": (text("2024-061T00:00:00 0.1 0.2"), "expected EPOCH Q1 Q2 Q3 QC, got 3 values @ .*line"),
+    "rates": (
+        text(f"{STATE} 1 2 3", ATTITUDE_TYPE="QUATERNION/ANGVEL"),
+        "expected ANGVEL_FRAME = EME2000 or SC_BODY_1, got none",
+    ),
+    "cut": (text()[: -len("DATA_STOP\n")], "expected DATA_STOP, got the end of the file"),
+    "no data": ("CCSDS_AEM_VERS = 2.0\n", "expected a segment with attitude data, got none"),
+    "stranger": (text() + "hello\n", "expected KEYWORD = value or a block of data, got 'hello'"),
+    "long": (text("1" * 5000), "expected at most 4096 characters in a line"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faults_of_a_message_are_refused(fault: str, tmp_path: Path) -> None:
+    """What the standard does not allow, and what a scene does not have, is refused with its place."""
+    content, expected = FAULTS[fault]
+    with pytest.raises(Refused, match=expected):
+        read(written(tmp_path, content))
+
+
+XML_FAULTS: Mapping[str, tuple[str, str]] = {
+    "bomb": ('<!DOCTYPE a [<!ENTITY b "c">]><aem>&b;</aem>', "expected XML without a DOCTYPE"),
+    "cut": ("<aem><body>", "expected XML, got a fault in it"),
+    "orbit": ("<oem/>", "expected an attitude ephemeris .*got <oem>"),
+    "no metadata": ("<aem><attitudeState/></aem>", "expected metadata before the states"),
+    "empty": ("<aem></aem>", "expected a segment with attitude data, got none"),
+}
+
+
+@pytest.mark.parametrize("fault", XML_FAULTS)
+def test_faults_of_xml_are_refused(fault: str, tmp_path: Path) -> None:
+    """Entities, and elements that are missing, are refused."""
+    content, expected = XML_FAULTS[fault]
+    with pytest.raises(Refused, match=expected):
+        read(written(tmp_path, content, "run.xml"))
+
+
+# Epochs.
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "is_utc", "elapsed"),
+    [
+        ("2024-02-28T23:59:59", "2024-03-01T00:00:00", False, 86401),
+        ("2024-060T12:00:00Z", "2024-02-29T12:00:00", True, 0),
+        ("2023-12-31T23:59:59.9999999999999", "2024-001T00:00:00", True, Fraction(1, 10**13)),
+        ("2016-12-31T23:59:59", "2017-01-01T00:00:00", True, 2),
+        ("2016-12-31T23:59:60.5", "2017-01-01T00:00:00", True, Fraction(1, 2)),
+        ("2016-12-31T23:59:59", "2017-01-01T00:00:00", False, 1),
+        ("1971-12-31T00:00:00", "2024-01-01T00:00:00", True, 18994 * 86400 + 27),
+    ],
+)
+def test_epochs_differ_exactly(
+    first: str, second: str, is_utc: bool, elapsed: Fraction | int
+) -> None:
+    """Days of the year, months, fractions of any length and the leap seconds of UTC are counted."""
+    assert seconds(second, is_utc) - seconds(first, is_utc) == elapsed
+
+
+@pytest.mark.parametrize(
+    "epoch",
+    [
+        *("2024-13-01T00:00:00", "2023-366T00:00:00", "2024-000T00:00:00", "0000-001T00:00:00"),
+        *("2024-01-01T24:00:00", "2024-01-01T00:60:00", "2024-01-01T23:59:60", "2016-366T22:59:60"),
+        *("2024-01-01", "2024-01-01T00:00:0" + "0" * 50, ""),
+    ],
+)
+def test_epochs_that_never_were_are_refused(epoch: str) -> None:
+    """No day and no second is taken that the calendar does not have."""
+    with pytest.raises(ValueError, match="an epoch"):
+        seconds(epoch, is_utc=True)

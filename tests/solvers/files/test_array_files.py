@@ -1,0 +1,121 @@
+"""Arrays in HDF5, MATLAB and Parquet files: how they are called, and which of them are columns."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pytest
+import scipy.io
+from pyarrow import parquet
+from recordings import OMEGA
+
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.solvers.files.file import KNOWN, read
+from taylor_verify.solvers.files.formats.reading import read_table
+
+
+def names_of(file: str | Path) -> list[str]:
+    return [column.name for column in read_table(file, KNOWN).columns]
+
+
+def test_groups_and_structs_are_dotted_names(tmp_path: Path) -> None:
+    """Arrays in groups and structs are named by them; a part of the file is named without it."""
+    omega = np.arange(12.0).reshape(4, 3)
+    with h5py.File(tmp_path / "run.h5", "w") as content:
+        content["t"] = np.arange(4.0)
+        content["imu/omega"] = omega
+        content["other/R"] = np.zeros((4, 3, 3))
+    scipy.io.savemat(
+        tmp_path / "run.mat", {"t": np.arange(4.0), "imu": {"omega": omega, "deep": {"q": omega.T}}}
+    )
+    omegas = [f"imu.omega[{i}]" for i in range(3)]
+    matrix = [f"other.R[{i}][{k}]" for i in range(3) for k in range(3)]
+    assert sorted(names_of(tmp_path / "run.h5")) == sorted(["t", *omegas, *matrix])
+    deep = [f"imu.deep.q[{i}]" for i in range(3)]
+    assert sorted(names_of(tmp_path / "run.mat")) == sorted(["t", *omegas, *deep])
+    table = read_table(tmp_path / "run.mat", KNOWN)
+    by_name = {column.name: list(column.values) for column in table.columns}
+    assert by_name["imu.omega[1]"] == by_name["imu.deep.q[1]"] == [1, 4, 7, 10]
+
+
+def test_several_trajectories_in_groups_are_asked_for(tmp_path: Path) -> None:
+    """Times in two groups are two trajectories, and one of them has to be named."""
+    with h5py.File(tmp_path / "run.h5", "w") as content:
+        for group in ("a", "b/c"):
+            for name in ("t", *OMEGA):
+                content[f"{group}/{name}"] = np.arange(3.0)
+    with pytest.raises(Refused, match=r"got times in the groups a, b\.c @ "):
+        read(tmp_path / "run.h5")
+    for part in ("a", "b/c", "/b.c"):
+        assert len(read(f"{tmp_path / 'run.h5'}#{part}").times) == 3
+    with pytest.raises(
+        Refused, match=r"expected one of the groups in the file \(a, b.c\), got `#d`"
+    ):
+        read(f"{tmp_path / 'run.h5'}#d")
+
+
+def test_what_is_no_column_is_named_in_a_note(tmp_path: Path) -> None:
+    """Text, and arrays of another length than the times, are left out and named."""
+    with h5py.File(tmp_path / "run.h5", "w") as content:
+        for name in ("t", *OMEGA):
+            content[name] = np.arange(4.0)
+        content["inertia"], content["title"], content["step"] = np.eye(3), "a run", 0.1
+    found = read(tmp_path / "run.h5")
+    assert found.notes == (
+        "not read, because they have no 4 rows: inertia, step",
+        "not read, because they hold no real numbers: title",
+    )
+
+
+def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
+    """A file of version 7.3 is HDF5 with the axes the other way round; SciPy ships one of MATLAB's."""
+    data = Path(scipy.io.matlab.__file__).parent / "tests" / "data" / "testhdf5_7.4_GLNX86.mat"
+    with h5py.File(data) as content:
+        expected = content["testdouble"][:, 0].tolist()
+    table = read_table(data, KNOWN)
+    assert [(c.name, list(c.values)) for c in table.columns] == [("testdouble", expected)]
+    file = tmp_path / "run.mat"
+    with h5py.File(file, "w", userblock_size=512) as content:
+        for name, values in {
+            "t": np.arange(4.0)[:, None],
+            "q": np.arange(16.0).reshape(4, 4).T,
+        }.items():
+            content[f"log/{name}"] = values
+            content[f"log/{name}"].attrs["MATLAB_class"] = np.bytes_("double")
+    with file.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    by_name = {c.name: list(c.values) for c in read_table(file, KNOWN).columns}
+    assert by_name["t"] == [0, 1, 2, 3]
+    assert by_name["q[1]"] == [1, 5, 9, 13]
+
+
+def opaque(name: bytes, kind: bytes) -> bytes:
+    """An object of MATLAB's, as version 7 holds it: its name, the system and the class."""
+
+    def element(code: int, data: bytes) -> bytes:
+        return struct.pack("<II", code, len(data)) + data + bytes(-len(data) % 8)
+
+    flags = element(6, struct.pack("<II", 17, 0))
+    return element(14, flags + element(1, name) + element(1, b"MCOS") + element(1, kind))
+
+
+def test_objects_of_matlab_are_refused_with_the_way_to_save_them(tmp_path: Path) -> None:
+    """A timeseries is no array: the refusal says how to save its numbers."""
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    (tmp_path / "run.mat").write_bytes(header + opaque(b"run", b"timeseries"))
+    expected = "got the object `run` of class timeseries .*save the numbers: s.t = run.Time"
+    with pytest.raises(Refused, match=expected):
+        read(tmp_path / "run.mat")
+
+
+def test_structs_in_parquet_are_dotted_names(tmp_path: Path) -> None:
+    """A column of structs is a column for each of its numbers."""
+    rows = [{"a": {"x": 1.0, "b": {"y": 2}}, "t": 0.0}, {"a": {"x": 3.0, "b": {"y": 4}}, "t": 1.0}]
+    parquet.write_table(pa.Table.from_pylist(rows), tmp_path / "run.parquet")
+    table = read_table(tmp_path / "run.parquet", KNOWN)
+    found = {column.name: list(column.values) for column in table.columns}
+    assert found == {"a.x": [1.0, 3.0], "a.b.y": [2, 4], "t": [0.0, 1.0]}

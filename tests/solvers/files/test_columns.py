@@ -1,0 +1,540 @@
+"""The columns of anybody's file: usual names and units are taken and said, and nothing is guessed."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+from trajectories import MATRIX, Columns, exact_columns, write_csv
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.solvers.files.columns.names import GROUPS, SPELLINGS, Spelling
+from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.columns.units import OWN, in_brackets, known_units
+from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, read
+from taylor_verify.solvers.files.formats.column import Column
+
+SCENE = "euler/with-attitude"
+NAMES = {group: " ".join(names) for group, names in GROUPS.items()}
+
+
+def made(names: str | Sequence[str], wanted: Mapping[str, str] | None = None) -> TrajectoryFile:
+    """The trajectory in columns of these names, each with numbers of its own."""
+    every = names.split() if isinstance(names, str) else names
+    columns = [Column(name, [str(10 * k), str(10 * k + 7)]) for k, name in enumerate(every)]
+    return from_columns(columns, "mine", tuple((wanted or {}).items()))
+
+
+def refusal(names: str | Sequence[str], wanted: Mapping[str, str] | None = None) -> str:
+    with pytest.raises(Refused) as refused:
+        made(names, wanted)
+    return str(refused.value)
+
+
+def judged(path: Path, columns: Mapping[str, Sequence[object]], **options: object) -> FileJudgement:
+    file = write_csv(path / "mine.csv", columns, str)
+    found = taylor_verify.check(SCENE, file, **options)  # type: ignore[arg-type]
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def renamed(columns: Columns, names: Mapping[str, str]) -> dict[str, list[float]]:
+    return {names.get(name, name): list(values) for name, values in columns.items()}
+
+
+# Every name of the table.
+
+
+def _file_of(spelling: Spelling) -> list[str]:
+    names = list(spelling.keys)
+    if spelling.group != "time":
+        names = ["t", *names]
+    return [*names, *COLUMNS["omega"]] if spelling.beside else names
+
+
+@pytest.mark.parametrize(
+    "spelling",
+    [s for s in SPELLINGS if not (s.doubt or s.unless)],
+    ids=lambda s: "-".join(s.keys[:2]),
+)
+def test_every_spelling_of_the_table_is_taken_in_any_order(spelling: Spelling) -> None:
+    """The columns of a spelling are the group that the table says, component by component."""
+    names = _file_of(spelling)
+    values = {name: str(k) for k, name in enumerate(names)}
+    for seed in range(3):
+        order = random.Random(seed).sample(names, len(names))
+        file = from_columns([Column(name, [values[name]]) for name in order], "mine")
+        if spelling.group == "time":
+            assert file.times == (Fraction(0),)
+        else:
+            (row,) = file.groups[spelling.group]
+            assert row == tuple(Fraction(values[key]) for key in spelling.keys)
+        is_ours = spelling.keys == GROUPS[spelling.group]
+        assert any(NAMES[spelling.group] in note for note in file.notes) is not is_ours
+
+
+@pytest.mark.parametrize("spelling", [s for s in SPELLINGS if s.doubt], ids=lambda s: s.keys[0])
+def test_a_spelling_in_doubt_is_refused_with_what_to_write(spelling: Spelling) -> None:
+    """Four numbered components of a quaternion do not say where the scalar is."""
+    said = refusal(["t", *spelling.keys])
+    assert "the scalar is the first of them or the last" in said
+    first = ",".join(f"{a}={b}" for a, b in zip(COLUMNS["quaternion"], spelling.keys, strict=True))
+    assert f"say which: --columns {first} for the first, q0={spelling.keys[3]}," in said
+    wanted = dict(zip(COLUMNS["quaternion"], spelling.keys, strict=True))
+    assert set(made(["t", *spelling.keys], wanted).groups) == {"quaternion"}
+
+
+@pytest.mark.parametrize(
+    ("names", "group"),
+    [
+        ("t omega[0] omega[1] omega[2]", "omega"),
+        ("t omega(1) omega(2) omega(3)", "omega"),
+        ("t omega_1 omega_2 omega_3", "omega"),
+        ("TIME Omega_X Omega_Y Omega_Z", "omega"),
+        ("t angularVelocityX angularVelocityY angularVelocityZ", "omega"),
+        ("t angular_velocity.x angular_velocity.y angular_velocity.z", "omega"),
+        ("t /imu/angular_velocity.x /imu/angular_velocity.y /imu/angular_velocity.z", "omega"),
+        (
+            "t odom.twist.twist.angular.x odom.twist.twist.angular.y odom.twist.twist.angular.z",
+            "omega",
+        ),
+        ("t ωx ωy ωz", "omega"),
+        ("t ω_1 ω_2 ω_3", "omega"),
+        ("t w0 w1 w2", "omega"),
+        ("t W1 W2 W3", "omega"),
+        ("time_s gyro_x gyro_y gyro_z", "omega"),
+        ("timestamp wx(t) wy(t) wz(t)", "omega"),
+        ("t p q r", "omega"),
+        ("t qw qx qy qz", "quaternion"),
+        (
+            "t /pose/orientation.w /pose/orientation.x /pose/orientation.y /pose/orientation.z",
+            "quaternion",
+        ),
+        ("t q[0] q[1] q[2] q[3]", "quaternion"),
+        ("t η ε1 ε2 ε3", "quaternion"),
+        ("t qc q1 q2 q3", "quaternion"),
+        ("t w x y z", "quaternion"),
+        ("t px py pz", "centre"),
+        ("t x y z", "centre"),
+        ("t pose.pose.position.x pose.pose.position.y pose.pose.position.z", "centre"),
+        ("t u v w p q r", "linear_velocity"),
+        ("t twist.linear.x twist.linear.y twist.linear.z", "linear_velocity"),
+        ("t " + " ".join(f"R[{i}][{k}]" for i in range(3) for k in range(3)), "attitude"),
+        ("t " + " ".join(f"dcm_{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)), "attitude"),
+        ("t " + " ".join(f"r{i}{k}" for i in range(3) for k in range(3)), "attitude"),
+    ],
+)
+def test_usual_forms_of_names(names: str, group: str) -> None:
+    """Capitals, brackets, dots, paths and Greek letters are read."""
+    if names == "t w x y z":
+        # A quaternion and a centre: two groups would take x y z.
+        assert "say which" in refusal(names)
+        return
+    file = made(names)
+    count = len(COLUMNS[group])
+    assert file.groups[group][0] == tuple(Fraction(10 * k) for k in range(1, count + 1))
+    assert file.times == (Fraction(0), Fraction(7))
+
+
+def test_blanks_and_a_mark_at_the_beginning_of_a_name_are_no_part_of_it() -> None:
+    """Names with blanks around them, and with a byte order mark, are the names."""
+    assert set(made(["\ufefftime", " wx", "wy ", '"wz"']).groups) == {"omega"}
+
+
+def test_scalar_last_in_the_file_is_no_matter_of_order() -> None:
+    """qx qy qz qw are what their names say, and the verdict says no convention."""
+    file = made("t qx qy qz qw")
+    assert file.groups["quaternion"][0] == tuple(map(Fraction, (40, 10, 20, 30)))
+
+
+# Files are judged alike.
+
+
+@given(st.data())
+def test_any_usual_names_in_any_order_are_the_same_file(data: st.DataObject) -> None:
+    """Spellings drawn for each group, in any order: times and numbers are those of the plain file."""
+    plain: dict[str, Sequence[str]] = {"t": ["0", "1"]}
+    names: dict[str, str] = {}
+    clear = [s for s in SPELLINGS if not (s.doubt or s.is_whole or s.unless)]
+    for group in ("time", "omega", "attitude", "centre"):
+        spelling = data.draw(st.sampled_from([s for s in clear if s.group == group]))
+        for ours, key in zip(GROUPS[group], spelling.keys, strict=True):
+            names[ours] = key
+            plain.setdefault(ours, [str(len(plain)), str(2 * len(plain))])
+    order = data.draw(st.permutations(list(plain)))
+    expected = from_columns([Column(name, values) for name, values in plain.items()], "mine")
+    found = from_columns([Column(names[name], plain[name]) for name in order], "mine")
+    assert (found.times, found.groups) == (expected.times, expected.groups)
+
+
+def test_verdicts_are_those_of_the_plain_file(tmp_path: Path) -> None:
+    """Aircraft names, degrees and milliseconds: the same verdicts, and notes that say what was taken."""
+    sound = {name: list(values) for name, values in exact_columns(SCENE).items()}
+    with mp.workdps(30):
+        spoken = {
+            "qz": sound["q3"], "note": [0.0] * len(sound["t"]), "r [deg/s]": degrees(sound["w3"]),
+            "p [deg/s]": degrees(sound["w1"]), "q [deg/s]": degrees(sound["w2"]),
+            "Time (ms)": [repr(1000 * Fraction(t)) for t in sound["t"]],
+            "qw": sound["q0"], "qx": sound["q1"], "qy": sound["q2"],
+        }  # fmt: skip
+    spoken["Time (ms)"] = [str(Fraction(t) * 1000) for t in sound["t"]]
+    plain, other = judged(tmp_path, sound), judged(tmp_path, spoken)
+    assert {v.quantity: v.verdict for v in plain.verdicts} == {
+        v.quantity: v.verdict for v in other.verdicts
+    }
+    assert {v.verdict for v in other.verdicts} == {Status.PASS}
+    assert other.conventions == ()
+    said = "\n".join(other.notes)
+    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3, body axes" in said
+    assert "in degrees per unit of time" in said
+    assert "`Time (ms)` taken as t, in thousandths of the scene's unit of time" in said
+    assert "ignored: `note`" in said
+
+
+def degrees(values: Sequence[float]) -> list[str]:
+    return [mp.nstr(mp.degrees(mp.mpf(value)), 25) for value in values]
+
+
+@pytest.mark.parametrize(
+    ("names", "quantity"),
+    [
+        ({"w1": "wx [deg/s]", "w2": "wy [deg/s]", "w3": "wz [deg/s]"}, "omega"),
+        ({"t": "t [ms]"}, "omega"),
+        ({"w1": "w2", "w2": "w1"}, "omega"),
+        ({"q0": "qx", "q1": "qw", "q2": "qy", "q3": "qz"}, "attitude"),
+    ],
+)
+def test_a_wrong_name_or_unit_is_caught(
+    names: Mapping[str, str], quantity: str, tmp_path: Path
+) -> None:
+    """Sound numbers under a unit or a name that is not theirs fail: what was said is believed."""
+    sound = {name: list(values) for name, values in exact_columns(SCENE).items()}
+    found = judged(tmp_path, renamed(sound, names))
+    assert {v.quantity: v.verdict for v in found.verdicts}[quantity] is Status.FAIL
+
+
+# Units.
+
+
+@pytest.mark.parametrize(
+    ("name", "group", "factor"),
+    [
+        ("t [s]", "time", 1),
+        ("t_ms", "time", Fraction(1, 1000)),
+        ("timestamp_ns", "time", Fraction(1, 10**9)),
+        ("time (µs)", "time", Fraction(1, 10**6)),
+        ("Time [min]", "time", 60),
+        ("t/h", "time", 3600),
+        ("elapsed_sec", "time", 1),
+    ],
+)
+def test_units_of_time(name: str, group: str, factor: Fraction) -> None:
+    """A unit in brackets or behind the name is used, exactly, and said."""
+    file = made([name, "w1", "w2", "w3"])
+    assert file.times[1] == 7 * factor
+    assert "unit of time" in file.notes[0]
+    assert group == "time"
+
+
+@pytest.mark.parametrize("form", ["{} [deg/s]", "{}(°/s)", "{}_dps", "{}_deg_s", "{} {{deg/sec}}"])
+def test_degrees_are_degrees_to_400_bits(form: str) -> None:
+    """A rate in degrees is pi/180 of it, right to 120 digits."""
+    file = made(["t", *(form.format(name) for name in ("wx", "wy", "wz"))])
+    with mp.workdps(150):
+        right = 10 * mp.pi / 180
+        value = file.groups["omega"][0][0]
+        assert isinstance(value, Fraction)
+        assert abs(mp.mpf(value.numerator) / value.denominator - right) < mp.mpf(10) ** -119
+
+
+def test_each_column_has_its_own_unit() -> None:
+    """One column in degrees and two in radians are read so."""
+    file = made(["t", "wx [deg/s]", "wy [rad/s]", "wz"])
+    degree = in_brackets("deg/s", "omega")
+    assert degree is not None
+    assert file.groups["omega"][0] == (10 * degree.factor, 20, 30)
+
+
+def test_rate_names_with_a_unit() -> None:
+    """Roll rate, pitch rate and yaw rate in degrees are body rates."""
+    file = made(["time_s", "roll rate [deg/s]", "pitch rate [deg/s]", "yaw rate [deg/s]"])
+    assert "taken as w1 w2 w3, body axes, in degrees per unit of time" in "\n".join(file.notes)
+
+
+@pytest.mark.parametrize(
+    ("names", "unit"),
+    [
+        (["t", "wx [furlong]", "wy", "wz"], "furlong"),
+        (["t [fortnight]", "w1", "w2", "w3"], "fortnight"),
+        (["t", "w1 [m]", "w2 [m]", "w3 [m]"], "m"),
+    ],
+)
+def test_a_unit_nobody_uses_is_refused_with_those_that_are_known(
+    names: list[str], unit: str
+) -> None:
+    """The message names the known units, the column, and how to take its numbers as they stand."""
+    said = refusal(names)
+    assert f"got `{unit}`" in said
+    assert "expected a unit of " in said
+    assert "in the scene's unit" in said
+    name = next(name for name in names if unit in name)
+    ours = "t" if name[0] == "t" else "w1"
+    wanted = dict(zip(("w1", "w2", "w3"), names[1:], strict=True)) | {"t": names[0]}
+    assert "omega" in made(names, wanted).groups
+    assert f"--columns {ours}='{name}'" in said
+
+
+def test_a_unit_of_another_kind_ends_no_name() -> None:
+    """x_dps is no position: degrees per second are no length."""
+    file = made("t w1 w2 w3 x_dps y_dps z_dps")
+    assert set(file.groups) == {"omega"}
+    assert OWN.factor == 1
+
+
+# What is asked for.
+
+
+def test_asked_columns_come_before_all_names() -> None:
+    """Names with blanks, dots, brackets and commas; a column of our own name is then ignored."""
+    names = ["Zeit, s", "w1", "rate, axis 1", "b.2", "c[3]"]
+    wanted = {"t": "Zeit, s", "w1": "rate, axis 1", "w2": "b.2", "w3": "c[3]"}
+    file = made(names, wanted)
+    assert file.groups["omega"][0] == (20, 30, 40)
+    assert "ignored: `w1`" in file.notes
+    text = request(["t=Zeit, s,w1=rate, axis 1,w2=b.2", 'w3="c[3]"'])
+    assert dict(text) == wanted
+
+
+def test_a_group_is_asked_for_by_its_first_word() -> None:
+    """omega=gyro names gyro_x gyro_y gyro_z, or gyro[0] ... gyro[2]."""
+    for names in ("t g_x g_y g_z", "t g[0] g[1] g[2]", "t G1 G2 G3"):
+        assert made(names, {"omega": "g"}).groups["omega"][0] == (10, 20, 30)
+    said = refusal("t g_x g_y w1 w2 w3", {"omega": "g"})
+    assert "name each of w1 w2 w3" in said
+
+
+def test_a_part_of_a_group_may_be_asked_for() -> None:
+    """w3 by request, w1 and w2 by their own names."""
+    assert made("t w1 w2 W_3x", {"w3": "W_3x"}).groups["omega"][0] == (10, 20, 30)
+
+
+def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
+    """A name that is none of ours, a column that is none, and one column twice."""
+    said = refusal("t a b c", {"w1": "a", "w2": "a", "omega_3": "c", "w3": "bb"})
+    assert "got `omega_3` @ columns omega_3=c" in said
+    assert "expected every column once, got `a`, which is w1" in said
+    assert "got `bb` @ columns w3=bb (near it: `b`" in said
+    # What follows from them is none of its own.
+    assert "expected all of" not in said
+    with pytest.raises(Refused, match="expected every name once, got w1 again"):
+        from_columns([Column(n, ["1"]) for n in "tab"], "mine", (("w1", "a"), ("w1", "b")))
+
+
+# What is not clear.
+
+
+@pytest.mark.parametrize(
+    ("names", "fault"),
+    [
+        (
+            "t wx wy wz gyro_x gyro_y gyro_z",
+            "expected w1 w2 w3 once, got `wx` `wy` `wz` and `gyro_x`",
+        ),
+        ("time timestamp w1 w2 w3", "expected t once, got `time` and `timestamp`"),
+        ("t /a/wx /a/wy /a/wz /b/wx /b/wy /b/wz", "expected w1 w2 w3 once"),
+        ("t qw qx qy qz " + " ".join(f"R{n[1:]}" for n in MATRIX), "expected the attitude once"),
+        (
+            "t x0 x1 x2 x3 x4 x5",
+            "got `x0` `x4` `x5` beside them: are they the components of a state",
+        ),
+        ("t w1 w2 W_3x", r"got no w3 @ mine \(did you mean `W_3x`\? --columns w3=W_3x\)"),
+        ("t w1 w2 wz", r"got no w3 @ mine \(did you mean `wz`\? --columns w3=wz\)"),
+        ("w1 w2 w3 epoch", "expected a column `t` of times, got none .*the columns are .*`epoch`"),
+        (
+            "stamp.sec stamp.nanosec w1 w2 w3",
+            "expected one column of times, got `stamp.sec` `stamp.nano",
+        ),
+        ("t Wx wx wy wz", "`Wx` `wx` are alike"),
+    ],
+)
+def test_what_is_not_clear_is_refused(names: str, fault: str) -> None:
+    """Two columns for one of ours, halves of a time and numbered states are never chosen from."""
+    with pytest.raises(Refused, match=fault):
+        made(names)
+
+
+@pytest.mark.parametrize(
+    "names", ["y[0] y[1] y[2] y[3]", "X1 X2 X3 X4", "W0 W1 W2 W3", "q[0] q[1] q[2] q[3] q[4]"]
+)
+def test_a_longer_row_of_numbered_columns_is_no_group(names: str) -> None:
+    """The states of a system are not read for the sake of their letter, and are named."""
+    file = made(f"t gyro_x gyro_y gyro_z {names}")
+    assert set(file.groups) == {"omega"}
+    assert file.notes[-1] == "ignored: " + " ".join(f"`{name}`" for name in names.split())
+
+
+def test_our_own_names_come_before_usual_ones() -> None:
+    """w1 w2 w3 beside gyro_x gyro_y gyro_z: ours are taken, the others are named."""
+    file = made("t gyro_x gyro_y gyro_z w1 w2 w3")
+    assert file.groups["omega"][0] == (40, 50, 60)
+    assert file.notes == ("ignored: `gyro_x` `gyro_y` `gyro_z`",)
+    both = made("t w1 w2 w3 q0 q1 q2 q3 " + " ".join(n.upper() for n in MATRIX))
+    assert set(both.groups) == {"omega", "quaternion"}
+
+
+@pytest.mark.parametrize(
+    "names", ["t w1 w2 w3 u v w", "t w1 w2 w3 acceleration.x acceleration.y acceleration.z"]
+)
+def test_letters_alone_need_company(names: str) -> None:
+    """u v w are velocities beside p q r or another omega; the x of an acceleration is no position."""
+    groups = set(made(names).groups)
+    assert groups == ({"omega", "linear_velocity"} if "u" in names.split() else {"omega"})
+    assert set(made("t qw qx qy qz u v w").groups) == {"quaternion"}
+    assert set(made("t qw qx qy qz motor.w1 motor.w2 motor.w3").groups) == {"quaternion"}
+    assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
+
+
+def test_a_name_of_any_length_is_read_at_once() -> None:
+    """A million dots are no million paths, and blanks behind wx do not make it another name."""
+    began = perf_counter()
+    strange = ["." * 10**6 + "wx", "wx" + " " * 10**5 + "b", "wx" * 10**5, "[" * 10**6]
+    file = made(["t", "w1", "w2", "w3", *strange])
+    assert set(file.groups) == {"omega"}
+    assert perf_counter() - began < 5
+
+
+def test_what_is_ignored_is_named_once() -> None:
+    """Eight names and the number of the others; a part of a group is said apart."""
+    file = made(["t", "w1", "w2", "w3", "pos_x", "pos_y", *(f"load {k}" for k in range(10))])
+    assert file.notes[0] == "`pos_x` `pos_y` not taken: nothing in the file is c3"
+    assert file.notes[1].endswith("`load 5` and 4 more")
+
+
+def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) -> None:
+    """Nothing is judged that was not understood."""
+    file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "roll": [1.0], "pitch": [1.0]})
+    with pytest.raises(
+        Refused, match=r"got t alone @ .*ignored: `roll` `pitch`; .*--columns w1=NAME"
+    ):
+        taylor_verify.check(SCENE, file)
+
+
+def test_columns_that_are_ignored_may_hold_anything(tmp_path: Path) -> None:
+    """Words and arrays of other lengths do not matter where they are not read."""
+    (tmp_path / "mine.json").write_text(
+        '{"t": [0, 1], "w1": [0, 1], "w2": [0, 1], "w3": [0, 1], "who": ["me"], "n": [1, 2, 3]}'
+    )
+    file = read(tmp_path / "mine.json")
+    assert file.notes == ("ignored: `who` `n`",)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("time,wx,wy,wz\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column wy"),
+        (
+            "time,wx,wy,wz\n0,1,2,3\n0,1,2,3\n",
+            "expected no time twice, got 0 again @ .*, column time",
+        ),
+        (
+            "t [ms],w1,w2,w3\n1,1,2,3\n6,1,2,3\n2,1,2,3\n",
+            "got 2 after 6 @ .* row 3, column t .ms.",
+        ),
+        (
+            "time,wx,wy,wz\n2024-01-01T00:00:00,1,2,3\n",
+            "got '2024-01-01T00:00:00' @ .* column time",
+        ),
+    ],
+)
+def test_faults_of_numbers_name_the_columns_of_the_file(
+    text: str, fault: str, tmp_path: Path
+) -> None:
+    """The place of a fault is the file's own name of the column."""
+    (tmp_path / "mine.csv").write_text(text)
+    with pytest.raises(Refused, match=fault):
+        read(tmp_path / "mine.csv")
+
+
+@pytest.mark.parametrize(("encoding", "mark"), [("utf-16", "UTF-16"), ("utf-16-be", "other bytes")])
+def test_a_file_in_utf_16_is_refused_by_that_name(encoding: str, mark: str, tmp_path: Path) -> None:
+    """A spreadsheet's Unicode text is told from broken bytes."""
+    (tmp_path / "mine.csv").write_bytes("t,w1,w2,w3\n0,é,2,3\n".encode(encoding))
+    with pytest.raises(Refused, match=f"expected text in UTF-8, got {mark}"):
+        read(tmp_path / "mine.csv")
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_name(tmp_path: Path) -> None:
+    """UTF-8 with a mark is read as UTF-8."""
+    (tmp_path / "mine.csv").write_bytes("\ufefft,wx,wy,wz\n0,1,2,3\n".encode())
+    assert read(tmp_path / "mine.csv").times == (0,)
+
+
+# The command.
+
+
+def test_command_takes_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """--columns, repeated or with commas; a wrong one is exit 2 with every fault."""
+    sound = exact_columns("euler/generic")
+    names = {"t": "Zeit", "w1": "rate, axis 1", "w2": "b", "w3": "c"}
+    path = tmp_path / "mine.csv"
+    rows = zip(*sound.values(), strict=True)
+    header = ",".join(f'"{names[name]}"' for name in sound)
+    path.write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows)]))
+    call = ["check", str(path), "--scene", "euler/generic", "--json"]
+    assert main([*call, "--columns", "t=Zeit,w1=rate, axis 1,w2=b", "--columns", "w3=c"]) == 0
+    notes = json.loads(capsys.readouterr().out)["file"]["notes"]
+    assert "`rate, axis 1` `b` `c` taken as w1 w2 w3, body axes" in notes
+    assert main([*call, "--columns", "t=Zeit,w9=b,w1=rate"]) == 2
+    errors = capsys.readouterr().err
+    assert "got `w9` @ columns w9=b" in errors
+    assert "got `rate` @ columns w1=rate" in errors
+
+
+# The documentation.
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "columns.md"
+
+
+def _documented(heading: str) -> list[tuple[str, str]]:
+    """The table below a heading: the first cell, and each text in backquotes of the second."""
+    _, _, below = PAGE.read_text(encoding="utf-8").partition(heading)
+    lines = below.split("\n\n## ")[0].splitlines()
+    table = [line.split("|")[1:-1] for line in lines if line.startswith("| ")]
+    return [
+        (first.strip(" `"), text) for first, *rest in table[1:] for text in rest[0].split("`")[1::2]
+    ]
+
+
+def test_names_of_the_page_are_taken() -> None:
+    """Every name that the documentation shows is taken as the group that it says."""
+    shown = _documented("## Other names")
+    assert {group for group, _ in shown} == set(GROUPS)
+    for group, names in shown:
+        company = "t" if group != "time" else "w1 w2 w3"
+        company += " p q r" if names == "u v w" else ""
+        file = made(f"{company} {names}")
+        assert group in file.groups or group == "time", names
+        assert any(" taken as " + NAMES[group] in note for note in file.notes)
+
+
+def test_units_of_the_page_are_known() -> None:
+    """The documentation shows the first name of every unit, and each of them is known."""
+    of = {"a rate": "omega", "a velocity": "linear_velocity", "a length": "centre", "time": "time"}
+    for kind, texts in _documented("## Units"):
+        group = of.get(kind, "angular_impulse" if "m" in texts else "linear_impulse")
+        assert all(in_brackets(text, group) is not None for text in texts.split())
+        if kind in of:
+            assert ", ".join(texts.split()) == known_units(group)

@@ -1,0 +1,273 @@
+"""Velocities of a solid in a fluid: u1 u2 u3 with w1 w2 w3 stand for the impulses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp
+from trajectories import VECTORS, Columns, columns_at, exact_columns, named, rows_of, write_csv
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.floor.inputs import impulses, velocities
+from taylor_verify.judge.floor.partial import partial_judgement
+from taylor_verify.models.problem import adopt
+from taylor_verify.records.quantities import COMPLETE, INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import Recorded
+
+SCENE = "kirchhoff/whole-motion"
+OMEGA = VECTORS["omega"]
+VELOCITY = ("u1", "u2", "u3")
+F64 = rung("f64")
+
+
+def velocity_columns(scene: Scene, instants: Sequence[Fraction]) -> Columns:
+    """The exact motion in doubles, its velocities in place of its impulses."""
+    columns = columns_at(scene, instants)
+    given = adopt(scene, F64, tuple(map(Fraction, columns["t"]))).given
+    assert isinstance(given.body, ImmersedBody)
+    with mp.workdps(40):
+        motion = solution(given).evaluate(given.clock.elapsed, 40)
+        U = velocities(given.body, motion)["linear_velocity"]
+    kept = {name: values for name, values in columns.items() if name[0] not in "xy"}
+    return {**kept, **named(VELOCITY, U)}
+
+
+@cache
+def sound(name: str = SCENE) -> Mapping[str, Sequence[float]]:
+    scene = load(name)
+    return velocity_columns(scene, [*scene.clock.instants[:-1:4], scene.clock.instants[-1]])
+
+
+def judged(
+    path: Path, columns: Mapping[str, Any], scene: str = SCENE, **options: Any
+) -> FileJudgement:
+    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns, str), **options)
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+def rows(found: FileJudgement) -> dict[str, Verdict]:
+    return {verdict.quantity: verdict for verdict in found.verdicts}
+
+
+def only(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
+    return {name: list(columns[name]) for name in ("t", *names)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", [SCENE, "kirchhoff/remus-100", "kirchhoff/swimmer-vehicle"])
+def test_velocities_stand_for_the_impulses(scene: str, tmp_path: Path) -> None:
+    """Everything that impulses determine has its row, nothing is missing, and all of it passes."""
+    found = judged(tmp_path, sound(scene), scene)
+    by_impulses = judged(tmp_path, exact_columns(scene), scene)
+    assert set(rows(found)) == set(rows(by_impulses)) | {"velocity"}
+    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+    assert found.conventions == ()
+    assert "its place, because the file has velocities" in rows(found)["impulse"].because
+
+
+def test_impulses_are_made_exactly() -> None:
+    """(x, y) = M (U, Omega) with the inverse of the scene's own matrix gives the impulses back."""
+    scene = load("kirchhoff/swimmer-vehicle")
+    body, start = scene.body, scene.initial
+    assert isinstance(body, ImmersedBody)
+    assert isinstance(start, Impulse)
+    with mp.workdps(60):
+        state = {
+            "linear_impulse": np.array([[mp.convert(v) for v in start.linear]], dtype=object),
+            "angular_impulse": np.array([[mp.convert(v) for v in start.angular]], dtype=object),
+        }
+        back = impulses(body, velocities(body, state))
+        for name, values in state.items():
+            assert max(abs(e) for e in (back[name] - values).flat) < mp.mpf(10) ** -55
+
+
+def test_names_of_vehicles(tmp_path: Path) -> None:
+    """u v w p q r with degrees are the velocities of the origin and the rates."""
+    columns = sound()
+    spoken: dict[str, Any] = {
+        name: columns[name] for name in columns if name[0] in "tqc" and name != "q"
+    }
+    spoken |= dict(zip("uvw", (columns[name] for name in VELOCITY), strict=True))
+    for letter, name in zip("pqr", OMEGA, strict=True):
+        with mp.workdps(30):
+            spoken[f"{letter} [deg/s]"] = [mp.nstr(mp.degrees(v), 25) for v in columns[name]]
+    found = judged(tmp_path, spoken)
+    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+    said = "\n".join(found.notes)
+    assert "`u` `v` `w` taken as u1 u2 u3, of the body's origin, in body axes" in said
+    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3" in said
+
+
+def test_either_velocity_alone_is_judged_as_itself(tmp_path: Path) -> None:
+    """u1 u2 u3 alone have the row velocity, and the impulses are not judged."""
+    found = judged(tmp_path, only(sound(), *VELOCITY))
+    assert set(rows(found)) == {INITIAL, "velocity", COMPLETE}
+    assert rows(found)["velocity"].verdict is Status.PASS
+    assert "linear impulse" in rows(found)[COMPLETE].because
+    spoiled = only(sound(), *VELOCITY)
+    spoiled["u2"][3] *= 1 + 1e-10
+    velocity = rows(judged(tmp_path, spoiled))["velocity"]
+    assert (velocity.verdict, velocity.at) == (Status.FAIL, spoiled["t"][3])
+    late = {**only(sound(), *VELOCITY), "t": [t + 2**-11 for t in sound()["t"]]}
+    assert rows(judged(tmp_path, late))["velocity"].time_shift == pytest.approx(2**-11, rel=1e-6)
+
+
+def test_impulses_of_the_file_come_before_its_velocities(tmp_path: Path) -> None:
+    """Wrong velocities beside sound impulses fail their own row alone."""
+    columns = {**exact_columns(SCENE), **{n: [2 * v for v in sound()[n]] for n in VELOCITY}}
+    found = {
+        quantity: verdict.verdict for quantity, verdict in rows(judged(tmp_path, columns)).items()
+    }
+    assert found.pop("velocity") is Status.FAIL
+    assert found.pop(INITIAL) is Status.FAIL
+    assert set(found.values()) == {Status.PASS}
+
+
+def swapped(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    return {**columns, "u1": columns["u2"], "u2": columns["u1"]}
+
+
+def of_the_sign(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    return {**columns, "u3": [-v for v in columns["u3"]]}
+
+
+def in_millimetres(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    return {(f"{n} [mm/s]" if n in VELOCITY else n): v for n, v in columns.items()}
+
+
+@pytest.mark.parametrize("spoil", [swapped, of_the_sign, in_millimetres])
+def test_wrong_velocities_are_caught(spoil: Any, tmp_path: Path) -> None:
+    """Two components exchanged, a sign, a unit that is not theirs: impulse and velocity fail."""
+    found = rows(judged(tmp_path, spoil(sound())))
+    for quantity in ("impulse", "velocity"):
+        assert found[quantity].verdict is Status.FAIL
+    assert found["omega"].verdict is Status.PASS
+
+
+def test_velocities_in_space_axes_are_a_convention(tmp_path: Path) -> None:
+    """U in space axes is found out, and with its correction the impulses pass."""
+    R = rotations(rows_of(sound(), ("q0", "q1", "q2", "q3")))
+    turned = (R @ rows_of(sound(), VELOCITY)[:, :, None])[:, :, 0]
+    columns = {**sound(), **named(VELOCITY, turned)}
+    found = judged(tmp_path, columns)
+    assert ["u1 u2 u3 are in space axes"] == [finding.words for finding in found.conventions]
+    assert rows(found)["impulse"].verdict is Status.FAIL
+    mended = judged(tmp_path, columns, accept_conventions=True)
+    assert rows(mended)["velocity"].max < 1e-14  # type: ignore[operator]
+    assert rows(mended)["impulse"].max < 1e-14  # type: ignore[operator]
+
+
+def test_a_value_that_is_no_number_is_named_where_it_stands(tmp_path: Path) -> None:
+    """NaN in u2 fails all that rests on it, and the row says where it is."""
+    columns = {name: list(values) for name, values in sound().items()}
+    columns["u2"][2] = float("nan")
+    found = rows(judged(tmp_path, columns))
+    for quantity in ("impulse", "velocity", "T"):
+        assert found[quantity].verdict is Status.FAIL
+        assert "u2 is nan in row 3" in found[quantity].because
+    assert found["omega"].verdict is Status.PASS
+
+
+def test_a_rigid_body_has_no_velocity_of_its_origin(tmp_path: Path) -> None:
+    """u1 u2 u3 beside w1 w2 w3 of Euler's equations are left out and named; alone they are refused."""
+    columns = exact_columns("euler/generic")
+    rest = {name: [1.0] * len(columns["t"]) for name in VELOCITY}
+    found = judged(tmp_path, {**columns, **rest}, "euler/generic")
+    assert {v.verdict for v in found.verdicts} == {Status.PASS}
+    said = "u1 u2 u3 not compared: euler/generic is of model euler, whose motion has no linear velocity"
+    assert said in found.notes
+    file = write_csv(tmp_path / "mine.csv", {"t": columns["t"], **rest})
+    assert main(["check", file, "--scene", "euler/generic"]) == 2
+
+
+# A rounding of velocities.
+
+
+def far_from_its_origin(offset: int) -> Scene:
+    """A body whose mass lies far from the origin: U is the difference of large terms, and so is x."""
+    r = (Fraction(0), Fraction(offset), Fraction(0))
+    cross = ((Fraction(0), -r[2], r[1]), (r[2], Fraction(0), -r[0]), (-r[1], r[0], Fraction(0)))
+    turned = tensors.transpose(cross)
+    inertia = tensors.diagonal((Fraction(2), Fraction(3), Fraction(4)))
+    masses = tensors.diagonal((Fraction(1), Fraction(2), Fraction(3)))
+    coupled = tensors.product(masses, turned)
+    whole = tensors.product(cross, coupled)
+    about = tuple(
+        tuple(a + b for a, b in zip(row, other, strict=True))
+        for row, other in zip(inertia, whole, strict=True)
+    )
+    energy = tensors.inverse(tensors.blocks(masses, coupled, about))
+    A = tuple(row[:3] for row in energy[:3])
+    B = tuple(row[3:] for row in energy[:3])
+    C = tuple(row[3:] for row in energy[3:])
+    plain = load("kirchhoff/steady-screw")
+    linear = (Fraction(1), Fraction(1, 2), Fraction(1, 4))
+    start = Impulse(linear, (Fraction(1, 3), Fraction(1), Fraction(2)))
+    clock = Clock(Fraction(0), tuple(Fraction(k, 20) for k in range(5)))
+    return replace(plain, body=ImmersedBody(A, B, C), initial=start, clock=clock, track=frozenset())
+
+
+@pytest.mark.slow
+def test_rounding_of_velocities_is_carried_through_the_inertia_matrix() -> None:
+    """Where terms of M V cancel, doubles of V pass by the floor of velocities, and not by that of x, y."""
+    scene = far_from_its_origin(1000)
+    problem = adopt(scene, F64, scene.clock.instants)
+    body = scene.body
+    assert isinstance(body, ImmersedBody)
+    with mp.workdps(60):
+        motion = solution(problem.given).evaluate(problem.given.clock.elapsed, 40)
+        exact = velocities(body, motion)
+        # Each velocity as a double: what a file holds.
+        stored = {
+            name: np.array([[mp.mpf(float(v)) for v in row] for row in values], dtype=object)
+            for name, values in exact.items()
+        }
+        made = impulses(body, stored)
+    verdicts = {
+        carries: {
+            verdict.quantity: verdict
+            for verdict in partial_judgement(
+                problem, Recorded(made, carries_velocities=carries)
+            ).verdicts
+        }
+        for carries in (False, True)
+    }
+    assert verdicts[True]["impulse"].verdict is Status.PASS
+    assert verdicts[False]["impulse"].verdict is Status.FAIL
+    # Not wider than it has to be: one component off by a millionth of its size is seen.
+    stored["linear_velocity"][2, 0] *= 1 + mp.mpf(10) ** -6
+    with mp.workdps(60):
+        made = impulses(body, stored)
+    spoiled = partial_judgement(problem, Recorded(made, carries_velocities=True)).verdicts
+    assert {v.quantity: v.verdict for v in spoiled}["impulse"] is Status.FAIL
+
+
+def test_a_diagonal_matrix_widens_nothing(tmp_path: Path) -> None:
+    """Without coupling a rounding of U is one of x: the bounds are those of impulses."""
+    scene = "kirchhoff/ellipsoid-triaxial"
+    by_velocities, by_impulses = (
+        rows(judged(tmp_path, columns, scene)) for columns in (sound(scene), exact_columns(scene))
+    )
+    for quantity in ("impulse", "T", "F2", "FG"):
+        bounds = [found[quantity].attainable for found in (by_velocities, by_impulses)]
+        assert bounds[0] == pytest.approx(bounds[1], rel=0.3)

@@ -1,0 +1,223 @@
+"""Compiled integrators on disk: found again, kept apart by processor, and never trusted unread."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import heyoka as hy
+import pytest
+
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.taylor import cache
+from taylor_verify.solvers.taylor.driver import compiled
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of the test's own, and the folder of this processor in it."""
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(cache, "_warn_once", cache._warn_once.__wrapped__)
+    return tmp_path / cache.processor_key()
+
+
+def compile_afresh(name: str = "f64", scene: str = "euler/generic", **options: Any) -> Any:
+    """An integrator as a new process gets it: nothing compiled is in the memory of this one."""
+    hy.llvm_state.clear_memcache()
+    problem = pose(load(scene), rung(name))
+    return compiled.__wrapped__(
+        problem.form, problem.rung, options.pop("tolerance", None), **options
+    )
+
+
+def files(folder: Path) -> list[Path]:
+    return sorted(folder.iterdir()) if folder.exists() else []
+
+
+def test_code_is_stored_by_processor_and_found_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second process compiles nothing: its integrator is read from the processor's folder."""
+    first = compile_afresh()
+    assert len(files(folder)) == 1
+    monkeypatch.setattr(hy, "taylor_adaptive", _no_compilation)
+    again = compile_afresh()
+    assert str(again.decomposition) == str(first.decomposition)
+    assert (again.order, again.tol) == (first.order, first.tol)
+
+
+def _no_compilation(*_: Any, **__: Any) -> Any:
+    raise AssertionError("compiled anew")
+
+
+_no_compilation.__name__ = "taylor_adaptive"
+
+
+def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
+    """Rung, tolerance, equations, literals and optimisation are each in the name of a file."""
+    problem = pose(load("euler/generic"), rung("f64"))
+    compile_afresh()
+    for other in (
+        {"name": "f32"},
+        {"scene": "euler/with-attitude"},
+        {"tolerance": Fraction(1, 1000)},
+        {"tolerance": Fraction(1, 1001)},
+        {"is_long": False},
+        {"literals": problem.parameters},
+        {"literals": tuple(2 * value for value in problem.parameters)},
+    ):
+        before = len(files(folder))
+        compile_afresh(**other)
+        assert len(files(folder)) == before + 1, other
+
+
+def test_code_for_mpfr_numbers_is_not_stored(folder: Path) -> None:
+    """Code with addresses of this process in it is of no use to another."""
+    compile_afresh("mp237")
+    assert files(folder) == []
+
+
+def test_heyoka_stores_nothing_itself(folder: Path, tmp_path: Path) -> None:
+    """heyoka's own database, which damage turns into a crash, is never opened."""
+    compile_afresh()
+    assert not hy.llvm_state.get_diskcache_enabled()
+    assert not list(tmp_path.rglob("*.db*"))
+
+
+def _truncated(file: Path) -> None:
+    os.truncate(file, file.stat().st_size // 2)
+
+
+def _emptied(file: Path) -> None:
+    os.truncate(file, 0)
+
+
+def _beheaded(file: Path) -> None:
+    content = file.read_bytes()
+    file.write_bytes(bytes(100) + content[100:])
+
+
+def _one_bit(file: Path) -> None:
+    """Flip a bit of the machine code and keep the time of the file: no stamp shows the change."""
+    before, content = file.stat(), bytearray(file.read_bytes())
+    content[len(content) // 2] ^= 1
+    file.write_bytes(content)
+    os.utime(file, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+def _random(file: Path) -> None:
+    file.write_bytes(random.Random(1).randbytes(file.stat().st_size))
+
+
+DAMAGES = [_truncated, _emptied, _beheaded, _one_bit, _random]
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda damage: damage.__name__)
+def test_damaged_code_is_set_aside_with_one_warning(
+    folder: Path, damage: Callable[[Path], None], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Every damaged file is seen before heyoka gets it; the folder moves once, and work goes on."""
+    compile_afresh()
+    compile_afresh(scene="euler/with-attitude")
+    stored = files(folder)
+    for file in stored:
+        damage(file)
+    compile_afresh()
+    compile_afresh(scene="euler/with-attitude")
+    (warning,) = caplog.messages
+    (aside,) = folder.parent.glob(f"{folder.name}.damaged-*")
+    assert warning == (
+        f"taylor-verify: warning: damaged compiled code is set aside, and compiled anew @ {aside}"
+    )
+    assert len(files(aside)) == 2
+    assert files(folder) == stored
+    compile_afresh()
+    assert len(caplog.messages) == 1
+
+
+def test_one_damaged_folder_is_kept(folder: Path) -> None:
+    """An earlier folder set aside makes room for the new one."""
+    for _ in range(3):
+        compile_afresh()
+        _truncated(*files(folder))
+        compile_afresh()
+        assert len(list(folder.parent.glob("*.damaged-*"))) == 1
+
+
+def test_processes_that_meet_one_damage_warn_once(folder: Path, tmp_path: Path) -> None:
+    """Two processes that share a damaged cache both come to their answers, and warn once."""
+    script = (
+        "import sys\nfrom taylor_verify.run import run\n"
+        "for scene in sys.argv[1:]:\n"
+        "    assert run(scene).verdicts[0].verdict.value == 'pass'\n"
+    )
+    scenes = ["euler/generic", "euler/with-attitude"]
+    command = [sys.executable, "-c", script]
+    subprocess.run([*command, *scenes], check=True)
+    assert len(files(folder)) == 2
+    for file in files(folder):
+        _random(file)
+    both = [
+        subprocess.Popen([*command, *order], stderr=subprocess.PIPE, text=True)
+        for order in (scenes, scenes[::-1])
+    ]
+    said = "".join(process.communicate(timeout=120)[1] for process in both)
+    assert [process.returncode for process in both] == [0, 0]
+    assert said.count("\n") == 1
+    assert "damaged compiled code is set aside" in said
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="files have no owner here")
+@pytest.mark.parametrize("fault", ["writable by all", "another's", "pipe", "unreadable"])
+def test_only_files_of_the_user_s_own_are_read(
+    folder: Path, fault: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file that anybody else could have written is not loaded; the integrator is compiled."""
+    compile_afresh()
+    (file,) = files(folder)
+    if fault == "writable by all":
+        file.chmod(0o666)
+    elif fault == "another's":
+        monkeypatch.setattr(os, "geteuid", lambda: 12345)
+    elif fault == "pipe":
+        file.unlink()
+        os.mkfifo(file)
+    elif os.geteuid() == 0:
+        pytest.skip("root may read everything")
+    else:
+        file.chmod(0)
+    monkeypatch.setattr(cache.pickle, "loads", lambda _: pytest.fail("it was loaded"))
+    assert compile_afresh() is not None
+
+
+def test_the_cache_has_a_largest_size(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond it the files that were not used for longest go."""
+    compile_afresh()
+    (oldest,) = files(folder)
+    os.utime(oldest, (0, 0))
+    compile_afresh("f32")
+    (younger,) = {*files(folder)} - {oldest}
+    os.utime(younger, (1, 1))
+    compile_afresh()  # used again: now the other is the one not used for longest
+    monkeypatch.setattr(cache, "_LARGEST_CACHE", sum(f.stat().st_size for f in files(folder)))
+    # Of a lower order, and so smaller than the one that has to go.
+    compile_afresh("f32", tolerance=Fraction(1, 10))
+    assert oldest in files(folder)
+    assert younger not in files(folder)
+
+
+def test_a_folder_that_cannot_be_written_stores_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The run goes on without a cache."""
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file"))
+    assert compile_afresh() is not None

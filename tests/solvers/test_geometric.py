@@ -1,0 +1,451 @@
+"""The geometric integrators: their orders, what each conserves and what not, and how a run can end."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+
+from taylor_verify.cli import main
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.judge.series.convergence import sweep
+from taylor_verify.models.frame import rotation
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import registry
+from taylor_verify.solvers.geometric import fixed_step, midpoint, moser_veselov
+from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step
+from taylor_verify.solvers.geometric.methods import METHODS
+from taylor_verify.solvers.geometric.methods import named as geometric
+from taylor_verify.solvers.geometric.midpoint import ImplicitMidpoint
+from taylor_verify.solvers.geometric.moser_veselov import MoserVeselov
+from taylor_verify.solvers.geometric.vectors import Quaternion, Vector
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+ORDERS = {
+    "implicit-midpoint": 2,
+    "splitting": 2,
+    "moser-veselov": 2,
+    "preprocessed-moser-veselov": 4,
+    "lie-rk4": 4,
+}
+# The maps that have T among their invariants; all have |H|^2 and, with the attitude, R H.
+KEEP_T = ["implicit-midpoint", "moser-veselov", "preprocessed-moser-veselov"]
+# The methods whose step -h undoes the step h.
+SYMMETRIC = ["implicit-midpoint", "splitting", "moser-veselov", "preprocessed-moser-veselov"]
+F64 = rung("f64")
+U = 2.0**-53
+
+
+def at(scene: str, *instants: Fraction | int, track: str = "") -> Scene:
+    """A shipped scene at instants of its own."""
+    found = load(scene)
+    clock = Clock(Fraction(0), tuple(Fraction(t) for t in instants))
+    return replace(found, clock=clock, track=frozenset(track.split()))
+
+
+def short(scene: str) -> Scene:
+    """Two turns of a body with its attitude; the steps below divide the spans between its samples."""
+    return at(scene, *(Fraction(12 * k, 10) for k in range(11)), track="attitude")
+
+
+PRINCIPAL, FULL = short("euler/with-attitude"), short("euler/full-tensor")
+STEPS = [0.1, 0.05, 0.025, 0.0125]
+
+
+def solving(make: Callable[[Fraction], FixedStep]) -> Callable[[Problem, float], Any]:
+    """What `sweep` asks of a callable of one's own."""
+
+    def solve(problem: Problem, step: float) -> Any:
+        found = make(Fraction(str(step))).solve(problem)
+        assert found.outcome is Outcome.FINISHED, found.detail
+        return np.hstack(list(found.quantities.values()))
+
+    return solve
+
+
+def method(name: str) -> Callable[[Fraction], FixedStep]:
+    return lambda step: METHODS[name](step, f"geometric:{name}")
+
+
+def verdicts(scene: Scene | str, name: str, step: str) -> dict[str, Verdict]:
+    found = run(scene, f"geometric:{name}?step={step}")
+    return {verdict.quantity: verdict for verdict in found.verdicts}
+
+
+# Order: the motion is that of the truth, and how fast it becomes so.
+
+
+@pytest.mark.parametrize("scene", [PRINCIPAL, FULL], ids=["principal", "full tensor"])
+@pytest.mark.parametrize("name", METHODS)
+def test_a_method_is_of_its_order(name: str, scene: Scene) -> None:
+    """Omega and attitude approach the exact motion with the method's order, in any axes."""
+    found = sweep(scene, solving(method(name)), STEPS, expected=ORDERS[name])
+    ordinal = {2: "2nd", 4: "4th"}[ORDERS[name]]
+    assert found.reason.startswith(f"omega is {ordinal} order, attitude {ordinal}, ")
+    for quantity in ("omega", "attitude"):
+        assert found.quantities[quantity].is_expected, found.quantities[quantity].reason
+        assert found.quantities[quantity].level is None
+
+
+def test_the_midpoint_takes_a_moment() -> None:
+    """With a constant moment the implicit midpoint rule is still of second order."""
+    scene = at("euler/constant-moment", 0, 2, 4, track="attitude")
+    found = sweep(scene, solving(ImplicitMidpoint), STEPS, expected=2)
+    assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
+
+
+def test_a_motion_runs_backward() -> None:
+    """Before the start, and from a start that is no sample, the order is the same."""
+    scene = at("euler/with-attitude", -3, -5, -6, track="attitude")
+    found = sweep(scene, solving(method("lie-rk4")), STEPS, expected=4)
+    assert found.quantities["attitude"].is_expected
+    assert found.quantities["omega"].is_expected
+
+
+# Conservation, as the judge's own gates see it: drift against rounding.
+
+
+@pytest.mark.parametrize("scene", [PRINCIPAL, FULL], ids=["principal", "full tensor"])
+@pytest.mark.parametrize("name", METHODS)
+def test_what_is_promised_is_conserved_at_any_step(name: str, scene: Scene) -> None:
+    """|H|^2 and the momentum in space stay within rounding at a coarse step, T where promised."""
+    found = verdicts(scene, name, "0.2")
+    kept = {quantity for quantity, verdict in found.items() if verdict.verdict is Status.PASS}
+    assert kept == {INITIAL, "H2", "H_space"} | ({"T"} if name in KEEP_T else set())
+
+
+@pytest.mark.parametrize("scene", ["euler/axisymmetric", "euler/generic"])
+def test_turns_of_nearly_one_angle_leave_no_bias(scene: str) -> None:
+    """Through 300,000 turns by small, nearly equal angles |H|^2 moves no more than by chance."""
+    instants = tuple(Fraction(k) for k in range(7))
+    verdict = verdicts(at(scene, *instants), "splitting", "0.0001")["H2"]
+    assert verdict.verdict is Status.PASS
+    # Ten is what the gate allows; a bias of half an ulp a step would be a hundred and more here.
+    assert verdict.ratio <= 10
+
+
+def test_T_swings_and_does_not_drift_in_the_splitting() -> None:
+    """T of the splitting is off by order h^2, no more at the end of a long run than at its start."""
+    found = sweep(PRINCIPAL, solving(method("splitting")), STEPS, expected=2)
+    assert found.quantities["T"].is_expected
+    coarse = verdicts(at("euler/generic", *range(0, 10)), "splitting", "0.1")["T"].max
+    longer = verdicts(at("euler/generic", *range(0, 400)), "splitting", "0.1")["T"].max
+    # Ten samples miss some of the swing; a drift would be forty times as large.
+    assert coarse is not None
+    assert longer is not None
+    assert longer <= 4 * coarse
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_the_attitude_stays_a_rotation(name: str) -> None:
+    """The quaternion keeps its length but for the roundings of a product of quaternions a step."""
+    found = geometric(f"geometric:{name}?step=0.01").solve(pose(PRINCIPAL, F64))
+    lengths = [sum(float(e) ** 2 for e in row) for row in found.quantities["quaternion"]]
+    # Five turns are composed in a step at most; a turn and a product each round eight times or so.
+    assert all(abs(length - 1) <= 80 * U * found.steps for length in lengths)
+    with mp.workprec(200):
+        R = found.motion(200)["attitude"][-1]
+        assert mp.norm(mp.matrix(R.tolist()) * mp.matrix(R.T.tolist()) - mp.eye(3)) <= 1e-50
+
+
+# One step, for any body.
+
+
+@st.composite
+def bodies(draw: st.DrawFn) -> Body:
+    """A symmetric tensor with eigenvalues between 0.3 and 3, in axes of any direction."""
+    values = [draw(st.floats(0.3, 3)) for _ in range(3)]
+    q = [draw(st.floats(-1, 1)) for _ in range(3)]
+    P = np.array(rotation([1.0, *q])) / (1 + sum(e * e for e in q))
+    K = P @ np.diag(values) @ P.T
+    K = (K + K.T) / 2
+    return Body(tuple(tuple(row) for row in K.tolist()), (0.0, 0.0, 0.0))  # type: ignore[arg-type]
+
+
+# Longer momenta at longer steps have no Moser-Veselov step: h |H| is bounded by the body.
+momenta = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda H: np.linalg.norm(H) > 0.1)
+steps = st.floats(0.001, 0.1)
+
+
+def stepping(name: str, body: Body, H: Vector, h: float) -> Step:
+    solver = method(name)(Fraction(1))
+    if solver.in_principal_axes:
+        body, _ = fixed_step.principal(body)
+    return solver.stepping(body, H, h)
+
+
+def matrix(q: Quaternion) -> Any:
+    return np.array(rotation(q)) / sum(e * e for e in q)
+
+
+@pytest.mark.parametrize("name", METHODS)
+@given(bodies(), momenta, steps)
+def test_the_frame_and_the_momentum_turn_alike(name: str, body: Body, H: Vector, h: float) -> None:
+    """A step takes H to F^T H, with F the turn of the frame: the momentum in space stays."""
+    after, trace, _ = stepping(name, body, H, h)(H)
+    F = matrix(method(name)(Fraction(1)).turn(trace))
+    # Some dozens of roundings of numbers of size |H|.
+    assert np.linalg.norm(F @ after - H) <= 50 * U * np.linalg.norm(H)
+
+
+@pytest.mark.parametrize("name", SYMMETRIC)
+@given(bodies(), momenta, steps)
+def test_a_symmetric_step_is_undone_by_its_reverse(
+    name: str, body: Body, H: Vector, h: float
+) -> None:
+    """The step -h leads back to where the step h started."""
+    after = stepping(name, body, H, h)(H).H
+    back = stepping(name, body, after, -h)(after).H
+    assert np.linalg.norm(np.subtract(back, H)) <= 100 * U * np.linalg.norm(H)
+
+
+def test_a_step_of_lie_rk4_is_not_undone() -> None:
+    """The explicit method is not symmetric: the test above can fail."""
+    body = Body(((1.0, 0.2, 0.0), (0.2, 0.5, 0.1), (0.0, 0.1, 2.0)), (0.0, 0.0, 0.0))
+    H = (0.6, -0.7, 0.5)
+    after = stepping("lie-rk4", body, H, 0.5)(H).H
+    back = stepping("lie-rk4", body, after, -0.5)(after).H
+    assert np.linalg.norm(np.subtract(back, H)) > 1e-6
+
+
+@given(bodies(), momenta, steps)
+def test_moser_veselov_solves_its_own_equation(body: Body, H: Vector, h: float) -> None:
+    """The turn F satisfies h [m]x = F D - D F^T with D = tr(I)/2 - I, as the paper has it."""
+    _, trace, _ = stepping("moser-veselov", body, H, h)(H)
+    F = matrix(MoserVeselov(Fraction(1)).turn(trace))
+    I = np.linalg.inv(np.array(body.K))
+    D = np.trace(I) / 2 * np.eye(3) - I
+    m1, m2, m3 = H
+    skew = h * np.array([[0, -m3, m2], [m3, 0, -m1], [-m2, m1, 0]])
+    # The entries of D, up to five, are what is rounded, some dozens of times.
+    assert np.linalg.norm(F @ D - D @ F.T - skew) <= 300 * U * np.linalg.norm(D)
+
+
+@given(bodies(), momenta, steps)
+def test_moser_veselov_is_the_midpoint_rule_at_a_longer_step(
+    body: Body, H: Vector, h: float
+) -> None:
+    """The midpoint rule with the step h (1 + |c|^2) goes to the same momentum: two routes to one."""
+    after, c, _ = stepping("moser-veselov", body, H, h)(H)
+    longer = h * (1 + float(np.dot(c, c)))
+    same = stepping("implicit-midpoint", body, H, longer)(H).H
+    assert np.linalg.norm(np.subtract(same, after)) <= 50 * U * np.linalg.norm(H)
+
+
+# Controls: what a fault costs.
+
+
+@final
+@dataclass(frozen=True)
+class Faulty(FixedStep):
+    """A method of which the momentum or the frame goes the wrong way."""
+
+    sound: FixedStep = field(kw_only=True)
+    momentum: float = 1.0
+    frame: float = 1.0
+
+    def stepping(self, body: Body, H: Vector, h: float) -> Step:
+        return self.sound.stepping(body, H, self.momentum * h)
+
+    def turn(self, trace: Any) -> Quaternion:
+        q0, q1, q2, q3 = self.sound.turn(trace)
+        return (q0, self.frame * q1, self.frame * q2, self.frame * q3)
+
+
+def faulty(name: str, **signs: float) -> dict[str, float | None]:
+    step = Fraction(1, 20)
+    solver = Faulty(step, "faulty", sound=method(name)(step), **signs)
+    problem = pose(PRINCIPAL, F64)
+    found = judgement(problem, solver, solver.solve(problem))
+    return {verdict.quantity: verdict.max for verdict in found.verdicts}
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_reversed_sign_is_an_error_of_the_size_of_the_motion(name: str) -> None:
+    """H x omega with its sign turned still conserves |H|^2, and is wrong altogether; a frame likewise."""
+    sound = verdicts(PRINCIPAL, name, "0.05")
+    reversed_momentum = faulty(name, momentum=-1.0)
+    assert reversed_momentum["H2"] <= sound["H2"].bound
+    # In two turns it comes to the far side of its path, and the frame to any angle.
+    assert reversed_momentum["omega"] > 0.5 > 10 * sound["omega"].max
+    reversed_frame = faulty(name, frame=-1.0)
+    assert reversed_frame["omega"] == sound["omega"].max
+    assert reversed_frame["attitude"] > 0.5 > 10 * sound["attitude"].max
+
+
+def test_the_frame_has_a_term_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the multiple of 1 in the modified tensor omega keeps its fourth order, not the attitude."""
+    whole = moser_veselov._modified
+
+    def scaled_alone(K: Any, m: Vector, h: float) -> Any:
+        modified = whole(K, m, h)
+        factor = (modified[1][1] - modified[0][0]) / (K[1][1] - K[0][0])
+        return tuple(tuple(factor * entry for entry in row) for row in K)
+
+    monkeypatch.setattr(moser_veselov, "_modified", scaled_alone)
+    make = method("preprocessed-moser-veselov")
+    found = sweep(PRINCIPAL, solving(make), STEPS)
+    assert found.reason.startswith("omega is 4th order, attitude 2nd, ")
+
+
+def test_an_equation_not_solved_shows_in_T(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The midpoint rule left at its first guess is an explicit method, and drifts."""
+    monkeypatch.setattr(midpoint, "root", lambda system, guess: (guess, 1))
+    found = verdicts("euler/generic", "implicit-midpoint", "0.02")
+    assert found["T"].verdict is Status.FAIL
+    assert found["H2"].verdict is Status.FAIL
+
+
+# Steps and samples.
+
+
+def solved(scene: Scene | str, name: str, step: str) -> Trajectory:
+    posed = pose(load(scene) if isinstance(scene, str) else scene, F64)
+    return geometric(f"geometric:{name}?step={step}").solve(posed)
+
+
+@pytest.mark.parametrize("scene", ["euler/listed-times", "euler/later-start", "euler/apollo"])
+def test_equal_steps_lead_to_each_sample(scene: str) -> None:
+    """As many as fit, in the scene's own unit of time; a step that divides a span is not cut."""
+    elapsed = load(scene).clock.elapsed
+    spans = [abs(b - a) for a, b in zip((Fraction(0), *elapsed), elapsed, strict=False)]
+    for step in (max(spans), max(spans) / 4, max(spans) / Fraction("7.3")):
+        expected = sum(-(-span // step) for span in spans)
+        assert solved(scene, "lie-rk4", str(step)).steps == expected
+
+
+def test_evaluations_are_counted() -> None:
+    """Four for the Runge-Kutta method, two for the splitting, of an implicit step what Newton took."""
+    for name, least, most in [("lie-rk4", 4, 4), ("splitting", 2, 2), ("moser-veselov", 4, 6)]:
+        found = solved(PRINCIPAL, name, "0.1")
+        assert least * found.steps <= found.evaluations <= most * found.steps
+
+
+def test_an_untracked_attitude_is_not_followed() -> None:
+    """Omega is the same, number for number, with and without it."""
+    bare = solved(replace(FULL, track=frozenset()), "splitting", "0.1")
+    assert set(bare.quantities) == {"omega"}
+    assert (bare.quantities["omega"] == solved(FULL, "splitting", "0.1").quantities["omega"]).all()
+
+
+# How a run ends that is none.
+
+
+@pytest.mark.parametrize("name", sorted(set(METHODS) - {"implicit-midpoint"}))
+def test_a_moment_is_refused(name: str) -> None:
+    """A method for free bodies says so, and answers nothing."""
+    found = solved("euler/constant-moment", name, "0.1")
+    assert found.outcome is Outcome.NOT_STARTED
+    assert "made for a body without a moment" in found.detail
+    assert not found.quantities
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_kirchhoffs_equations_are_refused(name: str) -> None:
+    """A body in a fluid is another set of equations."""
+    found = solved("kirchhoff/screw", name, "0.1")
+    assert found.outcome is Outcome.NOT_STARTED
+    assert "made for Euler's equations, got kirchhoff" in found.detail
+
+
+@pytest.mark.parametrize("wider", ["f32", "f80", "mp237"])
+def test_other_rungs_are_unavailable(wider: str) -> None:
+    """Python's floats are doubles."""
+    (verdict,) = run("euler/generic", "geometric:lie-rk4?step=0.1", wider).verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert verdict.because.endswith("is made in float64: f64 alone")
+
+
+def test_a_step_without_a_solution_ends_the_run() -> None:
+    """h |H| too large for [m]x = F D - D F^T: the run stops and says what to do."""
+    found = solved("euler/generic", "moser-veselov", "1")
+    assert found.outcome is Outcome.INTERRUPTED
+    assert found.detail.endswith("take shorter steps")
+    assert not found.quantities
+
+
+def test_a_run_without_end_is_not_begun() -> None:
+    """Days of steps are refused before the first."""
+    found = solved("euler/generic", "splitting", "1e-9")
+    assert found.outcome is Outcome.STEP_LIMIT
+    assert found.detail == "1e+11 steps, more than 1e+08"
+
+
+def test_what_overflows_is_an_outcome() -> None:
+    """A step of 10^200 leaves the range of float64."""
+    found = solved(at("euler/generic", 10**200), "lie-rk4", "1e300")
+    assert found.outcome is Outcome.NON_FINITE
+    assert not found.quantities
+
+
+def test_a_body_at_rest_stays_there() -> None:
+    """Where every scale is zero no method divides by one."""
+    for name in METHODS:
+        found = verdicts("euler/rest", name, "5")
+        assert all(verdict.verdict is Status.PASS for verdict in found.values())
+
+
+# Names.
+
+
+def test_every_method_is_listed() -> None:
+    """`list` shows each with its setting, and each shown one exists."""
+    listed = [name for name in registry.NAMES if name.startswith("geometric:")]
+    assert listed == [f"geometric:{name}?step=NUMBER" for name in METHODS]
+    for name in listed:
+        check_name(name.replace("NUMBER", "1/100"))
+        assert solver_named(name.replace("NUMBER", "0.01")).name == name.replace("NUMBER", "0.01")
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("geometric:spliting?step=1", r"got 'spliting'; did you mean splitting\?"),
+        ("geometric:splitting", r"expected \?step=NUMBER after splitting, got none"),
+        ("geometric:splitting?step=", r"expected \?step=NUMBER after splitting, got none"),
+        ("geometric:splitting?step=NUMBER", r"got 'NUMBER' @ step"),
+        ("geometric:splitting?step=0", r"expected a positive number, got '0' @ step"),
+        ("geometric:splitting?step=-1", r"expected a positive number, got '-1' @ step"),
+        ("geometric:splitting?step=nan", r"got 'nan' @ step"),
+        ("geometric:splitting?stp=1", r"got 'stp'; did you mean step\?"),
+        ("geometric:splitting?step=1&step=2", r"expected each setting once, got step twice"),
+        ("geometric:", r"expected a method \(implicit-midpoint, .*\), got ''"),
+    ],
+)
+def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
+    """What was expected, what came, and where."""
+    with pytest.raises(ValueError, match=told):
+        check_name(name)
+
+
+def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str]) -> None:
+    """The midpoint rule is a clock that runs slow; splitting leaves the orbit too, as no clock does."""
+
+    def printed(method: str) -> str:
+        assert main(["run", "euler/generic", "--solver", f"geometric:{method}?step=0.01"]) == 1
+        return " ".join(capsys.readouterr().out.split())
+
+    text = printed("implicit-midpoint")
+    assert "the error is a drift of phase: the clock runs slow by 2.52e-06 of the time" in text
+    text = printed("splitting")
+    assert "no shift of time explains the error" in text
+    assert re.search(
+        "T: .* since t = .* H2: 1[345] digits are kept .*; what is left is roundoff", text
+    )

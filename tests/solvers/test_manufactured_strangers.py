@@ -1,0 +1,235 @@
+"""Programs and files of others under loads that change with time: asked, answered and judged."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mpmath import mp, mpf
+from trajectories import columns_at, write_csv
+
+import taylor_verify
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.floor.inputs import _numbers, _with_factors
+from taylor_verify.models.problem import Problem, adopt, pose
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.process.process import named
+from taylor_verify.solvers.trajectory import Outcome
+
+NAMES = library.names("manufactured")
+EULER = "manufactured/euler-tones"
+KIRCHHOFF = "manufactured/kirchhoff-path"
+F64 = rung("f64")
+OUTSIDE = Path(protocol.__file__).parents[1] / "outside"
+RK4 = f"process:{shlex.join([sys.executable, '-S', str(OUTSIDE / 'rk4.py')])}"
+
+
+def short(name: str, end: Fraction) -> Scene:
+    return replace(load(name), clock=Clock(Fraction(0), (Fraction(0), end / 2, end)))
+
+
+# What a program is told.
+
+
+def asked(problem: Problem) -> dict[str, Any]:
+    return protocol.question(problem)
+
+
+def told(entry: Any) -> Any:
+    """The exact numbers of a text, nested as they are."""
+    return [told(e) for e in entry] if isinstance(entry, list) else Fraction(entry)
+
+
+@pytest.mark.parametrize("on", ["f32", "mp237"])
+@pytest.mark.parametrize("name", [EULER, KIRCHHOFF, "manufactured/euler-full-tensor"])
+def test_the_waves_that_are_told_are_the_motion(name: str, on: str) -> None:
+    """From the exact texts, start + cosines (cos nu t - 1) + sines sin nu t is H*, or x* and y*."""
+    problem = pose(load(name), rung(on))
+    document, given = asked(problem), replace(problem.given, track=frozenset())
+    waves = {key: told(value["text"]) for key, value in document["manufactured"].items()}
+    initial, time = document["initial"], Fraction(13, 10)
+    if document["model"] == "euler":
+        begin = told(initial["angular_momentum"]["text"])
+        inertia = told(document["body"]["inertia"]["text"])
+    else:
+        begin = told(initial["linear_impulse"]["text"]) + told(initial["angular_impulse"]["text"])
+    motion = solution(given).motion([time], 60)
+    with mp.workdps(70):
+        known = [v for n in motion.quantities for v in motion[n][0]]
+        if document["model"] == "euler":
+            known = [sum(mp.convert(i) * w for i, w in zip(r, known, strict=True)) for r in inertia]
+        found = [mp.convert(v) for v in begin]
+        for nu, a, b in zip(waves["frequencies"], waves["cosines"], waves["sines"], strict=True):
+            c, s = mp.cos_sin(mp.convert(nu * time))
+            terms = zip(found, a, b, strict=True)
+            found = [z + mp.convert(p) * (c - 1) + mp.convert(q) * s for z, p, q in terms]
+        assert max(abs(p - q) for p, q in zip(known, found, strict=True)) <= mpf(10) ** -58
+    cosines = zip(waves["constant_part"], *waves["cosines"], strict=True)
+    assert [sum(column) for column in cosines] == begin
+
+
+@pytest.mark.parametrize("on", LADDER)
+def test_a_program_that_reads_the_hexadecimal_floats_has_the_exact_motion(on: str) -> None:
+    """Frequencies and coefficients of the waves are numbers of the rung: hex and text are equal."""
+    for name in (EULER, KIRCHHOFF):
+        waves = asked(pose(load(name), rung(on)))["manufactured"]
+        for key in ("frequencies", "cosines", "sines"):
+            texts, hexes = flat(waves[key]["text"]), flat(waves[key]["hex"])
+            for text, digits in zip(texts, hexes, strict=True):
+                assert Fraction(text) == from_hex(digits)
+
+
+def flat(entry: Any) -> Iterator[str]:
+    if isinstance(entry, list):
+        for part in entry:
+            yield from flat(part)
+    else:
+        yield entry
+
+
+def from_hex(text: str) -> Fraction:
+    match = re.fullmatch(r"(-?)0x([0-9a-f]+)p([+-]\d+)", text)
+    assert match
+    return (-1 if match[1] else 1) * int(match[2], 16) * Fraction(2) ** int(match[3])
+
+
+@pytest.mark.parametrize("name", [EULER, KIRCHHOFF])
+def test_every_key_occurs_once_and_is_documented(name: str) -> None:
+    """As in any question, so that a program may search the text; and the number says that there is more."""
+    document = asked(pose(load(name), F64))
+    text = json.dumps(document)
+    keys = set(re.findall(r'"(\w+)":', text)) - {"text", "hex"}
+    assert {key: text.count(f'"{key}":') for key in keys} == dict.fromkeys(keys, 1)
+    assert protocol.__doc__
+    assert keys <= set(re.findall(r"\w+", protocol.__doc__))
+    assert document["protocol"] == protocol.VERSION_WITH_WAVES
+    assert asked(pose(load("euler/constant-moment"), F64))["protocol"] == protocol.VERSION
+
+
+# Programs that answer.
+
+
+@pytest.mark.parametrize("name", [EULER, KIRCHHOFF])
+def test_the_example_follows_the_loads_with_order_four(name: str) -> None:
+    """Halving the step of rk4.py divides every state error by 16: the loads are those of the time."""
+    scene = short(name, Fraction(-2) if name == KIRCHHOFF else Fraction(2))
+    coarse, fine = (run(scene, f"{RK4} {step}").verdicts for step in ("0.05", "0.025"))
+    states = {"omega", "impulse", "attitude", "centre"}
+    pairs = [p for p in zip(coarse, fine, strict=True) if p[0].quantity in states]
+    assert pairs
+    for one, other in pairs:
+        assert one.verdict is other.verdict is Status.FAIL
+        # Half an order leaves room for the next term of the error, and none for orders 3 and 5.
+        assert one.max is not None
+        assert other.max is not None
+        assert 2**3.5 <= one.max / other.max <= 2**4.5
+
+
+def test_the_example_is_sound_in_single_precision() -> None:
+    """With steps whose error is below the roundoff of f32, rk4.py passes states and balances."""
+    verdicts = run(short(EULER, Fraction(2)), f"{RK4} 0.02", "f32").verdicts
+    assert {verdict.quantity: verdict.verdict for verdict in verdicts} == dict.fromkeys(
+        ("initial state", "omega", "T", "H2"), Status.PASS
+    )
+
+
+def test_the_example_in_c_says_that_it_has_no_such_loads(tmp_path: Path) -> None:
+    """A program made for constant loads can tell from the question, and ends with a word."""
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    built = tmp_path / "rk4"
+    subprocess.run([compiler, "-std=c99", "-o", built, OUTSIDE / "rk4.c", "-lm"], check=True)
+    found = named(f"process:{shlex.quote(str(built))}").solve(pose(load(EULER), F64))
+    assert found.outcome is Outcome.CRASHED
+    assert "expected constant loads, got a manufactured motion" in found.detail
+
+
+# Files.
+
+
+def written(scene: Scene, folder: Path, **columns: Any) -> str:
+    return write_csv(folder / "file.csv", {**columns_at(scene, scene.clock.instants), **columns})
+
+
+@pytest.mark.parametrize("name", [EULER, pytest.param(KIRCHHOFF, marks=pytest.mark.slow)])
+def test_a_sound_file_passes(name: str, tmp_path: Path) -> None:
+    """The exact motion of numbers rounded where the scene writes them passes, balances and all."""
+    scene = load(name)
+    found = taylor_verify.check(scene, written(scene, tmp_path))
+    assert {verdict.verdict for verdict in found.verdicts} == {Status.PASS}
+    assert {"T"} < {verdict.quantity for verdict in found.verdicts}
+    assert found.conventions == ()
+
+
+def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> None:
+    """One component off by 1e-12 in a single row is no motion under these loads."""
+    scene = load(EULER)
+    columns = columns_at(scene, scene.clock.instants)
+    columns["w2"][len(columns["w2"]) // 2] += 1e-12
+    found = taylor_verify.check(scene, write_csv(tmp_path / "file.csv", columns))
+    failed = {v.quantity for v in found.verdicts if v.verdict is Status.FAIL}
+    assert failed == {"omega", "T", "H2"}
+
+
+def test_a_late_file_is_said_to_be_late(tmp_path: Path) -> None:
+    """Loads have a time of their own: a file whose clock is late by 1e-6 is told so, and does not pass."""
+    scene = load(EULER)
+    columns = columns_at(scene, scene.clock.instants)
+    late = taylor_verify.check(
+        scene,
+        write_csv(tmp_path / "file.csv", {**columns, "t": [t + 1e-6 for t in columns["t"]]}),
+    )
+    omega = next(v for v in late.verdicts if v.quantity == "omega")
+    assert omega.verdict is Status.FAIL
+    assert omega.time_shift == pytest.approx(1e-6, rel=1e-3)
+
+
+@pytest.mark.parametrize("on", ["f32", "f64"])
+@pytest.mark.parametrize("name", NAMES)
+def test_what_a_stranger_stores_is_a_manufactured_motion(name: str, on: str) -> None:
+    """Each number of the scene rounded where it stands: the motion begins at its own start, exactly."""
+    scene = load(name)
+    given = adopt(scene, rung(on), scene.clock.instants).given
+    motion = given.body.manufactured
+    assert motion is not None
+    assert all(rung(on).holds(w.frequency) for w in motion.waves)
+    assert all(rung(on).holds(c) for w in motion.waves for c in (*w.cosine, *w.sine))
+    assert solution(replace(given, track=frozenset())).regime == "manufactured"
+
+
+def test_every_number_of_a_motion_is_an_input() -> None:
+    """Frequencies, coefficients and constants are moved like the body's numbers, each at its place."""
+    scene = load(EULER)
+    motion, u = scene.body.manufactured, F64.unit_roundoff
+    assert motion is not None
+    places = _numbers(scene)
+    written = [motion.constant, *(v for w in motion.waves for v in (w.cosine, w.sine))]
+    of_motion = [p for p in places if p[0][:4] in ("cons", "cosi", "sine", "freq")]
+    assert len(of_motion) == len(motion.waves) + sum(bool(c) for v in written for c in v)
+    for name, k, _ in of_motion:
+        moved = _with_factors(scene, {(name, k, k): 1 + u}).body.manufactured
+        assert moved is not None
+        assert moved != motion
+        if name == "frequency":
+            assert [w.frequency for w in moved.waves] == [
+                w.frequency * (1 + u if j == k else 1) for j, w in enumerate(motion.waves)
+            ]

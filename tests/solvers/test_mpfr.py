@@ -1,0 +1,107 @@
+"""MPFR's numbers in place of mpmath's: the same to the last bit, and nothing left changed."""
+
+from __future__ import annotations
+
+import operator
+from fractions import Fraction
+
+import gmpy2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.route import solution
+from taylor_verify.scenes.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
+from taylor_verify.scenes.reading.reader import load
+
+OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
+
+
+def numbers(bits: int = 600) -> st.SearchStrategy[mpf]:
+    """Numbers of up to so many bits, far longer than what they are computed with."""
+    return st.builds(exactly, st.integers(-(2**bits), 2**bits), st.integers(-2000, 2000))
+
+
+def exactly(count: int, exponent: int) -> mpf:
+    with mp.workprec(10_000):
+        return mp.ldexp(mpf(count), exponent)
+
+
+def column(*values: mpf) -> np.ndarray:
+    return np.array(values, dtype=object)
+
+
+@given(numbers(), st.integers(2, 400))
+def test_the_way_there_and_back_is_exact_at_any_precision(value: mpf, bits: int) -> None:
+    """No bit of a number is lost, however low the ambient precision is."""
+    with mp.workprec(bits):
+        (there_and_back,) = to_mpf(to_mpfr(column(value)))
+    assert there_and_back._mpf_ == value._mpf_
+
+
+@given(numbers(), numbers(), st.integers(2, 400))
+def test_every_operation_rounds_as_mpmath_does(a: mpf, b: mpf, bits: int) -> None:
+    """Sums, differences, products, quotients and roots are mpmath's to the last bit."""
+    with mp.workprec(bits):
+        p, q = to_mpfr(column(a)), to_mpfr(column(b))
+        for operation in OPERATIONS:
+            if operation is operator.truediv and b == 0:
+                continue
+            with precision():
+                found = operation(p, q)
+            assert to_mpf(found)[0]._mpf_ == operation(a, b)._mpf_
+        with precision():
+            root = sqrt(abs(p))
+        assert to_mpf(root)[0]._mpf_ == mp.sqrt(abs(a))._mpf_
+
+
+@given(st.fractions(), st.integers(2, 400))
+def test_a_rational_is_rounded_as_mpmath_rounds_it(value: Fraction, bits: int) -> None:
+    """A rational becomes the same number of either kind."""
+    with mp.workprec(bits), precision():
+        (quick,) = to_mpf(real([value], like=to_mpfr(column(mpf(1)))))
+        (slow,) = real([value], like=column(mpf(1)))
+    assert quick._mpf_ == slow._mpf_
+
+
+def test_what_is_not_finite_stays_so() -> None:
+    """NaN and both infinities keep what they are, there and back."""
+    nan, up, down = to_mpf(to_mpfr(column(mp.nan, mp.inf, -mp.inf)))
+    assert mp.isnan(nan)
+    assert (up, down) == (mp.inf, -mp.inf)
+
+
+def test_no_rows_stay_no_rows() -> None:
+    """Of no numbers there are none, in the same shape."""
+    nothing = np.empty((0, 3), dtype=object)
+    assert to_mpfr(nothing).shape == to_mpf(nothing).shape == sqrt(nothing).shape == (0, 3)
+
+
+def test_the_precision_of_either_is_left_as_it_was() -> None:
+    """What is computed in between changes no ambient precision."""
+    before = gmpy2.get_context().precision, mp.prec
+    with mp.workprec(777), precision():
+        assert gmpy2.get_context().precision == 777
+        to_mpfr(column(exactly(2**900 + 1, 0)))
+        assert gmpy2.get_context().precision == 777
+    assert (gmpy2.get_context().precision, mp.prec) == before
+
+
+@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])
+def test_the_conserved_quantities_are_the_same_in_both(name: str) -> None:
+    """Value, scale and sensitivity of a motion do not depend on the numbers it is held in."""
+    scene = load(name)
+    motion = solution(scene).motion(scene.clock.elapsed[:3], 40)
+    for invariant in invariants(scene):
+        with mp.workprec(200):
+            slow = [invariant.value(motion), column(invariant.scale(motion))]
+            slow += invariant.sensitivity(motion).values()
+            with precision():
+                held = in_mpfr(motion)
+                quick = [invariant.value(held), column(invariant.scale(held))]
+                quick += invariant.sensitivity(held).values()
+        for one, other in zip(slow, quick, strict=True):
+            assert (one == to_mpf(other)).all()

@@ -1,0 +1,115 @@
+"""mpmath's odefun as a solver: what it answers on which rungs, and how a run can end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from mpmath import mp
+
+from taylor_verify.models.problem import pose
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import odefun
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome
+
+NAME = "mpmath:odefun"
+
+
+def short(scene: str, end: Fraction = Fraction(2)) -> Scene:
+    clock = Clock(Fraction(0), (Fraction(0), end / 3, end))
+    return replace(load(scene), clock=clock)
+
+
+@pytest.mark.parametrize(
+    ("scene", "on"),
+    [
+        ("euler/with-attitude", "f64"),
+        ("euler/constant-moment", "f64"),
+        ("kirchhoff/whole-motion", "f64"),
+        ("euler/generic", "mp120"),
+    ],
+)
+def test_it_passes_every_gate(scene: str, on: str) -> None:
+    """By itself odefun asks its series for all bits of the rung, and it has them, both models."""
+    verdicts = run(short(scene), NAME, on).verdicts
+    assert {v.verdict for v in verdicts} == {Status.PASS}
+    assert verdicts[0].evaluations >= verdicts[0].steps > 0
+
+
+def test_time_running_backward() -> None:
+    """odefun knows no time before its start; the opposite rates lead there."""
+    verdicts = run(short("euler/generic", Fraction(-2)), NAME).verdicts
+    assert {v.verdict for v in verdicts} == {Status.PASS}
+
+
+def test_a_tolerance_is_taken() -> None:
+    """A coarser one takes less work and leaves a larger error."""
+    scene = short("euler/generic")
+    coarse, fine = (
+        run(scene, f"{NAME}?tol={tol}&degree=4").verdicts[1] for tol in ("1e-3", "1e-9")
+    )
+    assert coarse.evaluations < fine.evaluations
+    assert fine.max < coarse.max
+
+
+def test_the_degree_is_taken() -> None:
+    """A series of a lower degree holds for a shorter time, so that there are more of them."""
+    problem = pose(short("euler/generic"), rung("f64"))
+    low, high = (solver_named(f"{NAME}?degree={n}").solve(problem) for n in (8, 24))
+    assert low.steps > high.steps
+    assert high.evaluations == 24 * high.steps
+
+
+def test_the_precision_is_left_as_it_was() -> None:
+    """A run on 300 bits changes nothing for whoever calls next."""
+    before = mp.prec
+    solver_named(NAME).solve(pose(short("euler/generic", Fraction(1, 10)), rung("mp300")))
+    assert mp.prec == before
+
+
+@pytest.mark.parametrize("on", ["f32", "f80", "f128"])
+def test_other_formats_are_unavailable(on: str) -> None:
+    """mpmath has bits and no formats: what it has no exponents for it does not claim to be."""
+    (verdict,) = run(short("euler/generic"), NAME, on).verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert "mpN alone" in verdict.because
+
+
+def test_a_run_without_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is a bound on the evaluations."""
+    monkeypatch.setattr(odefun, "_MOST_EVALUATIONS", 30)
+    found = solver_named(NAME).solve(pose(short("euler/generic"), rung("f64")))
+    assert found.outcome is Outcome.STEP_LIMIT
+    assert not found.quantities
+
+
+def test_rates_that_are_no_numbers_are_an_outcome() -> None:
+    """NaN in the rates is never an answer."""
+    nowhere = {f"H{i}": mp.nan for i in (1, 2, 3)}
+    problem = pose(short("euler/generic"), rung("f64")).with_equations(lambda named: nowhere)
+    found = solver_named(NAME).solve(problem)
+    assert found.outcome in (Outcome.NON_FINITE, Outcome.RAISED)
+    assert not found.quantities
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("mpmath:odefunc", r"got 'odefunc'; did you mean odefun\?"),
+        ("mpmath:odefun?tol=0", r"expected a positive number, got '0' @ tol"),
+        ("mpmath:odefun?degree=2.5", r"whole number from 2 to 1000, got '2.5' @ degree"),
+        ("mpmath:odefun?degree=1", r"whole number from 2 to 1000, got '1' @ degree"),
+        ("mpmath:odefun?rtol=1", r"got 'rtol'; did you mean tol\?"),
+    ],
+)
+def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
+    """What was expected, what came, and where."""
+    with pytest.raises(ValueError, match=told):
+        check_name(name)

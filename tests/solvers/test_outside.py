@@ -1,0 +1,242 @@
+"""The integrators of other libraries: their names, their scripts, and how near they come."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import sys
+import threading
+import tomllib
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+from samples import THREE_INSTANTS
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.solvers.entrants.entrant import SCRIPTS, Entrant, entrants, named, prepare
+from taylor_verify.solvers.entrants.environment import NotMade, metadata
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.registry import NAMES, OUTSIDE, check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.tradeoff.accuracy import Truth
+
+CHECKOUT = Path(__file__).resolve().parents[2]
+# Both models, each of the five states, backwards, loads, and instants that leave out the start.
+SCENES = [
+    *("euler/generic", "euler/with-attitude", "euler/backward", "euler/constant-moment"),
+    *("kirchhoff/general-body", "kirchhoff/whole-motion", "kirchhoff/constant-loads"),
+    *("kirchhoff/screw", "kirchhoff/listed-times"),
+]
+
+
+def problem(on: str = "f64") -> Problem:
+    return pose(read(THREE_INSTANTS, "short"), rung(on))
+
+
+# Their names.
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("outside:cvode-bdg", "did you mean cvode-bdf"),
+        ("outside:cvode-bdf?tol=1", "expected a setting"),
+        ("outside:cvode-bdf?rtol=0", "expected a positive number"),
+        ("outside:cvode-bdf?atol=small", "@ atol"),
+    ],
+)
+def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
+    """An entrant that there is not, and a tolerance that is none, are wrong calls."""
+    for take in (solver_named, check_name):
+        with pytest.raises(ValueError, match=words):
+            take(name)
+
+
+def test_the_absolute_tolerance_follows_the_relative_one() -> None:
+    """Where atol is not set, it is rtol."""
+    found = named("outside:cvode-bdf?rtol=1e-7")
+    assert (found.rtol, found.atol) == (1e-7, 1e-7)
+    found = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
+    assert (found.rtol, found.atol) == (1e-7, 1e-3)
+
+
+def test_the_command_line_lists_them_all() -> None:
+    """The names of the registry are those of the scripts, and each of them is a solver."""
+    listed = {name.partition("?")[0] for name in NAMES if name.startswith(OUTSIDE)}
+    assert listed == {f"outside:{one.name}" for one in entrants()}
+    assert listed
+    for name in listed:
+        assert solver_named(name).name == name
+
+
+def test_what_cannot_be_had_says_why() -> None:
+    """An entrant without a script is there by name, is not started, and says what it would take."""
+    without = [one for one in entrants() if one.script is None]
+    assert without
+    for one in without:
+        solver = solver_named(f"outside:{one.name}")
+        assert solver.unavailable(rung("f64")) == one.unavailable != ""
+        assert solver.solve(problem()).outcome is Outcome.NOT_STARTED
+        with pytest.raises(NotMade):
+            prepare(one.name)
+
+
+# The scripts.
+
+
+def scripts() -> list[Path]:
+    return sorted(SCRIPTS.glob("with_*.py"))
+
+
+@pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
+def test_every_requirement_is_pinned(file: Path) -> None:
+    """A script names exact versions, and fits every Python that the project fits."""
+    about = metadata(file)
+    assert about.requirements
+    for requirement in about.requirements:
+        assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*", requirement)
+    project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
+    assert about.requires_python == project["requires-python"]
+
+
+@pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
+def test_a_script_has_the_methods_it_names(file: Path) -> None:
+    """The methods of the metadata are those of the script, and it loads no library to begin with."""
+    tree = ast.parse(file.read_text())
+    tables = [
+        ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "METHODS"
+    ]
+    (table,) = tables
+    assert metadata(file).tools["taylor-verify"]["methods"] == list(table)
+    siblings = {"equations", "question"}
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            assert {alias.name for alias in node.names} <= sys.stdlib_module_names
+        elif isinstance(node, ast.ImportFrom):
+            assert node.module in siblings | sys.stdlib_module_names
+
+
+def test_no_script_hides_a_library() -> None:
+    """No file has the name of a module that a script imports, which Python would find first."""
+    own = {file.stem for file in SCRIPTS.glob("*.py")}
+    imported = {
+        name.partition(".")[0]
+        for file in scripts()
+        for node in ast.walk(ast.parse(file.read_text()))
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert own & imported == {"equations", "question"}
+
+
+def test_the_page_of_the_folder_names_them_all() -> None:
+    """README.md of the folder has every entrant, those that cannot be had included."""
+    page = (SCRIPTS / "README.md").read_text()
+    assert [one.name for one in entrants() if f"`{one.name}`" not in page] == []
+
+
+# What they share: the reading of the question, the equations, the writing of the answer.
+
+
+@pytest.fixture
+def sibling(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Any]]:
+    """Imports a module as the scripts do, from their own folder."""
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    yield import_module
+    for name in ("equations", "question"):
+        sys.modules.pop(name, None)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
+    scene: str, sibling: Callable[[str], Any]
+) -> None:
+    """The question as the scripts read it, integrated closely, is answered with the exact motion."""
+    integrate = pytest.importorskip("scipy.integrate")
+    shared, equations = sibling("question"), sibling("equations")
+    asked = pose(load(scene), rung("f64"))
+    question = shared.read(json.loads(json.dumps(protocol.question(asked))))
+    rates = equations.rates(question.columns)
+    tolerance = 1e-11
+    found = integrate.solve_ivp(
+        lambda t, s: [question.sign * rate for rate in rates(s, question.parameters)],
+        (0, question.end),
+        question.state,
+        method="DOP853",
+        t_eval=question.instants,
+        rtol=tolerance,
+        atol=tolerance,
+    )
+    states = found.y.T.tolist()
+    steps = found.nfev // 12
+    answer = shared._written(question, shared.Solved(states, steps, found.nfev, 0, 0))
+    # A wrong sign, index or column is an error of the size of the motion; what is left here is the
+    # tolerance of every step, carried on thirtyfold by these orbits.
+    read_back = protocol.read(json.dumps(answer).encode(), asked)
+    assert error(asked, read_back) <= tolerance * steps * 30
+
+
+def error(asked: Problem, answer: protocol.Answer) -> float:
+    from taylor_verify.solvers.solver import Callback
+
+    return Truth(asked).accuracy(Callback(lambda _: answer.states).solve(asked)).worst
+
+
+def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -> None:
+    """Of two propagations the second is timed, and what the first took longer was compiling."""
+    calls = []
+
+    def propagate() -> int:
+        calls.append(None)
+        threading.Event().wait(0.2 if len(calls) == 1 else 0.05)
+        return len(calls)
+
+    found, seconds, compiling = sibling("question").twice(propagate)
+    assert found == len(calls) == 2
+    # A sleep is never shorter than it was asked to be.
+    assert seconds >= 0.05
+    assert compiling >= 0
+
+
+# The libraries themselves, where their environments are.
+
+
+def ready() -> list[Entrant]:
+    return [one for one in entrants() if not one.unavailable]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
+@pytest.mark.parametrize("one", ready(), ids=lambda one: one.name)
+def test_a_library_keeps_near_its_tolerance(one: Entrant, scene: str) -> None:
+    """The error is the tolerance of every step carried on, and falls with the tolerance."""
+    assert one.environment
+    if not one.environment.is_made:
+        pytest.skip(f"no environment of {one.library}: `taylor-verify tradeoff --outside` makes it")
+    asked = pose(load(scene), rung("f64"))
+    truth = Truth(asked)
+    errors = {}
+    for tolerance in (1e-6, 1e-9):
+        name = f"outside:{one.name}?rtol={tolerance}&atol={tolerance}"
+        found: Trajectory = solver_named(name).solve(asked)
+        assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
+        assert found.steps > 0
+        assert 0 < found.seconds
+        errors[tolerance] = truth.accuracy(found).worst
+        # These orbits carry an error on thirtyfold at most.
+        assert errors[tolerance] <= tolerance * found.steps * 30
+    # A thousandth of the tolerance is at least a tenth of the error, for the lowest of orders.
+    assert errors[1e-9] <= errors[1e-6] / 10

@@ -1,0 +1,596 @@
+"""The process protocol: what a program is asked, what its answer is worth, and how it may fail."""
+
+from __future__ import annotations
+
+import ast
+import json
+import math
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from samples import THREE_INSTANTS
+
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.process.process import DEFAULT_LIMIT, LIMIT_VARIABLE, Process, named
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+OUTSIDE = Path(protocol.__file__).parents[1] / "outside"
+SCENES = [
+    "euler/generic",
+    "euler/full-tensor",
+    "euler/constant-moment",
+    "euler/with-attitude",
+    "euler/later-start",
+    "kirchhoff/whole-motion",
+    "kirchhoff/general-body",
+    "kirchhoff/constant-loads",
+]
+# Those that one rounding made, so that text and hex are the same number.
+ROUNDED_ONCE = {
+    *("inverse_inertia", "moment", "angular_momentum", "attitude", "elapsed"),
+    *("linear", "coupling", "angular", "force", "couple"),
+    *("linear_impulse", "angular_impulse", "centre"),
+}
+ALSO_ROUNDED = {"inertia", "omega", "start", "times"}
+
+
+def problem(on: str = "f64", samples: int = 3) -> Problem:
+    text = THREE_INSTANTS.replace("samples = 3", f"samples = {samples}")
+    return pose(read(text, "short"), rung(on))
+
+
+def test_the_scenes_here_are_of_every_kind() -> None:
+    """The scenes of these tests are of both models, with and without attitude, one with a centre."""
+    found = [load(scene) for scene in SCENES]
+    assert {scene.model for scene in found} == {"euler", "kirchhoff"}
+    assert {"attitude" in scene.track for scene in found} == {True, False}
+    assert any("centre" in scene.track for scene in found)
+
+
+# The question.
+
+
+def numbers(document: dict[str, Any]) -> Iterator[tuple[str, list[Any], list[Any]]]:
+    """Every number of a question: its key, its texts and its hexadecimal floats, flat."""
+    for table in ("body", "initial", "time"):
+        for key, value in document[table].items():
+            yield key, list(flat(value["text"])), list(flat(value["hex"]))
+
+
+def flat(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    else:
+        for entry in value:
+            yield from flat(entry)
+
+
+@pytest.mark.parametrize("on", ["f32", "f64", "mp237"])
+@pytest.mark.parametrize("scene", SCENES)
+def test_text_is_exact_and_hex_is_the_nearest_of_the_rung(scene: str, on: str) -> None:
+    """hex is the text rounded to the rung's bits, and the same number where it was rounded once."""
+    document = protocol.question(pose(load(scene), rung(on)))
+    met = set()
+    for key, texts, hexes in numbers(document):
+        met.add(key)
+        for text, hexadecimal in zip(texts, hexes, strict=True):
+            exact, held = Fraction(text), from_hex(hexadecimal)
+            assert abs(held - exact) <= rung(on).unit_roundoff * abs(exact)
+            assert held.numerator.bit_length() <= rung(on).bits or held.denominator == 1
+            assert key not in ROUNDED_ONCE or held == exact
+    assert met <= ROUNDED_ONCE | ALSO_ROUNDED
+
+
+def from_hex(text: str) -> Fraction:
+    """Another reader of what C reads: sign, integer and power of two."""
+    match = re.fullmatch(r"(-?)0x([0-9a-f]+)p([+-]\d+)", text)
+    assert match
+    return (-1 if match[1] else 1) * int(match[2], 16) * Fraction(2) ** int(match[3])
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_every_key_occurs_once(scene: str) -> None:
+    """`"key":` is found once in the text of a question, for every key but text and hex."""
+    document = protocol.question(pose(load(scene), rung("f64")))
+    document["title"] = '"elapsed": a title may say anything'
+    text = json.dumps(document)
+    keys = set(re.findall(r'(?<!\\)"(\w+)":', text)) - {"text", "hex"}
+    assert keys >= {"model", "rung", "bits", "columns", "elapsed", "times", "attitude"}
+    assert {key: text.count(f'"{key}":') for key in keys} == dict.fromkeys(keys, 1)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_every_key_is_documented(scene: str) -> None:
+    """The legend of the protocol names every key of a question, and no answer column is left out."""
+    assert protocol.__doc__
+    document = protocol.question(pose(load(scene), rung("f64")))
+    keys = {*document, *(key for key, *_ in numbers(document)), *document["columns"]}
+    assert keys <= set(re.findall(r"\w+", protocol.__doc__))
+
+
+def test_the_tensor_and_its_inverse_are_one_body() -> None:
+    """I K = 1 and omega = K H hold exactly between the texts, on a rung that had to round K."""
+    document = protocol.question(pose(load("euler/full-tensor"), rung("f32")))
+    body, initial = document["body"], document["initial"]
+    identity = tensors.diagonal((Fraction(1),) * 3)
+    K = matrix(body["inverse_inertia"]["text"])
+    assert tensors.product(matrix(body["inertia"]["text"]), K) == identity
+    momentum = tuple(map(Fraction, initial["angular_momentum"]["text"]))
+    assert tensors.apply(K, momentum) == tuple(map(Fraction, initial["omega"]["text"]))
+
+
+def matrix(rows: list[list[str]]) -> tuple[tuple[Fraction, ...], ...]:
+    return tuple(tuple(map(Fraction, row)) for row in rows)
+
+
+@given(st.fractions() | st.floats(allow_nan=False, allow_infinity=False).map(Fraction))
+def test_an_exact_text_is_exact(value: Fraction) -> None:
+    """The text of a rational reads back as the same rational, a decimal wherever one is finite."""
+    text = protocol.exact_text(value)
+    assert Fraction(text) == value
+    assert ("/" in text) == (10**1100 % value.denominator != 0)
+
+
+# The answer.
+
+
+def answer(of: Problem, **changes: Any) -> bytes:
+    """A sound answer in form, changed: the states are those of the start throughout."""
+    omega = of.given.initial.omega  # type: ignore[union-attr]
+    sound: dict[str, Any] = {"t": [float(t) for t in of.given.clock.instants]}
+    for i, name in enumerate(("w1", "w2", "w3")):
+        sound[name] = [float(omega[i]).hex()] * len(of.times)
+    return json.dumps({**sound, **changes}).encode()
+
+
+@pytest.mark.parametrize(
+    ("on", "written", "exact"),
+    [
+        ("f64", "0.1", Fraction(0.1)),
+        ("f32", "0.1", Fraction(0.1)),
+        ("f80", "0.1", Fraction(1, 10)),
+        ("f64", '"0.1"', Fraction(1, 10)),
+        ("f64", '"1/3"', Fraction(1, 3)),
+        ("f64", '"0x1.8p-3"', Fraction(3, 16)),
+        ("f64", '"-0X.8P1"', Fraction(-1)),
+        ("f64", '"0x18"', Fraction(24)),
+        ("f64", "7", Fraction(7)),
+        ("f64", "9007199254740993", Fraction(2**53)),
+        ("mp237", "9007199254740993", Fraction(2**53 + 1)),
+    ],
+)
+def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fraction) -> None:
+    """In quotes exactly; bare as the nearest double on f32 and f64, and exactly on wider rungs."""
+    asked = problem(on)
+    text = answer(asked, w2=[0, 0, "HERE"]).replace(b'"HERE"', written.encode())
+    assert protocol.read(text, asked).states[2][1] == exact
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_hexadecimal_and_shortest_decimal_of_a_double_are_the_double(value: float) -> None:
+    """Whether a program prints %a or a decimal that is enough, what is judged is what it held."""
+    asked = problem()
+    found = protocol.read(answer(asked, w1=[value.hex()] * 3, w3=[value] * 3), asked)
+    assert found.states[0][0] == found.states[0][2] == value
+
+
+MISANSWERS = [
+    (b"", "got nothing"),
+    (b"the end\n", "no JSON at line 1, column 1"),
+    (b"[1, 2]", "got a list"),
+    (b'{"t": [0, 1, 2', "where the answer ends"),
+    (b'{"t": [0], "t": [0]}', "'t' twice"),
+    (b"\xff\xfe{}", "expected one JSON object"),
+    (b"[" * 100_000, "expected one JSON object"),
+    (b'{"t": [0, 1, 2]}', "got no w1, w2, w3"),
+    ({"w2": 0.5}, "expected a list of 3 numbers @ w2"),
+    ({"t": [0, 1]}, "expected 3 rows, got 2, the last at t = 1 @ t"),
+    ({"w3": [0, 0]}, "expected 3 rows, got 2 @ w3"),
+    ({"w3": [0, 0, 0, 0]}, "expected 3 rows, got 4 @ w3"),
+    ({"t": [0, 1, 1.9999999]}, "expected t = 2.0"),
+    ({"t": [0, 2, 1]}, "@ t[1]"),
+    ({"w1": [0, "fast", 0]}, "@ w1[1]"),
+    ({"w1": [0, True, 0]}, "expected a number, got true @ w1[1]"),
+    ({"w1": [0, [0], 0]}, "@ w1[1]"),
+    ({"w1": [0, "1e999999999", 0]}, "@ w1[1]"),
+    ({"w1": [0, "0x1p999999999", 0]}, "@ w1[1]"),
+    ({"w1": [0, "0x", 0]}, "@ w1[1]"),
+    ({"steps": -1}, "@ steps"),
+    ({"steps": "many"}, "@ steps"),
+    ({"evaluations": 1.5}, "@ evaluations"),
+    ({"seconds": -0.5}, "@ seconds"),
+    ({"seconds": "soon"}, "@ seconds"),
+    ({"seconds": True}, "@ seconds"),
+    ({"seconds": None}, "@ seconds"),
+    ({"seconds": math.nan}, "@ seconds"),
+    ({"seconds": 1e300}, "@ seconds"),
+    ({"seconds": 0, "compile_seconds": -1}, "@ compile_seconds"),
+    ({"compile_seconds": 1}, "expected seconds beside compile_seconds"),
+]
+
+
+@pytest.mark.parametrize(("given_back", "words"), MISANSWERS, ids=range(len(MISANSWERS)))
+def test_a_wrong_answer_is_told_with_its_place(given_back: Any, words: str) -> None:
+    """Whatever is not the answer asked for is refused, in words that say what and where."""
+    asked = problem()
+    text = answer(asked, **given_back) if isinstance(given_back, dict) else given_back
+    with pytest.raises(protocol.Misanswer, match=re.escape(words)):
+        protocol.read(text, asked)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, None, "nan", "-Infinity", 10**400])
+def test_what_is_not_finite_is_told_with_its_place(value: Any) -> None:
+    """NaN, an infinity, null and what overflows a double are not finite, in every spelling."""
+    asked = problem()
+    with pytest.raises(protocol.NotFinite, match=re.escape("@ w2[1]")):
+        protocol.read(answer(asked, w2=[0, value, 0]), asked)
+
+
+def test_times_may_have_been_rounded_and_no_more() -> None:
+    """t = start + k dt in doubles is the time asked for, and one part in 10^12 off is not."""
+    asked = pose(load("euler/later-start"), rung("f64"))
+    instants = [float(t) for t in asked.given.clock.instants]
+    dt = (instants[-1] - instants[0]) / (len(instants) - 1)
+    formed = [instants[0] + k * dt for k in range(len(instants))]
+    assert formed != instants
+    assert len(protocol.read(answer(asked, t=formed), asked).states) == len(instants)
+    off = [t * (1 + 1e-12) for t in instants]
+    with pytest.raises(protocol.Misanswer, match="roundings of f64"):
+        protocol.read(answer(asked, t=off), asked)
+
+
+# Programs. Each reads the question as `scene` and has a sound answer at hand as `found`.
+
+SOUND = """\
+import json, os, signal, subprocess, sys, time
+scene = json.load(sys.stdin)
+found = {"t": scene["time"]["times"]["hex"]}
+for i, name in enumerate(("w1", "w2", "w3")):
+    found[name] = [scene["initial"]["omega"]["hex"][i]] * len(found["t"])
+"""
+TELL = "json.dump(found, sys.stdout)\n"
+
+
+def program(folder: Path, text: str) -> str:
+    """The name of the solver that is this Python program."""
+    file = folder / "a program.py"
+    file.write_text(text)
+    # Without site: it starts in half the time.
+    return f"process:{shlex.join([sys.executable, '-S', str(file)])}"
+
+
+def solve(folder: Path, text: str, limit: float = 60, samples: int = 3) -> Trajectory:
+    return Process(program(folder, text), time_limit=limit).solve(problem(samples=samples))
+
+
+def test_a_sound_program_is_heard(tmp_path: Path) -> None:
+    """A program that answers is judged by its numbers, whatever it says on stderr."""
+    told = f"{SOUND}print('working', file=sys.stderr)\nfound['steps'] = 7\n{TELL}"
+    found = solve(tmp_path, told)
+    assert found.outcome is Outcome.FINISHED
+    assert (found.steps, found.detail) == (7, "")
+    assert [float(v) for v in found.quantities["omega"][2]] == [
+        float(v)
+        for v in problem().given.initial.omega  # type: ignore[union-attr]
+    ]
+
+
+def test_a_program_may_time_itself(tmp_path: Path) -> None:
+    """What a program states as seconds and compile_seconds is what its trajectory took."""
+    told = f"{SOUND}found.update(seconds=2e-3, compile_seconds=1e-3)\n{TELL}"
+    found = solve(tmp_path, f"import time; time.sleep(3e-3)\n{told}")
+    assert found.outcome is Outcome.FINISHED
+    assert (found.seconds, found.compile_seconds) == (2e-3, 1e-3)
+
+
+def test_a_program_that_does_not_time_itself_is_timed_as_a_whole(tmp_path: Path) -> None:
+    """Without seconds in the answer, they are those of the run, the start of the program included."""
+    found = solve(tmp_path, f"import time; time.sleep(0.2)\n{SOUND}{TELL}")
+    assert found.seconds >= 0.2
+    assert found.compile_seconds == 0
+
+
+FAULTS = [
+    ("import sys; sys.exit('no licence')", Outcome.CRASHED, "exit status 1; stderr: no licence"),
+    (f"{SOUND}{TELL}sys.stdout.flush(); os.abort()", Outcome.CRASHED, "signal SIGABRT"),
+    (f"{SOUND}{TELL}sys.exit(3)", Outcome.CRASHED, "exit status 3"),
+    (f"{SOUND}1 // 0", Outcome.CRASHED, "ZeroDivisionError"),
+    (f"{SOUND}for n in found: found[n].pop()\n{TELL}", Outcome.MISANSWERED, "got 2"),
+    (f"{SOUND}print(json.dumps(found)[:-30])", Outcome.MISANSWERED, "no JSON"),
+    (f"{SOUND}print('1e-3 done'); {TELL}", Outcome.MISANSWERED, "no JSON"),
+    (f"{SOUND}found['w1'][1] = float('nan'); {TELL}", Outcome.NON_FINITE, "nan @ w1[1]"),
+    (
+        f"{SOUND}found['t'] = ['0x1p20000'] * 3; {TELL}",
+        Outcome.MISANSWERED,
+        "got 3.98028e+6020 @ t[0]",
+    ),
+    (f"{SOUND}found['steps'] = 10**15; {TELL}", Outcome.MISANSWERED, "steps in"),
+    (f"{SOUND}found['seconds'] = 1000; {TELL}", Outcome.MISANSWERED, "got 1e+03 + 0 @ seconds"),
+    (
+        f"{SOUND}found.update(seconds=0, compile_seconds=1000); {TELL}",
+        *(Outcome.MISANSWERED, "got 0 + 1e+03 @ seconds"),
+    ),
+    ("while True: print('x' * 65536)", Outcome.MISANSWERED, "bytes on standard output"),
+    ("pass", Outcome.MISANSWERED, "got nothing"),
+]
+
+
+@pytest.mark.parametrize(("text", "outcome", "words"), FAULTS, ids=range(len(FAULTS)))
+def test_a_program_that_fails_has_its_outcome(
+    tmp_path: Path, text: str, outcome: Outcome, words: str
+) -> None:
+    """A crash, a claim of success without its rows, a torrent: each is told, and has no states."""
+    found = solve(tmp_path, text)
+    assert found.outcome is outcome
+    assert words in found.detail
+    assert not found.quantities
+
+
+def test_a_program_that_is_not_there_is_told() -> None:
+    """A command that cannot be started is an outcome of its own."""
+    found = Process("process:./no-such-simulator --fast").solve(problem())
+    assert found.outcome is Outcome.NOT_STARTED
+    assert found.detail == "./no-such-simulator: No such file or directory"
+
+
+def test_an_outcome_is_a_failed_verdict_without_an_error() -> None:
+    """A program that does not answer fails, and no number stands in for its error."""
+    verdicts = run(read(THREE_INSTANTS, "short"), "process:false").verdicts
+    assert [(v.verdict, v.max, v.outcome) for v in verdicts] == [
+        (Status.FAIL, None, Outcome.CRASHED.value)
+    ]
+    assert "exit status 1" in verdicts[0].because
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import time; time.sleep(600)",
+        # Nothing more will come, and still it does not end.
+        "import os, time; os.close(1); os.close(2); time.sleep(600)",
+        "while True: pass",
+        f"{SOUND}signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)",
+    ],
+    ids=["asleep", "silent", "busy", "stubborn"],
+)
+def test_a_program_that_does_not_end_is_ended(tmp_path: Path, text: str) -> None:
+    """After its time limit a program is stopped, and the run says which limit that was."""
+    began = time.monotonic()
+    found = solve(tmp_path, text, limit=1)
+    # Ten seconds for a busy machine; the program would take sixty times as long.
+    assert time.monotonic() - began < 1 + 10
+    assert found.outcome is Outcome.TIMED_OUT
+    assert found.detail == f"1 seconds, settable by {LIMIT_VARIABLE}"
+
+
+CHILD = """
+child = subprocess.Popen([sys.executable, "-S", "-c", "import time; time.sleep(600)"])
+open(sys.argv[0] + ".pids", "w").write(f"{os.getpid()} {child.pid}")
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
+@pytest.mark.parametrize(
+    ("ending", "outcome"),
+    [(TELL, Outcome.FINISHED), ("time.sleep(600)", Outcome.TIMED_OUT)],
+    ids=["answers", "hangs"],
+)
+def test_nothing_is_left_running(tmp_path: Path, ending: str, outcome: Outcome) -> None:
+    """A child that holds the output open delays no answer, and ends with the program."""
+    began = time.monotonic()
+    found = solve(tmp_path, SOUND + CHILD + ending, limit=3 if "sleep" in ending else 60)
+    assert time.monotonic() - began < 30
+    assert found.outcome is outcome
+    pids = (tmp_path / "a program.py.pids").read_text().split()
+    assert len(pids) == 2
+    program_itself, child = pids
+    # Ours is gone to the last trace; an orphan is for init to bury.
+    assert not Path(f"/proc/{program_itself}").exists()
+    deadline = time.monotonic() + 10
+    while is_alive(child) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not is_alive(child)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads /proc")
+def test_a_terminated_run_takes_its_program_along(tmp_path: Path) -> None:
+    """SIGTERM, with which a pool ends its workers, leaves no program behind and ends as it would."""
+    marker = tmp_path / "pid"
+    waits = (
+        f"import os, time; open({str(marker)!r}, 'w').write(f'{{os.getpid()}}.'); time.sleep(600)"
+    )
+    solver = program(tmp_path, waits)
+    script = f"from taylor_verify.run import run\nrun('euler/rest', {solver!r})\n"
+    ours = subprocess.Popen([sys.executable, "-c", script])
+    try:
+        deadline = time.monotonic() + 60
+        while not (marker.exists() and marker.read_text().endswith(".")):
+            assert ours.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        ours.terminate()
+        assert ours.wait(30) == -signal.SIGTERM
+    finally:
+        ours.kill()
+        ours.wait()
+    pid = marker.read_text().rstrip(".")
+    deadline = time.monotonic() + 10
+    while is_alive(pid) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not is_alive(pid)
+
+
+def test_the_handler_of_a_signal_is_left_as_it_was(tmp_path: Path) -> None:
+    """After a run SIGTERM is handled as before it."""
+    before = signal.getsignal(signal.SIGTERM)
+    assert solve(tmp_path, SOUND + TELL).outcome is Outcome.FINISHED
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def is_alive(pid: str) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state not in {"Z", "X"}
+
+
+def test_neither_side_waits_for_the_other(tmp_path: Path) -> None:
+    """A program may fill its output before it reads a question that fills the pipe as well."""
+    talkative = "import sys\nsys.stderr.write('x' * 10**6)\nsys.stdout.write(' ' * 10**6)\n"
+    found = solve(tmp_path, f"{talkative}{SOUND}{TELL}", samples=3_000)
+    assert found.outcome is Outcome.FINISHED
+    assert len(found.quantities["omega"]) == 3_000
+
+
+def test_a_question_need_not_be_read(tmp_path: Path) -> None:
+    """A program that knows the answer is not made to read, and a broken pipe is no fault of it."""
+    text = f"import sys; sys.stdin.close(); print({answer(problem(samples=3)).decode()!r})"
+    assert solve(tmp_path, text).outcome is Outcome.FINISHED
+    # Here the question is larger than the pipe.
+    found = solve(tmp_path, text, samples=3_000)
+    assert found.outcome is Outcome.MISANSWERED
+
+
+def test_the_last_words_are_shown_without_their_colours(tmp_path: Path) -> None:
+    """Of a long stderr the last lines are told, and no escape sequence passes to the terminal."""
+    text = "import sys\nfor i in range(9999): print(f'\\x1b[31mline {i}', file=sys.stderr)\nsys.exit(2)"
+    detail = solve(tmp_path, text).detail
+    assert "\x1b" not in detail
+    assert detail.endswith("line 9998")
+    assert "line 9994" in detail
+    assert "line 9993" not in detail
+
+
+# The name.
+
+
+@pytest.mark.parametrize("name", ["process:", "process: ", "process:'open", "proces:x", "tailor"])
+def test_a_name_that_starts_nothing_is_refused(name: str) -> None:
+    """A command that is empty or not closed is a wrong call, as is a name that is no solver."""
+    for take in (solver_named, check_name):
+        with pytest.raises(ValueError, match="expected a"):
+            take(name)
+
+
+def test_a_command_is_split_as_a_shell_would() -> None:
+    """Quotes hold a word together, and nothing is expanded."""
+    found = named("process:./my_simulator 'a b' $HOME")
+    assert found.command == ["./my_simulator", "a b", "$HOME"]
+    assert found.name == "process:./my_simulator 'a b' $HOME"
+
+
+def test_the_time_limit_is_an_environment_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its value is in seconds; what is no positive number is refused, not ignored."""
+    monkeypatch.delenv(LIMIT_VARIABLE, raising=False)
+    assert named("process:true").time_limit == DEFAULT_LIMIT
+    monkeypatch.setenv(LIMIT_VARIABLE, "2.5")
+    assert named("process:true").time_limit == 2.5
+    for wrong in ("0", "-1", "nan", "inf", "soon"):
+        monkeypatch.setenv(LIMIT_VARIABLE, wrong)
+        with pytest.raises(ValueError, match=LIMIT_VARIABLE):
+            named("process:true")
+
+
+# The worked examples.
+
+RK4 = f"process:{shlex.join([sys.executable, '-S', str(OUTSIDE / 'rk4.py')])}"
+
+
+@pytest.mark.parametrize("scene", ["euler/generic", "euler/with-attitude", "kirchhoff/screw"])
+def test_the_example_converges_with_order_four(scene: str) -> None:
+    """Halving the step of rk4.py divides every state error by 16, far above and below no bound."""
+    coarse = run(scene, f"{RK4} 0.1").verdicts
+    fine = run(scene, f"{RK4} 0.05").verdicts
+    assert fine[0].steps > coarse[0].steps > 0
+    states = {"omega", "impulse", "attitude"}
+    compared = [pair for pair in zip(coarse, fine, strict=True) if pair[0].quantity in states]
+    assert compared
+    for one, other in compared:
+        assert one.verdict is other.verdict is Status.FAIL
+        assert one.max is not None
+        assert other.max is not None
+        # Half an order leaves room for the next term of the error, and none for orders 3 and 5.
+        assert 2**3.5 <= one.max / other.max <= 2**4.5
+
+
+@pytest.fixture(scope="module")
+def rk4_in_c(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The name of the solver that is rk4.c."""
+    compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    built = tmp_path_factory.mktemp("c") / "rk4"
+    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2"]
+    subprocess.run([compiler, *strict, "-o", built, OUTSIDE / "rk4.c", "-lm"], check=True)
+    return f"process:{shlex.quote(str(built))}"
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_example_in_c_is_the_example_in_python(scene: str, rk4_in_c: str) -> None:
+    """rk4.c and rk4.py answer every kind of scene alike, but for rounding."""
+    asked = pose(load(scene), rung("f64"))
+    python, c = (named(f"{name} 0.1").solve(asked) for name in (RK4, rk4_in_c))
+    assert python.outcome is c.outcome is Outcome.FINISHED
+    assert python.steps == c.steps
+    assert python.quantities.keys() == c.quantities.keys()
+    # A component rounds some thirty times a step, and these orbits carry it on thirtyfold.
+    allowed = 1000 * c.steps * 2.0**-53
+    for name, rows in python.quantities.items():
+        scale = max(1.0, max(abs(float(v)) for v in rows.flat))
+        assert max(abs(float(v)) for v in (rows - c.quantities[name]).flat) <= allowed * scale
+
+
+def test_the_example_in_c_passes_every_gate(rk4_in_c: str) -> None:
+    """A step short enough leaves rounding alone, and steps as the program counts them allow it."""
+    verdicts = run("euler/generic", f"{rk4_in_c} 0.001").verdicts
+    assert {v.verdict for v in verdicts} == {Status.PASS}
+
+
+def test_the_example_in_c_refuses_what_it_cannot_do(rk4_in_c: str) -> None:
+    """A step that is not positive ends it with a word on stderr, which the outcome repeats."""
+    found = named(f"{rk4_in_c} 0").solve(problem())
+    assert found.outcome is Outcome.CRASHED
+    assert found.detail == "exit status 1; stderr: rk4: expected a positive step"
+
+
+def test_the_example_needs_the_standard_library_alone() -> None:
+    """rk4.py carries a PEP 723 header without dependencies, and imports what Python has."""
+    text = (OUTSIDE / "rk4.py").read_text()
+    header = re.match(r"# /// script\n((?:# .*\n)+)# ///\n", text)
+    assert header
+    assert tomllib.loads(re.sub("^# ", "", header[1], flags=re.MULTILINE))["dependencies"] == []
+    tops = {
+        name.partition(".")[0]
+        for node in ast.walk(ast.parse(text))
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    assert tops
+    assert tops <= sys.stdlib_module_names

@@ -1,0 +1,127 @@
+"""The question of every kind of scene: each key has one meaning, and its template can be filled in."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from trajectories import columns_at
+
+from taylor_verify.cli import main
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.process import protocol
+
+# Every number is an object of these two: the one pair that occurs again and again.
+PAIR = {"text", "hex"}
+Kind = tuple[str, frozenset[str], bool, bool]
+
+
+def kind(scene: Scene) -> Kind:
+    """The features by which the questions of two scenes differ in their keys."""
+    return scene.model, scene.track, scene.body.manufactured is not None, scene.body.is_free
+
+
+@cache
+def one_of_each_kind() -> dict[Kind, str]:
+    found: dict[Kind, str] = {}
+    for name in names():
+        found.setdefault(kind(load(name)), name)
+    return found
+
+
+def keys(document: Any) -> Iterator[str]:
+    """Every key at every level, as often as it occurs."""
+    if isinstance(document, dict):
+        for key, value in document.items():
+            yield key
+            yield from keys(value)
+    elif isinstance(document, list):
+        for entry in document:
+            yield from keys(entry)
+
+
+def legend(part: str) -> list[str]:
+    """The names that a part of the protocol's docstring has an entry for, as often as it has one."""
+    entries = re.findall(r"^ {4,6}((?:[a-z_0-9]+(?:, | ))*[a-z_0-9]+)  +\S", part, re.MULTILINE)
+    return [name for entry in entries for name in re.split(r",? ", entry)]
+
+
+def halves() -> tuple[str, str]:
+    """The part of the docstring on the question, and that on the answer."""
+    assert protocol.__doc__
+    question, answer = protocol.__doc__.split("The answer is one JSON object")
+    return question, answer
+
+
+def test_every_kind_of_question_is_asked() -> None:
+    """Both models, with and without attitude, centre, loads, and loads that change with time."""
+    kinds = one_of_each_kind()
+    assert len(kinds) >= 8
+    for place in (0, 2, 3):
+        assert len({one[place] for one in kinds}) == 2
+    assert {frozenset(), frozenset({"attitude"}), frozenset({"attitude", "centre"})} <= {
+        track for _, track, *_ in kinds
+    }
+
+
+@pytest.mark.parametrize("name", one_of_each_kind().values())
+def test_no_key_occurs_twice(name: str) -> None:
+    """At every level, whatever the table; `text` and `hex` alone stand in every number."""
+    document = protocol.question(pose(load(name), rung("f64")))
+    counts = Counter(keys(document))
+    assert {key for key, count in counts.items() if count > 1} == PAIR
+    # As a reader without a JSON library searches it, in the text that the program gets.
+    text = json.dumps(document)
+    assert {text.count(f'"{key}":') for key in counts if key not in PAIR} == {1}
+
+
+@pytest.mark.parametrize("name", one_of_each_kind().values())
+def test_every_key_has_one_entry(name: str) -> None:
+    """The legend says each key of a question once, and no key of a question is one of an answer."""
+    question, answer = (Counter(legend(part)) for part in halves())
+    document = protocol.question(pose(load(name), rung("f64")))
+    asked = {*keys(document)} - PAIR
+    assert {key: question[key] for key in asked} == dict.fromkeys(asked, 1)
+    assert not asked & {*answer}
+    assert {*document["columns"]} <= {*answer}
+
+
+def test_a_key_with_two_meanings_is_caught() -> None:
+    """The broken twin: a table that has a key of another table."""
+    document = protocol.question(pose(load("euler/generic"), rung("f64")))
+    document["initial"]["start"] = document["initial"]["omega"]
+    assert Counter(keys(document))["start"] == 2
+
+
+@pytest.mark.parametrize("name", one_of_each_kind().values())
+def test_the_template_filled_in_passes(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`question --csv` with the exact motion in its cells is a file that `check` takes as it is."""
+    assert main(["question", name, "--csv"]) == 0
+    out, said = capsys.readouterr()
+    assert f"taylor-verify check FILE --scene {name}" in said
+    header, *rows = list(csv.reader(io.StringIO(out)))
+    scene = load(name)
+    instants = pose(scene, rung("f64")).given.clock.instants
+    assert len(rows) == len(instants)
+    exact = columns_at(scene, instants)
+    assert [float(row[0]) for row in rows] == exact["t"]
+    filled = [
+        [row[0], *(repr(exact[column][k]) for column in header[1:])] for k, row in enumerate(rows)
+    ]
+    file = tmp_path / "filled.csv"
+    file.write_text("\n".join(",".join(line) for line in [header, *filled]) + "\n")
+    assert main(["check", str(file), "--scene", name]) == 0

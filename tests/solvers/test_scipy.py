@@ -1,0 +1,176 @@
+"""SciPy's solve_ivp as a solver: what it answers, counts, refuses, and how a run can end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from taylor_verify.models.problem import pose
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers import registry
+from taylor_verify.solvers import scipy as solver
+from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.trajectory import Outcome
+
+F64 = rung("f64")
+
+
+def short(scene: str) -> Scene:
+    """The first seven units of time of a shipped scene; the start is no sample."""
+    clock = Clock(Fraction(0), tuple(Fraction(k) for k in range(1, 8)))
+    return replace(load(scene), clock=clock)
+
+
+@pytest.fixture
+def scipy() -> Any:
+    return pytest.importorskip("scipy", reason="an optional extra: taylor-verify[scipy]")
+
+
+# What it answers.
+
+
+@pytest.mark.usefixtures("scipy")
+@pytest.mark.parametrize("method", solver.METHODS)
+@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])
+def test_the_answer_approaches_the_exact_motion(method: str, name: str) -> None:
+    """Each method, for both models, every quantity: with a tolerance 10^4 smaller it is far closer."""
+    scene = short(name)
+    coarse = run(scene, f"scipy:{method}?rtol=1e-4&atol=1e-4").verdicts
+    fine = run(scene, f"scipy:{method}?rtol=1e-8&atol=1e-8").verdicts
+    quantities = {"euler": {"omega", "attitude"}, "kirchhoff": {"impulse", "attitude", "centre"}}
+    found = 0
+    for before, after in zip(coarse, fine, strict=True):
+        if after.quantity in quantities[scene.model]:
+            found += 1
+            # The local error is what a tolerance bounds; a step can do well by chance, hence 100.
+            assert after.max <= before.max / 100
+    assert found == len(quantities[scene.model])
+
+
+@pytest.mark.usefixtures("scipy")
+def test_a_moment_and_time_running_backward() -> None:
+    """The problem's own equations are solved, whatever is in them, in either direction."""
+    for name in ("euler/constant-moment", "euler/backward", "kirchhoff/constant-loads"):
+        (_, verdict, *_) = run(name, "scipy:DOP853?rtol=1e-10&atol=1e-10").verdicts
+        # Three digits for what an orbit makes of the errors of its steps.
+        assert verdict.max <= 1e-7
+
+
+@pytest.mark.usefixtures("scipy")
+def test_steps_and_evaluations_are_counted() -> None:
+    """DOP853 takes at least 11 evaluations a step, and more steps for a finer tolerance."""
+    found = solver_named("scipy:DOP853?rtol=1e-6").solve(pose(short("euler/generic"), F64))
+    assert found.outcome is Outcome.FINISHED
+    assert 11 * found.steps <= found.evaluations
+    finer = solver_named("scipy:DOP853?rtol=1e-10&atol=1e-10").solve(
+        pose(short("euler/generic"), F64)
+    )
+    assert finer.steps > found.steps > 0
+
+
+@pytest.mark.usefixtures("scipy")
+def test_unset_tolerances_are_scipys_own() -> None:
+    """Who names none gets what solve_ivp takes by itself."""
+    problem = pose(short("euler/generic"), F64)
+    plain = solver_named("scipy:RK45").solve(problem)
+    named = solver_named("scipy:RK45?rtol=1e-3&atol=1e-6").solve(problem)
+    assert (plain.quantities["omega"] == named.quantities["omega"]).all()
+    assert plain.steps == named.steps
+
+
+@pytest.mark.usefixtures("scipy")
+def test_a_fault_in_the_equations_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With time running the wrong way in the rates no gate of the state passes."""
+    rates = solver._Run._rates
+
+    def reversed_rates(self: Any) -> Any:
+        forward = rates(self)
+        return lambda t, state: [-rate for rate in forward(t, state)]
+
+    monkeypatch.setattr(solver._Run, "_rates", reversed_rates)
+    (verdict, *_) = run(short("euler/generic"), "scipy:DOP853?rtol=1e-12&atol=1e-12").verdicts
+    assert verdict.verdict is Status.FAIL
+    assert verdict.max > 0.1
+
+
+# How a run ends that is none.
+
+
+@pytest.mark.usefixtures("scipy")
+def test_a_run_without_end_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is a bound on the evaluations."""
+    monkeypatch.setattr(solver, "_MOST_EVALUATIONS", 100)
+    found = solver_named("scipy:RK45?rtol=1e-9").solve(pose(short("euler/generic"), F64))
+    assert found.outcome is Outcome.STEP_LIMIT
+    assert not found.quantities
+
+
+@pytest.mark.usefixtures("scipy")
+@pytest.mark.parametrize("method", solver.METHODS)
+def test_rates_that_are_no_numbers_are_an_outcome(
+    method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """NaN in the rates ends the run at once, where SciPy's explicit methods would try for ever."""
+    monkeypatch.setattr(solver, "_MOST_EVALUATIONS", 1000)
+    nowhere = {f"H{i}": float("nan") for i in (1, 2, 3)}
+    problem = pose(short("euler/generic"), F64).with_equations(lambda named: nowhere)
+    found = solver_named(f"scipy:{method}").solve(problem)
+    assert found.outcome is Outcome.NON_FINITE
+    assert not found.quantities
+
+
+def test_without_scipy_it_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An extra that is not there makes the solver unavailable, and nothing else."""
+    monkeypatch.setattr(solver, "find_spec", lambda name: None)
+    (verdict,) = run("euler/generic", "scipy:DOP853").verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert verdict.because == "SciPy is not installed: pip install 'taylor-verify[scipy]'"
+
+
+def test_other_rungs_are_unavailable() -> None:
+    """SciPy integrates in float64."""
+    (verdict,) = run("euler/generic", "scipy:DOP853", "f128").verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert verdict.because.endswith("f64 alone")
+
+
+# Names.
+
+
+def test_every_method_is_listed() -> None:
+    """`list` shows each with its settings, and each shown one exists."""
+    listed = [name for name in registry.NAMES if name.startswith("scipy:")]
+    assert listed == [f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in solver.METHODS]
+    for name in listed:
+        check_name(name.replace("NUMBER", "1e-6"))
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("scipy:DOP854", r"got 'DOP854'; did you mean DOP853\?"),
+        ("scipy:RK45?tol=1e-6", r"got 'tol'; did you mean"),
+        ("scipy:RK45?rtol=1e-16", r"expected at least 2.22e-14, SciPy's own bound, .* @ rtol"),
+        ("scipy:RK45?atol=0", r"expected a positive number, got '0' @ atol"),
+    ],
+)
+def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
+    """What was expected, what came, and where."""
+    with pytest.raises(ValueError, match=told):
+        check_name(name)
+
+
+@pytest.mark.parametrize("tolerance", ["1e-3", 0, -1.0, float("nan"), True, 10**400])
+@pytest.mark.parametrize("place", ["rtol", "atol"])
+def test_a_tolerance_that_is_no_positive_number_is_refused(place: str, tolerance: Any) -> None:
+    """Given in Python, it is refused as in a solver's name: what was expected, what came, where."""
+    with pytest.raises(ValueError, match=rf"expected a positive number, got .* @ {place}"):
+        solver.SciPy("DOP853", "scipy:DOP853", **{place: tolerance})

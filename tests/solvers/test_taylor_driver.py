@@ -1,0 +1,485 @@
+"""heyoka driven safely: exact numbers in and out, no silent wrong answer, no unfinished score."""
+
+import math
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from fractions import Fraction
+
+import heyoka as hy
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.times import rounded_times
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.instants import EquallySpaced
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.precision import power_of_two, rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.trajectory import Outcome
+
+RUNGS = (*LADDER, "mp24", "mp100", "mp1000")
+
+
+@pytest.mark.parametrize("name", RUNGS)
+@given(
+    significand=st.integers(-(2**1000), 2**1000),
+    exponent=st.integers(-90, 90),
+)
+def test_numbers_pass_to_heyoka_and_back_unchanged(
+    name: str, significand: int, exponent: int
+) -> None:
+    """Rounding once onto a rung is the only rounding: the typed number is that number exactly."""
+    step = rung(name)
+    size = max(significand.bit_length(), 1)
+    value = step.round(significand * power_of_two(exponent - size))
+    numbers = arithmetic(step)
+    assert numbers.exact(numbers.number(value)) == value
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("f32", Fraction(1, 2**149)),
+        ("f64", Fraction(1, 2**1074)),
+        ("f80", Fraction(1, 2**16445)),
+        ("f128", Fraction(3, 2**16494)),
+        ("mp237", Fraction(3, 2**40000)),
+        ("f128", Fraction(2) ** 16383),
+        ("mp64", Fraction(2) ** 40000),
+    ],
+)
+def test_ends_of_the_range_pass_unchanged(name: str, value: Fraction) -> None:
+    """Subnormal and very large numbers of every format survive the passage."""
+    numbers = arithmetic(rung(name))
+    assert numbers.exact(numbers.number(rung(name).round(value))) == value
+
+
+@given(st.fractions())
+def test_rounding_to_f64_is_pythons(value: Fraction) -> None:
+    """Our rounding onto f64 is the correctly rounded division of two integers."""
+    assert rung("f64").round(value) == Fraction(value.numerator / value.denominator)
+
+
+@given(st.fractions(min_value=-(2**100), max_value=2**100))
+def test_rounding_to_f32_is_numpys(value: Fraction) -> None:
+    """A double is rounded onto f32 as NumPy rounds it, ties and subnormals included."""
+    double = value.numerator / value.denominator
+    assert rung("f32").round(Fraction(double)) == Fraction(float(np.float32(double)))
+
+
+def test_rounding_beyond_the_range_is_an_error() -> None:
+    """The largest float32 is (2 - 2^-23) 2^127; half a unit above it there is no such number."""
+    largest = (2 - Fraction(1, 2**23)) * 2**127
+    assert rung("f32").round(largest) == largest
+    with pytest.raises(OverflowError, match="outside the range of f32"):
+        rung("f32").round(largest + 2**103)
+
+
+@pytest.mark.parametrize("name", ["f16", "mp23", "mp", "double", "mp1e3", "F64"])
+def test_unknown_rung_is_an_error_that_lists_the_ladder(name: str) -> None:
+    """A name that is no rung is refused with the names that are."""
+    with pytest.raises(ValueError, match="f32, f64, f80, f128 or mpN"):
+        rung(name)
+
+
+def spinning(omega: tuple[Fraction, ...], end: Fraction, inertia: int = 3) -> Scene:
+    """A free body of moments 1, 2, inertia, sampled eleven times."""
+    moments = (Fraction(1), Fraction(2), Fraction(inertia))
+    clock = Clock(Fraction(0), tuple(end * k / 10 for k in range(11)))
+    body = RigidBody(tensors.diagonal(moments))
+    return Scene("spinning", "", "euler", frozenset(), body, Spin(omega), clock)
+
+
+def largest_error(problem: Problem) -> float:
+    """The largest relative error of omega against the exact solution."""
+    answer = Taylor().solve(problem).motion(300)
+    truth = solution(problem.given).motion(problem.given.clock.elapsed, 40)
+    with mp.workdps(40):
+        scale = max(mp.norm(list(row)) for row in truth["omega"])
+        errors = [
+            mp.norm(list(a - b)) / scale
+            for a, b in zip(answer["omega"], truth["omega"], strict=True)
+        ]
+        return float(max(errors))
+
+
+@pytest.mark.parametrize("exponent", [-150, -16, -8, 8, 150])
+def test_scale_of_the_scene_does_not_matter(exponent: int) -> None:
+    """A rotation at 10^-150 or 10^150 rad/s is as accurate as one at 1 (trap T2: one step, no error).
+
+    Thirteen periods leave some hundred roundings; a thousand units of roundoff is far below the
+    error of one (heyoka by itself answers this with outcome "success" and error 10^11).
+    """
+    size = Fraction(10) ** exponent
+    omega = tuple(size * Fraction(v) for v in (0.75, -0.5, 0.875))
+    problem = pose(spinning(omega, 100 / size), rung("f64"))
+    assert largest_error(problem) <= 1000 * 2.0**-53
+
+
+@pytest.mark.parametrize("digits", [4, 8, 16, 20, 40])
+def test_start_near_the_unstable_axis_keeps_its_first_flip(digits: int) -> None:
+    """omega = (10^-d, 1, 0) is right at its first flip (trap T3: heyoka alone is wrong by 4e-8 to 1).
+
+    In principal axes the rounding of each component is relative to itself, so nothing is lost but the
+    roundings of the steps: thirty units leave room for those of some two hundred steps.
+    """
+    growth = math.sqrt(1 / 3)
+    flip = Fraction(digits * math.log(10) / growth).limit_denominator(1000)
+    scene = spinning((Fraction(1, 10**digits), Fraction(1), Fraction(0)), flip)
+    assert largest_error(pose(scene, rung("f64"))) <= 30 * 2.0**-53
+
+
+def test_heyoka_alone_is_silently_wrong_there() -> None:
+    """The same start without the step cap ends in success and is wrong by more than 10^-9."""
+    flip = 40 * math.log(10) / math.sqrt(1 / 3)
+    w = hy.make_vars("a", "b", "c")
+    system = [
+        (w[0], -hy.par[0] * w[1] * w[2]),
+        (w[1], hy.par[1] * w[2] * w[0]),
+        (w[2], -hy.par[2] * w[0] * w[1]),
+    ]
+    plain = hy.taylor_adaptive(system, [1e-40, 1.0, 0.0], pars=[1.0, 1.0, 1 / 3])
+    outcome, *_ = plain.propagate_until(flip)
+    # The inertia 1, 2, 3 leaves w1' = -w2 w3, w2' = w3 w1, w3' = -w1 w2/3.
+    scene = spinning((Fraction(1, 10**40), Fraction(1), Fraction(0)), Fraction(flip))
+    exact = solution(scene).motion([Fraction(flip)], 20)["omega"][0]
+    error = max(abs(float(a) - b) for a, b in zip(exact, plain.state, strict=True))
+    assert outcome == hy.taylor_outcome.time_limit
+    assert error > 1e-9
+
+
+@pytest.mark.parametrize("name", LADDER)
+def test_error_falls_with_the_rung(name: str) -> None:
+    """Each rung's error is some hundred of its own units of roundoff, no coarser rung's (trap T1)."""
+    problem = pose(load("euler/generic"), rung(name))
+    answer = Taylor().solve(problem).motion(600)
+    truth = solution(problem.given).motion(problem.given.clock.elapsed, 90)
+    with mp.workdps(90):
+        error = max(
+            mp.norm(list(a - b)) for a, b in zip(answer["omega"], truth["omega"], strict=True)
+        )
+        # The attainable error of this orbit is 500 units; ten times that is the gate.
+        assert error <= 5000 * mp.mpf(2) ** -problem.rung.bits
+
+
+def test_backward_and_late_starts_agree_with_the_truth() -> None:
+    """Negative time is integrated as well as positive, and the start may be anywhere."""
+    scene = spinning((Fraction(3, 4), Fraction(-1, 2), Fraction(7, 8)), Fraction(-50))
+    far = Fraction(10) ** 16
+    late = replace(scene, clock=Clock(far, tuple(far + t for t in scene.clock.instants)))
+    for asked in (scene, late):
+        assert largest_error(pose(asked, rung("f64"))) <= 1000 * 2.0**-53
+
+
+def test_run_that_leaves_the_range_is_not_scored() -> None:
+    """A moment that spins a float32 body beyond 10^38 ends non-finite or refused, never with a score."""
+    scene = spinning((Fraction(1), Fraction(1), Fraction(1)), Fraction(10) ** 60)
+    pushed = replace(
+        scene, body=replace(scene.body, moment=(Fraction(1), Fraction(0), Fraction(0)))
+    )
+    (verdict,) = run(pushed, "taylor", "f32").verdicts
+    assert verdict.verdict in (Status.FAIL, Status.REFUSED)
+    assert verdict.max is None
+
+
+BEGUN = [o for o in Outcome if o is not Outcome.FINISHED and not o.is_unavailable]
+
+
+@pytest.mark.parametrize("outcome", BEGUN)
+def test_unfinished_run_fails_without_a_number(
+    outcome: Outcome, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever stopped a solver, the verdict is fail with the outcome's sentence, and no error is 0."""
+    from taylor_verify.solvers.taylor import driver
+
+    monkeypatch.setattr(driver, "_propagate", lambda *_: (outcome, 7, [], 0.0))
+    (verdict,) = run("euler/generic", "taylor", "f64").verdicts
+    assert verdict.verdict is Status.FAIL
+    assert verdict.outcome == outcome.value
+    assert (verdict.max, verdict.mean, verdict.final, verdict.ratio) == (None,) * 4
+
+
+def test_step_limit_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that needs more steps than it is allowed stops and says so."""
+    from taylor_verify.solvers.taylor import driver
+
+    monkeypatch.setattr(driver, "_STEPS_PER_RADIAN", 0)
+    long = spinning((Fraction(3, 4), Fraction(-1, 2), Fraction(7, 8)), Fraction(10**6))
+    assert Taylor().solve(pose(long, rung("f64"))).outcome is Outcome.STEP_LIMIT
+
+
+def test_runs_are_repeatable_whatever_ran_before() -> None:
+    """A reused integrator carries nothing from one problem to the next: same bits again."""
+    problem = pose(load("euler/generic"), rung("f64"))
+    first = Taylor().solve(problem).quantities["omega"]
+    Taylor().solve(pose(load("euler/about-max-axis"), rung("f64")))
+    assert np.array_equal(first, Taylor().solve(problem).quantities["omega"])
+
+
+def _answer(problem: Problem) -> object:
+    """The sound answer as doubles, in the columns of a callback."""
+    return Taylor().solve(problem).quantities["omega"].astype(float)
+
+
+def test_callback_is_judged_like_any_solver() -> None:
+    """A callable that returns states passes where its numbers are right."""
+    verdicts = run("euler/generic", Callback(_answer), "f64").verdicts
+    assert {v.verdict for v in verdicts} == {Status.PASS}
+
+
+def test_callback_of_the_wrong_shape_or_that_raises_is_not_scored() -> None:
+    """A misshapen answer and an exception are outcomes with their own sentences."""
+    (misshapen,) = run("euler/generic", Callback(lambda p: _answer(p)[:, :2]), "f64").verdicts
+    assert misshapen.verdict is Status.FAIL
+    assert "expected states of shape (101, 3), got (101, 2)" in misshapen.because
+
+    def broken(problem: Problem) -> object:
+        raise ZeroDivisionError("by zero")
+
+    (raised,) = run("euler/generic", Callback(broken), "f64").verdicts
+    assert "ZeroDivisionError: by zero" in raised.because
+
+
+@pytest.mark.parametrize(
+    "value",
+    [0.1, 3, np.float32(0.1), np.longdouble(1) / 3, np.int64(-7), mp.mpf("0.3"), Fraction(5, 8)],
+)
+def test_callback_numbers_are_taken_exactly(value: object) -> None:
+    """Whatever number type a callable answers in, the judge sees that number and no other."""
+    problem = pose(load("euler/generic"), rung("f64"))
+    states = np.full((101, 3), value, dtype=object)
+    held = Callback(lambda _: states).solve(problem).quantities["omega"][50, 1]
+    exact = int(value) if isinstance(value, np.integer) else value
+    assert Fraction(*held.as_integer_ratio()) == Fraction(*exact.as_integer_ratio())
+
+
+@pytest.mark.parametrize("value", ["1.5", None, 1j, True])
+def test_callback_answer_that_is_no_number_is_misshapen(value: object) -> None:
+    """Text, None, complex numbers and booleans are refused with what was got."""
+    states = np.full((101, 3), value, dtype=object)
+    (verdict,) = run("euler/generic", Callback(lambda _: states), "f64").verdicts
+    assert verdict.verdict is Status.FAIL
+    assert "expected real numbers, got" in verdict.because
+
+
+def test_zero_quaternion_fails() -> None:
+    """A callable that leaves the attitude at zero has no attitude, and fails its gate by NaN."""
+
+    def without_attitude(problem: Problem) -> object:
+        sound = Taylor().solve(problem).quantities
+        return np.hstack([sound["omega"], 0 * sound["quaternion"]])
+
+    verdicts = run("euler/with-attitude", Callback(without_attitude), "f64").verdicts
+    found = {v.quantity: v.verdict for v in verdicts}
+    assert found["attitude"] is Status.FAIL
+    assert found["omega"] is Status.PASS
+
+
+def test_what_would_take_days_is_not_begun() -> None:
+    """1e60 turns are more than can be stepped through: the outcome is the bound on steps, at once."""
+    generic = load("euler/generic")
+    whirling = replace(generic, initial=Spin((Fraction(10**60), Fraction(10**59), Fraction(1))))
+    trajectory = Taylor().solve(pose(whirling, rung("f64")))
+    assert trajectory.outcome is Outcome.STEP_LIMIT
+    assert trajectory.steps == 0
+
+
+# As much work as the scene asks for, and no more.
+
+
+def sampled(scene: Scene, count: int) -> Scene:
+    """The same span at so many equally spaced instants."""
+    clock = scene.clock
+    span = clock.instants[-1] - clock.start
+    return replace(
+        scene,
+        clock=Clock(clock.start, EquallySpaced(clock.start, span / (count - 1), count)),
+    )
+
+
+@pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
+def test_samples_cost_no_steps(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Between the same 24 looks at the rate, 25 samples and 4801 take the same steps, to the bit.
+
+    Samples are read off the steps: if a step ended at each, there would be thousands.
+    """
+    from taylor_verify.solvers.taylor import driver
+
+    monkeypatch.setattr(driver, "_FEWEST_LOOKS", 24)
+    few, many = (
+        Taylor().solve(pose(sampled(load(name), n), rung("f64"))) for n in (25, 24 * 200 + 1)
+    )
+    assert few.steps == many.steps
+    for quantity, rows in few.quantities.items():
+        assert np.array_equal(rows[-1], many.quantities[quantity][-1])
+
+
+def test_unoptimised_code_takes_the_same_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How MPFR's calls are compiled changes what they cost, and not a bit of what they compute."""
+    from taylor_verify.solvers.taylor import driver
+
+    problem = pose(load("euler/with-attitude"), rung("mp113"))
+    found = []
+    for long_way in (0, 10**6):
+        monkeypatch.setattr(driver, "_LONG_WAY", long_way)
+        found.append(Taylor().solve(problem))
+    assert found[0].steps == found[1].steps
+    for quantity, rows in found[0].quantities.items():
+        assert np.array_equal(rows, found[1].quantities[quantity])
+
+
+def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
+    """Coefficients are parameters: another body, start and span compile nothing."""
+    from taylor_verify.solvers.taylor import driver
+
+    scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))
+    moments = tensors.diagonal((Fraction(1), Fraction(2), Fraction(17, 5)))
+    other = replace(scene, body=RigidBody(moments), initial=Spin((Fraction(2),) * 3))
+    problems = [pose(asked, rung("f64")) for asked in (scene, other)]
+    assert problems[0].form == problems[1].form
+    assert problems[0].parameters != problems[1].parameters
+    Taylor().solve(problems[0])
+    before = driver.compiled.cache_info()
+    Taylor().solve(problems[1])
+    after = driver.compiled.cache_info()
+    assert (after.misses, after.hits) == (before.misses, before.hits + 1)
+
+
+def test_exact_numbers_are_made_when_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solve makes no rational of its samples or of their times; who looks gets all of them."""
+    from taylor_verify.solvers import trajectory
+
+    calls = []
+    formed = trajectory.from_scaled
+    monkeypatch.setattr(
+        trajectory, "from_scaled", lambda *given: calls.append(given) or formed(*given)
+    )
+    problem = pose(sampled(load("euler/with-attitude"), 1000), rung("f64"))
+    found = Taylor().solve(problem)
+    assert (len(found.quantities), set(found.quantities)) == (2, {"omega", "quaternion"})
+    assert not calls
+    assert "numbers" not in vars(problem.times)
+    assert len(found.quantities["omega"]) == 1000
+    assert len(found.motion(80)["attitude"]) == 1000
+    assert len(calls) == 1
+
+
+@given(
+    first=st.fractions(-1000, 1000, max_denominator=10**6),
+    step=st.fractions("1/1000000", 1000, max_denominator=10**9),
+    sign=st.sampled_from([-1, 1]),
+    exponent=st.integers(-2000, 2000),
+    name=st.sampled_from(["f32", "f64", "f80", "f128", "mp237"]),
+)
+def test_equally_spaced_times_are_rounded_once_each(
+    first: Fraction, step: Fraction, sign: int, exponent: int, name: str
+) -> None:
+    """All at once or one by one, in any unit: the nearest number of the rung, or out of its range."""
+    clock = Clock(first, EquallySpaced(first, sign * step, 20))
+    unit, onto = power_of_two(exponent), rung(name)
+    try:
+        expected = tuple(onto.round(t / unit) for t in clock.elapsed)
+    except OverflowError:
+        with pytest.raises(OverflowError, match="outside the range"):
+            rounded_times(clock, unit, onto)
+        return
+    found = rounded_times(clock, unit, onto)
+    assert tuple(found) == expected
+    typed = arithmetic(onto)
+    assert [typed.exact(value) for value in typed.times(found)] == list(expected)
+
+
+def test_equally_spaced_instants_are_a_sequence_of_rationals() -> None:
+    """They compare, hash, slice, count from the end and travel like the tuple of the same numbers."""
+    spaced = EquallySpaced(Fraction(1, 3), Fraction(-2, 7), 5)
+    plain = tuple(Fraction(1, 3) - Fraction(2, 7) * k for k in range(5))
+    assert (spaced == plain, plain == spaced, hash(spaced) == hash(plain)) == (True,) * 3
+    assert spaced != plain[:4]
+    assert [spaced[k] for k in (-5, -1, 0, 4)] == [plain[k] for k in (-5, -1, 0, 4)]
+    assert spaced[1:4] == plain[1:4]
+    with pytest.raises(IndexError):
+        spaced[5]
+    assert pickle.loads(pickle.dumps(spaced)) == plain
+
+
+@pytest.mark.parametrize("name", ["f64", "f80"])
+def test_a_callback_changes_no_number(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """It is there to hear an interrupt: heyoka takes the same steps with it, bit for bit."""
+    problem = pose(load("kirchhoff/whole-motion"), rung(name))
+    without = Taylor().solve(problem)
+    monkeypatch.setattr(driver, "_RADIANS_AT_ONCE", {})
+    heard = Taylor().solve(problem)
+    assert heard.steps == without.steps
+    for quantity, values in without.quantities.items():
+        assert np.array_equal(heard.quantities[quantity], values)
+
+
+def test_an_interrupt_is_heard_within_a_second_of_a_long_run() -> None:
+    """A stretch of minutes, to one far sample, ends with KeyboardInterrupt where it is."""
+    program = (
+        "import sys\n"
+        "from dataclasses import replace\n"
+        "from fractions import Fraction\n"
+        "from taylor_verify.models.problem import pose\n"
+        "from taylor_verify.scenes.motion import Clock\n"
+        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.scenes.reading.reader import load\n"
+        "from taylor_verify.solvers.taylor.driver import Taylor\n"
+        "clock = Clock(Fraction(0), (Fraction(10**9),))\n"
+        "problem = pose(replace(load('euler/generic'), clock=clock), rung('f64'))\n"
+        "print('posed', flush=True)\n"
+        "Taylor().solve(problem)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as running:
+        assert running.stdout is not None
+        assert running.stdout.readline() == "posed\n"
+        time.sleep(1.5)
+        running.send_signal(signal.SIGINT)
+        # A second is the aim; the machine may be busy.
+        _, error = running.communicate(timeout=10)
+    assert running.returncode != 0
+    assert error.rstrip().endswith("KeyboardInterrupt")
+
+
+def test_a_long_path_costs_the_impulses_nothing() -> None:
+    """heyoka's tolerance is a part of the largest state: the centre, far off, would be that state."""
+    start = load("kirchhoff/whole-motion")
+    clock = Clock(Fraction(0), tuple(map(Fraction, (1, 10, 100, 2000))))
+    far = replace(start.initial, centre=(Fraction(10**9), Fraction(0), Fraction(0)))
+    for scene in (replace(start, clock=clock), replace(start, initial=far)):
+        verdicts = run(scene, "taylor", "f64").verdicts
+        assert {verdict.quantity for verdict in verdicts} >= {"impulse", "centre", "T", "F2", "FG"}
+        assert all(verdict.verdict is Status.PASS for verdict in verdicts), verdicts
+
+
+def test_few_samples_are_solved_with_as_much_care_as_many() -> None:
+    """The cap on the step is renewed between two samples that are far apart, and the sample is met."""
+    scene = load("euler/tennis-racket")
+    last = scene.clock.instants[-1]
+    few = run(replace(scene, clock=Clock(scene.clock.start, (last,))), "taylor", "f64")
+    many = run(scene, "taylor", "f64")
+    assert all(verdict.verdict is Status.PASS for verdict in few.verdicts)
+    assert few.verdicts[0].steps <= many.verdicts[0].steps * 1.1

@@ -1,0 +1,162 @@
+"""Files that a clone lacks are named, made again as they were, and packed the same every time."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+import shutil
+import tarfile
+from pathlib import Path
+
+import made
+import pytest
+
+from taylor_verify.cli import main
+from taylor_verify.cli import missing as command
+from taylor_verify.records import store
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies import archive, bulk, drawings
+
+SCENES = ("euler/rest", "euler/generic")
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def report(tmp_path: Path) -> Path:
+    """A whole report of two scenes on two rungs."""
+    place = tmp_path / "report"
+    made.write_runs(place, [(scene, rung) for scene in SCENES for rung in ("f32", "f64")])
+    made.write_portraits(place, SCENES)
+    made.report.publish(place)
+    return place
+
+
+def missing(place: Path) -> bulk.Missing:
+    return bulk.missing(place, {name: load(name).digest for name in names()})
+
+
+def without_bulk(place: Path) -> dict[str, bytes]:
+    """Remove what no clone has, and return it by its path."""
+    files = [f for pattern in bulk.FILES for f in place.glob(pattern + "*" * pattern.endswith("/"))]
+    removed = {file.relative_to(place).as_posix(): file.read_bytes() for file in files}
+    for file in files:
+        file.unlink()
+    return removed
+
+
+def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) -> None:
+    """Records, portraits, JSON and tables of gates come back byte for byte, and nothing else changes."""
+    removed = without_bulk(report)
+    assert missing(report).data == (
+        "4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
+    )
+    committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
+    assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
+    out, said = capsys.readouterr()
+    assert "4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON" in said
+    assert {Path(name) for name in json.loads(out)["written"]} == {report / n for n in removed}
+    assert {name: (report / name).read_bytes() for name in removed} == removed
+    assert {file: file.read_bytes() for file in committed} == committed
+    assert missing(report).data == ""
+
+
+def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
+    """A record belongs to the verdicts beside it: where these were changed, all are missing. Records of
+    an earlier version, which do not say whose they are, are taken for those of the verdicts."""
+    stamp = report / "data" / store.STAMP
+    line = stamp.read_bytes()
+    assert missing(report).runs == ()
+    stamp.unlink()
+    assert missing(report).runs == ()
+    stamp.write_bytes(line)
+    file = report / "data" / store.VERDICTS
+    stored = json.loads(file.read_text(encoding="utf-8"))
+    stored["verdicts"][0]["max"] = 0.5
+    file.write_text(store.laid_out(stored), encoding="utf-8")
+    assert len(missing(report).runs) == 4
+    mine, gone = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
+    mine.write_text("{}\n", encoding="utf-8")
+    shutil.copy(next(file.parent.glob("records/euler-rest*")), gone)
+    store.add_records(report, [])
+    assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
+    assert len(missing(report).runs) == 4
+
+
+def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> None:
+    """Portrait and exact trajectory have the digest of their scene; with another one they are missing."""
+    digests = {name: load(name).digest for name in SCENES} | {"euler/rest": "another"}
+    found = bulk.missing(report, digests)
+    assert found.portraits == found.references == ("euler/rest",)
+
+
+def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
+    """A scene that the rung cannot hold, or a rung that the machine lacks, is not tried again for ever."""
+    file = report / "data" / store.VERDICTS
+    stored = json.loads(file.read_text(encoding="utf-8"))
+    for row in stored["verdicts"]:
+        row["verdict"] = "refused" if row["rung"] == "f32" else row["verdict"]
+    file.write_text(store.laid_out(stored), encoding="utf-8")
+    assert {run.rung for run in missing(report).runs} == {"f64"}
+
+
+@pytest.mark.slow
+def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> None:
+    """Somebody's own report lacks nothing that this package could make."""
+    assert bulk.missing(made.small(), {}).data == ""
+    with pytest.raises(command.WrongCall, match=r"no such file @ .*verdicts\.json"):
+        command.make_missing(tmp_path)
+
+
+def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) -> None:
+    """Two archives are the same bytes; what a user's own runs wrote is not in them."""
+    assert main(["publish", "--paper", "--from", str(report)]) == 0
+    (report / "local").mkdir()
+    for place in (report / "local" / "mine.csv", report / ".hidden"):
+        place.write_text("mine", encoding="utf-8")
+    first, sums = archive.pack(report, tmp_path / "a", "name")
+    (report / "tables" / "README.md").touch()
+    second, _ = archive.pack(report, tmp_path / "b", "name")
+    content = first.read_bytes()
+    assert content == second.read_bytes()
+    assert sums.read_text("utf-8") == f"{hashlib.sha256(content).hexdigest()}  name.tar.gz\n"
+    with tarfile.open(first) as packed:
+        members = {m.name: packed.extractfile(m) for m in packed.getmembers()}
+        contents = {name: file.read() for name, file in members.items() if file}
+    listed = dict(
+        reversed(line.split("  "))
+        for line in contents.pop(f"name/{archive.SUMS}").decode().splitlines()
+    )
+    assert {f"name/{path}" for path in listed} == set(contents)
+    assert all(hashlib.sha256(contents[f"name/{p}"]).hexdigest() == s for p, s in listed.items())
+    assert not [path for path in listed if "mine" in path or "hidden" in path]
+    assert {"data/records/euler-rest.taylor.f64.json", "tables/paper.tex"} <= set(listed)
+    # The header of the stream has neither a time nor a name.
+    assert content[4:8] == bytes(4)
+    assert gzip.decompress(content)
+
+
+def test_a_report_that_lacks_something_is_not_packed(
+    report: Path, tmp_path: Path, capsys: Captured
+) -> None:
+    """Without its renderings or records it is a wrong call that says what makes them; no file is left."""
+    call = ["publish", "--from", str(report), "--archive", str(tmp_path / "dist")]
+    assert main(call) == 2
+    assert "publish --paper" in capsys.readouterr().err
+    assert main(["publish", "--paper", "--from", str(report)]) == 0
+    assert main(call) == 0
+    shutil.rmtree(report / "data" / store.RECORDS)
+    assert main(call) == 2
+    assert "without 4 records of runs @ --archive" in capsys.readouterr().err
+
+
+def test_the_paper_draws_the_pictures_that_are_there() -> None:
+    """Each SVG of a report has its PDF, drawn of stored data: those of LaTeX's pages are among them."""
+    place = made.folder()
+    shutil.copytree(made.small(), place, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.pdf"))
+    assert main(["publish", "--paper", "--from", str(place)]) == 0
+    stems = {file.stem for file in (place / "figures").glob("*.svg")}
+    assert len(stems) >= 5
+    assert {file.stem for file in (place / "figures").glob("*.pdf")} == stems
+    assert stems <= {picture.stem for picture in drawings.pictures(place)}

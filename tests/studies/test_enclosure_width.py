@@ -1,0 +1,74 @@
+"""The picture of an enclosure's width shows what was stored, and a true error is never above it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from samples import GENERAL, one_instant, vector
+
+from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.publish.pictures.picture import plotting, save
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.studies.enclosure import picture as pictures
+from taylor_verify.studies.enclosure.document import EnclosureStudy, WidthRow
+from taylor_verify.studies.enclosure.measure import widths
+from taylor_verify.studies.enclosure.page import load as load_study
+from taylor_verify.studies.enclosure.page import write
+
+MADE = EnclosureStudy(
+    140,
+    (
+        WidthRow("a", 0.5, 1.5e-40, 2.9e-41),
+        WidthRow("a", 1.0, 3.9e-40, 5.5e-41),
+        WidthRow("b", 0.5, 2.0e-38, 0.0),
+        WidthRow("b", 1.0, 4.0e-37, 1.0e-39),
+    ),
+)
+TIMES = [Fraction(k, 2) for k in range(1, 9)]
+
+
+def test_the_middle_errs_by_less_than_the_width() -> None:
+    """The enclosure with twice the bits is within the one with few, which gives digits away."""
+    moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
+    rows = widths(one_instant(GENERAL, moving), TIMES, 80)
+    assert [row.t for row in rows] == [float(t) for t in TIMES]
+    assert all(0 < row.error <= row.width <= 1e-15 for row in rows)
+
+
+def test_a_width_that_is_too_small_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without its radii an enclosure is narrower than the error that the truth shows."""
+    moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
+    sound = Course.rows
+
+    def narrowed(*arguments: object) -> object:
+        for time, row in sound(*arguments):  # type: ignore[arg-type]
+            yield time, replace(row, state=[z.mid() for z in row.state])
+
+    monkeypatch.setattr(Course, "rows", narrowed)
+    rows = widths(one_instant(GENERAL, moving), TIMES, 80)
+    assert any(row.error > row.width for row in rows)
+
+
+def test_what_is_drawn_is_what_is_stored(tmp_path: Path) -> None:
+    """Each panel has the width and the error of one motion, and two runs give one file."""
+    write(tmp_path, MADE)
+    stored = load_study(tmp_path)
+    assert stored == MADE
+    motions = pictures.series(stored)
+    assert list(motions) == ["a", "b"]
+    with plotting():
+        figure = pictures.picture(stored).figure()
+        for axes, lines in zip(figure.axes, motions.values(), strict=True):
+            drawn = {line.get_gid(): line.get_xydata() for line in axes.get_lines()}
+            assert {name: list(map(tuple, points)) for name, points in drawn.items()} == lines
+    once, again = (save([pictures.picture(stored)], tmp_path / part) for part in ("a", "b"))
+    assert [file.read_bytes() for file in once] == [file.read_bytes() for file in again]
+
+
+def test_a_document_without_rows_is_refused() -> None:
+    """A picture of nothing is no picture."""
+    with pytest.raises(ValueError, match="expected widths and errors above zero"):
+        pictures.picture(EnclosureStudy(140, ()))

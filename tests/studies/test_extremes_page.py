@@ -1,0 +1,225 @@
+"""The page of the extremes: what came, what was expected, and every mismatch in sight."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from test_publish import NAN, VERSIONS, passed
+
+from taylor_verify.cli import main
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.records import store
+from taylor_verify.records.answers import LeftOut
+from taylor_verify.records.provenance import Machine
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.extremes import page as extremes
+from taylor_verify.studies.extremes.document import Expected, ExtremesStudy, ExtremeVerdict, Titled
+from taylor_verify.studies.report import publish, write
+
+WHY = "one roundoff grows to the size of the motion"
+VACUOUS = passed("extremes/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0)
+SOUND = passed("extremes/near", "f64", "omega")
+DRIFT = passed("extremes/near", "f64", "T", ratio=0.75)
+LOST = passed("extremes/vast", "f64", "impulse", verdict=Status.FAIL, **dict.fromkeys(NAN))
+ALL = (VACUOUS, SOUND, DRIFT, LOST)
+FORESEEN = {
+    ("extremes/long", "f64", "omega"): Expected(Status.VACUOUS, WHY),
+    ("extremes/near", "f64", "omega"): Expected(Status.PASS, ""),
+    ("extremes/near", "f64", "T"): Expected(Status.PASS, ""),
+    ("extremes/vast", "f64", "impulse"): Expected(Status.REFUSED, "out of range"),
+}
+MISMATCH = "expected refused (out of range), got fail @ extremes/vast f64 impulse"
+
+
+KNOWN = {name: version for name, version in VERSIONS.items() if name != "python"}
+MACHINE = Machine(python="3.12.1", processor="A chip", command="taylor-verify run")
+
+
+def study(
+    verdicts: tuple[Verdict, ...] = ALL, mismatches: tuple[str, ...] = (MISMATCH,)
+) -> ExtremesStudy:
+    scenes = dict.fromkeys(verdict.scene for verdict in verdicts)
+    return ExtremesStudy(
+        versions=KNOWN,
+        machine=MACHINE,
+        scenes=tuple(Titled(scene, f"Title of {scene}") for scene in scenes),
+        left_out=(LeftOut("extremes/endless", "mp237", "it takes a week"),),
+        mismatches=mismatches,
+        verdicts=tuple(
+            ExtremeVerdict.of(v, FORESEEN.get((v.scene, v.rung, v.quantity))) for v in verdicts
+        ),
+    )
+
+
+def lines(text: str, *words: str) -> list[str]:
+    return [
+        line for line in text.splitlines() if line.startswith("|") and all(w in line for w in words)
+    ]
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> str:
+    extremes.write(tmp_path, study())
+    return (tmp_path / extremes.PAGE).read_text(encoding="utf-8")
+
+
+def test_what_is_stored_reads_back(tmp_path: Path) -> None:
+    """Verdicts without their seconds, expectations, titles and what made them are the same again."""
+    extremes.write(tmp_path, study())
+    found = extremes.load(tmp_path)
+    stored = [
+        replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
+        for v in study().verdicts
+    ]
+    assert found == replace(study(), verdicts=tuple(stored))
+    assert [found.expected(verdict) for verdict in ALL] == list(FORESEEN.values())
+    assert [found.is_met(verdict) for verdict in ALL] == [True, True, True, False]
+    assert found.titles["extremes/long"] == "Title of extremes/long"
+
+
+def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
+    """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
+    absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
+    extremes.write(tmp_path, study((absent,), ()))
+    (row,) = store.read_document(tmp_path / extremes.EXTREMES)["verdicts"]
+    assert row["expected"] is None
+    found = extremes.load(tmp_path)
+    assert found.expected(absent) is None
+    assert found.is_met(absent)
+
+
+def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
+    """A row with its reason in a sentence alone tells it on the page, and is written anew with it."""
+    odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
+    extremes.write(tmp_path, study((odd,), ()))
+    file = tmp_path / extremes.EXTREMES
+    document = store.read_document(file)
+    (row,) = document["verdicts"]
+    row["because"] = "the truth is wider than the bound"
+    del row["reason"]
+    file.write_text(json.dumps(document), encoding="utf-8")
+    assert "the truth is wider than the bound" in extremes.pages(tmp_path)[extremes.PAGE]
+    extremes.write(tmp_path, extremes.load(tmp_path))
+    (again,) = store.read_document(file)["verdicts"]
+    assert again["reason"]["remarks"][0]["text"] == row["because"] == again["because"]
+
+
+def test_a_scene_is_a_line_with_its_worst(page: str) -> None:
+    """Title, max and mean with the time, the largest ratio of all quantities, how many were foreseen."""
+    (line,) = lines(page, "`near`")
+    for part in ("Title of extremes/near", "3.00, 2.00 @ 7", "0.750 (`T`)", "| pass", "2 of 2"):
+        assert part in line
+
+
+def test_an_answer_that_is_no_pass_has_its_reason(page: str) -> None:
+    """The verdict stands out in its cell, and below with what was expected and why."""
+    row, reason = lines(page, "`long`")
+    assert "3.00, 2.00 @ 7 **vacuous**" in row
+    assert "1 of 1" in row
+    assert "| **vacuous** | vacuous" in reason
+    assert WHY in reason
+    assert "3.00" in reason
+
+
+def test_a_mismatch_stands_out(page: str) -> None:
+    """The failure is printed in the cell, its count is bold, and the sentence is in front."""
+    row, reason = lines(page, "`vast`")
+    assert "**fail**" in row
+    assert "**0 of 1**" in row
+    assert "**refused**" in reason
+    assert "1 of 2 answers other than pass came as expected. **1 mismatches**:" in page
+    assert MISMATCH in page
+
+
+def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
+    """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
+    lucky = replace(VACUOUS, verdict=Status.PASS)
+    extremes.write(tmp_path, study((lucky,), ("a mismatch",)))
+    (_, reason) = lines((tmp_path / extremes.PAGE).read_text(encoding="utf-8"), "`long`")
+    assert "| pass" in reason
+    assert "**vacuous**" in reason
+
+
+def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
+    """A run that is left out has its reason; versions, processor and command end the page."""
+    assert "`extremes/endless`, mp237: it takes a week" in page
+    end = page.rpartition("## ")[2]
+    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "--extremes"):
+        assert part in end
+    assert page.splitlines()[0] == MADE_BY
+
+
+def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
+    """A row for each verdict with every digit, what was expected and whether it came."""
+    extremes.write(tmp_path, study())
+    text = (tmp_path / extremes.SHEET).read_text(encoding="utf-8")
+    found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
+    assert set(found) == {(v.scene, v.quantity) for v in ALL}
+    assert float(found["extremes/near", "T"]["max"]) == DRIFT.max
+    told = found["extremes/vast", "impulse"]
+    assert (told["max"], told["expected"], told["as_expected"]) == ("fail", "refused", "no")
+    assert found["extremes/long", "omega"]["why_expected"] == WHY
+
+
+def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
+    """With the tables of a run beside it, and linked from both pages; without data there is none."""
+    write(tmp_path, [passed("euler/a", "f64", "omega")], [])
+    publish(tmp_path)
+    assert not (tmp_path / extremes.PAGE).exists()
+    paths = extremes.write(tmp_path, study())
+    before = {path: path.read_bytes() for path in paths}
+    for path in paths[1:]:
+        path.unlink()
+    publish(tmp_path)
+    assert {path: path.read_bytes() for path in paths} == before
+    assert "](tables/extremes.md)" in (tmp_path / "README.md").read_text(encoding="utf-8")
+    index = (tmp_path / "tables" / "README.md").read_text(encoding="utf-8")
+    assert "[extremes.md](extremes.md)" in index
+    assert "[csv](extremes.csv)" in index
+
+
+def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
+    """A file with something else in it is a ValueError that names the file."""
+    file = tmp_path / extremes.EXTREMES
+    file.parent.mkdir()
+    file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
+    fault = r"expected a key solver, got none @ verdicts\[0\] @ .*extremes\.json"
+    with pytest.raises(ValueError, match=fault):
+        extremes.pages(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "status"), [(Status.PASS, 0), (Status.VACUOUS, 1), (Status.FAIL, 1)]
+)
+def test_the_command_fails_at_a_mismatch(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    verdict: Status,
+    status: int,
+) -> None:
+    """All extremes of float64 are asked for; what was not foreseen is written too, and is status 1."""
+    scene = "extremes/euler-needle"
+    asked: list[str] = []
+
+    def answered(jobs: list[Any], *_: Any) -> list[Any]:
+        asked.extend(job.name for job in jobs)
+        found = passed(scene, "f64", "omega", verdict=verdict)
+        return [SimpleNamespace(verdicts=(found,))]
+
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", answered)
+    call = ["publish", "--extremes", "--from", str(tmp_path), "--json"]
+    assert main(call) == status
+    captured = capsys.readouterr()
+    assert len(json.loads(captured.out)["written"]) == 3
+    assert {scene, "extremes/worst/euler-gaps"} < set(asked)
+    stored = store.read_document(tmp_path / extremes.EXTREMES)
+    assert len(stored["mismatches"]) == status
+    assert (f"got {verdict.value} @ {scene} f64 omega" in captured.err) == bool(status)

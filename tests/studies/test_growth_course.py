@@ -1,0 +1,251 @@
+"""An ensemble followed far: left and taken up, its errors told with their sign, judged, published."""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.taylor.ensemble import Lane
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.studies.growth import checkpoint, course
+from taylor_verify.studies.growth.checkpoint import OfAnotherError, Progress
+from taylor_verify.studies.growth.errors import PHASE, lane_errors, told
+from taylor_verify.studies.growth.experiment import experiment
+from taylor_verify.studies.growth.question import Question
+
+SHORT = 10**3.5
+
+
+def question(name: str = "euler/about-max-axis", on: str = "f64", **changed: Any) -> Question:
+    return Question(load(name), rung(on), **{"periods": SHORT, "lanes": 4, **changed})
+
+
+def several_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("taylor_verify.studies.growth.question.PIECE_PERIODS", 400)
+
+
+# The question
+
+
+def test_instants_are_half_decades_of_periods() -> None:
+    """From 100 periods on every instant is later by the root of ten, and is a number of the rung."""
+    asked = question(periods=1e5)
+    assert asked.counts == pytest.approx([10 ** (k / 2) for k in range(4, 11)], rel=1e-12)
+    for problem in asked.problems:
+        ratio = np.array([float(t) for t in problem.given.clock.elapsed]) / asked.period
+        assert ratio == pytest.approx(asked.counts, rel=2**-50)
+        assert all(problem.rung.holds(t) for t in problem.times)
+
+
+def test_pieces_lead_to_every_instant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces go forward, none is longer than is stated, and the instants are among them in order."""
+    several_pieces(monkeypatch)
+    asked = question(on="f32")
+    at = [stops for stops, is_instant in asked.pieces if is_instant]
+    assert at == list(zip(*(problem.times for problem in asked.problems), strict=True))
+    for i, problem in enumerate(asked.problems):
+        times = [Fraction(0), *(stops[i] for stops, _ in asked.pieces)]
+        lengths = np.diff([float(t * problem.units.time) for t in times])
+        assert np.all(lengths > 0)
+        assert np.all(lengths <= 400 * asked.period * (1 + 2**-20))
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"periods": 1000}, "expected at least 3162 periods, got 1000"),
+        ({"periods": float("nan")}, "expected at least 3162 periods, got nan"),
+        ({"periods": 1e12}, r"expected at most 1e\+09 periods, got 1e\+12"),
+        ({"lanes": 1}, "expected at least 2 lanes, got 1"),
+        ({"name": "euler/constant-moment"}, "expected a free body.*@ euler/constant-moment"),
+        ({"name": "kirchhoff/constant-loads"}, "expected a free body.*@ kirchhoff/constant-loads"),
+        ({"solver": "taylor?tol=0"}, "tol"),
+        ({"solver": "scipy:RK45"}, "expected a method .taylor., got 'RK45'"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], said: str) -> None:
+    """Too few periods for the gate, too many, too few lanes, and a solver that is none of ours."""
+    with pytest.raises(ValueError, match=said):
+        question(**changed)
+
+
+# Checkpoints
+
+
+class LeftError(Exception):
+    """Somebody stopped the run."""
+
+
+@pytest.mark.parametrize("on", ["f64", "f80"])
+def test_a_run_that_is_taken_up_again_is_the_same(
+    on: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Stopped after every single piece and resumed from its file, it ends the same to the last bit."""
+    several_pieces(monkeypatch)
+    asked, file = question(on=on, lanes=3), tmp_path / "folder" / "run.json"
+    whole = course.course(asked)
+
+    def leave(done: int, of: int) -> None:
+        if done < of:
+            raise LeftError
+
+    for _ in range(len(asked.pieces) - 1):
+        with pytest.raises(LeftError):
+            course.course(asked, file, leave)
+    resumed = course.course(asked, file, leave)
+    assert resumed.samples == whole.samples
+    assert resumed.lanes == whole.lanes
+    # What is done is not done again.
+    assert course.course(asked, file, leave).samples == whole.samples
+
+
+def test_a_checkpoint_holds_everything(tmp_path: Path) -> None:
+    """Lanes that live, are lost, or stand at awkward numbers are read as they were written."""
+    third = rung("f64").round(Fraction(1, 3))
+    lanes = (
+        Lane(Fraction(7), (third, Fraction(0), -third), 0.1, 12),
+        Lane(Fraction(1, 2**40), (Fraction(2) ** 300,), 1e300, 3, Outcome.NON_FINITE),
+    )
+    samples = (((lanes[0].state, 5), None), ((lanes[0].state, 9), None))
+    progress = Progress(4, lanes, samples)
+    file = tmp_path / "run.json"
+    checkpoint.write(file, {"scene": "a"}, {"heyoka": "1"}, progress)
+    assert checkpoint.read(file, {"scene": "a"}, {"heyoka": "1"}) == progress
+    assert checkpoint.read(tmp_path / "none.json", {}, {}) is None
+
+
+@pytest.mark.parametrize(
+    ("changed", "made_with", "said"),
+    [
+        ({"seed": 2}, {}, "expected a checkpoint with seed 2, got 1; remove"),
+        ({"lanes": 5}, {}, "expected a checkpoint with lanes 5, got 4"),
+        ({"solver": "taylor?tol=1e-12"}, {}, "with solver taylor.tol=1e-12, got taylor;"),
+        ({"name": "euler/generic"}, {}, "with scene euler/generic, got euler/about-max-axis"),
+        ({}, {"heyoka": "0.0"}, r"with heyoka 0\.0, got"),
+    ],
+)
+def test_a_checkpoint_of_something_else_is_refused(
+    changed: dict[str, Any], made_with: dict[str, str], said: str, tmp_path: Path
+) -> None:
+    """Another start, ensemble, setting, scene or version is named, and nothing is computed."""
+    file, asked = tmp_path / "run.json", question()
+    progress = Progress(0, (Lane(Fraction(0), (Fraction(1),)),) * 4)
+    checkpoint.write(file, asked.document(), course.numerical_versions(), progress)
+    other, versions = question(**changed).document(), course.numerical_versions() | made_with
+    with pytest.raises(OfAnotherError, match=said):
+        checkpoint.read(file, other, versions)
+
+
+def test_one_changed_digit_is_found(tmp_path: Path) -> None:
+    """A file that was edited, cut off or is something else is no checkpoint."""
+    file = tmp_path / "run.json"
+    checkpoint.write(file, {}, {}, Progress(1, (Lane(Fraction(3), (Fraction(5),)),)))
+    text = file.read_text(encoding="utf-8")
+    for broken in (text.replace("0x5p", "0x7p"), text[: len(text) // 2], "[]", "{}"):
+        assert broken != text
+        file.write_text(broken, encoding="utf-8")
+        with pytest.raises(ValueError, match="expected a checkpoint of `publish --growth`"):
+            checkpoint.read(file, {}, {})
+
+
+def test_a_checkpoint_that_cannot_be_finished_leaves_the_last(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What goes wrong in writing leaves the earlier file whole."""
+    file, early = tmp_path / "run.json", Progress(1, (Lane(Fraction(3), (Fraction(5),)),))
+    checkpoint.write(file, {}, {}, early)
+
+    def full(_descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space"):
+        checkpoint.write(file, {}, {}, Progress(2, early.lanes))
+    monkeypatch.undo()
+    assert checkpoint.read(file, {}, {}) == early
+
+
+# Errors
+
+
+def by_name(problem: Problem, states: list[Any], period: float) -> dict[str, np.ndarray]:
+    return {one.quantity: one.values for one in lane_errors(problem, states, period)}
+
+
+@pytest.mark.parametrize("late", [1e-9, -1e-9, 1e-3, -0.2])
+def test_the_phase_is_the_shift_of_time(late: float) -> None:
+    """States of the exact motion at t - c have the phase 2 pi c over the period, with its sign."""
+    asked = question("euler/generic", on="f80", lanes=2)
+    problem = asked.problems[1]
+    shift = Fraction(late)
+    elapsed = [t - shift for t in problem.given.clock.elapsed]
+    with mp.workdps(40):
+        omega = solution(problem.given).motion(elapsed, 30)["omega"]
+        inertia = [mp.convert(problem.given.body.inertia[i][i]) for i in range(3)]  # type: ignore[union-attr]
+        states = [
+            tuple(
+                problem.rung.round(exact_value(inertia[i] * row[i]) / problem.units.momentum)
+                for i in range(3)
+            )
+            for row in omega
+        ]
+    found = by_name(problem, states, asked.period)[PHASE]
+    # The states are rounded: u over the slowest rate, of which this orbit has a tenth per unit of time.
+    rounding = 2 * pi / asked.period * 10 * float(problem.rung.unit_roundoff) * 10
+    assert found == pytest.approx(2 * pi * late / asked.period, rel=2e-6, abs=rounding)
+
+
+def test_drifts_have_their_sign() -> None:
+    """A momentum that is larger by 2^-20 has T and H2 larger by 2^-19 + 2^-40; one smaller, smaller."""
+    problem = question("euler/generic", lanes=2).problems[0]
+    for factor in (1 + Fraction(1, 2**20), 1 - Fraction(1, 2**20)):
+        state = tuple(factor * value for value in problem.initial_momenta)
+        found = by_name(problem, [state], 1.0)
+        for name in ("T", "H2"):
+            # Drifts are relative to the larger of both values, as a gate has them.
+            expected = float((factor**2 - 1) / max(factor**2, 1))
+            assert found[name] == pytest.approx([expected], rel=1e-12)
+
+
+def test_what_a_lane_did_not_reach_is_no_number() -> None:
+    """A lane that is lost after its first instant has errors there and none later."""
+    asked = question(lanes=2)
+    (first,) = asked.problems[:1]
+    followed = course.course(asked)
+    states = [followed.samples[0][0][0], None, None, None]  # type: ignore[index]
+    for name, values in by_name(first, states, asked.period).items():
+        assert np.isfinite(values).tolist() == [True, False, False, False], name
+
+
+def test_without_a_closed_form_the_drifts_are_told() -> None:
+    """Of a body that has no closed form there is no phase; its conserved quantities are all there."""
+    found = experiment(question("kirchhoff/general-body", lanes=2))
+    assert {one.quantity for one in found.found} == {"T", "F2", "FG"}
+    assert all(one.growth.gate is not None for one in found.found)
+
+
+def test_a_phase_that_may_be_off_by_a_period_is_not_told() -> None:
+    """Beyond a quarter of a period, or where t^2 could have led there unseen, nothing is sure."""
+    times = [Fraction(10) ** k for k in range(4)]
+    sure = told(times, np.array([1e-6, -1e-4, 1e-3, 0.1]), 1.0)
+    assert sure.tolist() == [1e-6, -1e-4, 1e-3, 0.1]
+    # 0.01 could have become 1, which looks like 0.001 if 1 is a period.
+    lost = told(times, np.array([1e-6, 1e-2, 1e-3, 1e-3]), 1.0)
+    assert np.isnan(lost).tolist() == [False, False, True, True]
+    assert np.isnan(told(times, np.array([1e-6, 0.3, 0, 0]), 1.0)).tolist() == [
+        False,
+        True,
+        True,
+        True,
+    ]

@@ -1,0 +1,192 @@
+"""The hunt for the worst: what it finds passes, stays found, and is told as it was found."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings, target
+from hypothesis import strategies as st
+
+from taylor_verify.cli import main
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes import library
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies.worst import measure as hunt
+from taylor_verify.studies.worst import page as worst
+from taylor_verify.studies.worst.measure import FAMILIES, Catch, Family, Found
+
+KEPT = library.names(library.WORST)
+EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
+
+
+def verdict(ratio: float | None, status: Status = Status.PASS) -> Verdict:
+    return Verdict("here", "taylor", "f64", "", "omega", status, "reached", ratio=ratio)
+
+
+# The families.
+
+
+@EACH_FAMILY
+@given(st.data())
+@settings(max_examples=20)
+def test_every_place_of_a_cube_is_a_scene(family: Family, data: st.DataObject) -> None:
+    """In the cube and on its edges the text is read, as the model that the family's name begins with."""
+    place = data.draw(st.lists(st.floats(0, 1), min_size=family.free, max_size=family.free))
+    try:
+        scene = family.scene(place)
+    except Refused as refused:
+        # Where nothing moves there is no motion of another size; a scene that is refused counts for none.
+        raise AssertionError(str(refused)) from refused
+    assert scene.model == family.name.split("-")[0]
+    # Written again it is the same one: the numbers in the file are all there is.
+    assert replace(family.scene(place), name=scene.name) == scene
+
+
+@pytest.mark.slow
+@EACH_FAMILY
+@given(st.data())
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
+def test_searched_for_the_worst_the_sound_driver_passes(
+    family: Family, data: st.DataObject
+) -> None:
+    """Led by error over attainable, a search finds no scene at which a gate fails."""
+    place = data.draw(st.lists(st.floats(0, 1), min_size=family.free, max_size=family.free))
+    catch = hunt.caught(family, place)
+    if catch is not None:
+        target(catch.ratio)
+        assert catch.verdict.verdict is Status.PASS
+
+
+# The search.
+
+
+def _peak(family: Family, place: Sequence[float]) -> Catch:
+    """A smooth hill with its top, 5, at 0.7 everywhere."""
+    distance = sum((value - 0.7) ** 2 for value in place) ** 0.5
+    return Catch(tuple(place), verdict(5 - distance))
+
+
+def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the best of a cloud it comes to the top of a hill, in five dimensions too."""
+    monkeypatch.setattr(hunt, "caught", _peak)
+    family = Family("euler-hill", "hills", 5, lambda place: "")
+    (found,) = hunt.hunt([family], 0.5, 1, lambda name: None)
+    assert found.judged > 50
+    # The cloud alone, of a thousand places in five dimensions, comes no nearer than some 0.1.
+    assert found.worst.ratio >= 5 - 0.1
+
+
+def test_same_seed_draws_the_same_places(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The places of the cloud follow from seed and family; another seed has others."""
+    seen: list[tuple[float, ...]] = []
+
+    def noted(family: Family, place: Sequence[float]) -> Catch:
+        seen.append(tuple(place))
+        return _peak(family, place)
+
+    monkeypatch.setattr(hunt, "caught", noted)
+    first = []
+    for seed in (1, 1, 2):
+        seen.clear()
+        hunt.hunt([Family("euler-hill", "hills", 2, lambda place: "")], 0.05, seed, str)
+        first.append(seen[:3])
+    assert first[0] == first[1] != first[2]
+
+
+@example(None)
+@given(st.sampled_from([float("nan"), float("inf"), None]))
+def test_a_gate_without_a_number_is_the_worst_of_all(ratio: float | None) -> None:
+    """A NaN cannot hide from the search: it counts as infinitely bad."""
+    assert Catch((), verdict(ratio, Status.FAIL)).ratio == float("inf")
+
+
+def test_vacuous_gates_do_not_count() -> None:
+    """What asks nothing of a solver cannot be the worst, whatever its ratio."""
+    assert not hunt._counts(verdict(1e9, Status.VACUOUS))
+    assert hunt._counts(verdict(1e9, Status.FAIL))
+
+
+# What was found.
+
+
+def test_every_family_has_its_worst() -> None:
+    """The folder holds one scene for each family and nothing else."""
+    assert sorted(KEPT) == sorted(f"extremes/worst/{family.name}" for family in FAMILIES)
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_the_worst_that_was_found_still_passes(name: str) -> None:
+    """As a regression: every gate passes or asks nothing, and the file says why it is there."""
+    text = library.find(name).read_text(encoding="utf-8")
+    assert text.startswith("# Why: of ")
+    assert load(name).name == name
+    verdicts = run(name, "taylor", "f64").verdicts
+    assert {v.verdict for v in verdicts} <= {Status.PASS, Status.VACUOUS}
+    assert any(v.ratio is not None and 0 < v.ratio <= GATE_FACTOR for v in verdicts)
+
+
+def test_the_worst_runs_with_the_extremes() -> None:
+    """`run extremes` has the scenes of the hunt among its own."""
+    assert set(KEPT) <= set(library.named(library.EXTREMES))
+    assert library.named(library.WORST) == KEPT
+
+
+def found_of(name: str, ratio: float) -> Found:
+    family = Family(name, "things", 1, lambda place: f'title = "{place[0]}"\n')
+    return Found(family, 7, Catch((0.25,), verdict(ratio)))
+
+
+def test_scene_file_says_why_it_is_there() -> None:
+    """The text of the worst begins with its reason, and is the family's text besides."""
+    text = found_of("euler-thing", 3.25).scene_text
+    assert text.startswith("# Why: of things")
+    assert "3.25 in omega" in text
+    assert text.endswith('title = "0.25"\n')
+
+
+def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
+    """The worst family stands first; a ratio changed in worst.json is changed on the page."""
+    rows = hunt.study([found_of("euler-a", 1.5), found_of("euler-b", 2.5)], 60.0, 3)
+    worst.write(tmp_path, rows)
+    page = worst.pages(tmp_path)[worst.PAGE]
+    assert page.index("euler-b") < page.index("euler-a")
+    assert "--seconds 60 --seed 3" in page
+    file = tmp_path / worst.WORST
+    stored = json.loads(file.read_text(encoding="utf-8"))
+    stored["families"][0]["ratio"] = 7.75
+    file.write_text(json.dumps(stored), encoding="utf-8")
+    changed = worst.pages(tmp_path)[worst.PAGE]
+    assert changed.index("euler-a") < changed.index("euler-b")
+    assert "7.75" in changed or "7.8" in changed
+
+
+def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
+    """A file without families is a fault that names the file."""
+    file = tmp_path / worst.WORST
+    file.parent.mkdir()
+    file.write_text("{}", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"worst\.json"):
+        worst.pages(tmp_path)
+
+
+def test_old_scenes_make_room(tmp_path: Path) -> None:
+    """What a hunt found earlier goes when a new one has ended."""
+    worst.keep(tmp_path, {"one": "1\n", "two": "2\n"})
+    worst.keep(tmp_path, {"two": "3\n"})
+    assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {
+        "two.toml": "3\n"
+    }
+
+
+def test_no_time_is_no_hunt(capsys: pytest.CaptureFixture[str]) -> None:
+    """`publish --worst --seconds 0` is a wrong call and changes nothing."""
+    assert main(["publish", "--worst", "--seconds", "0"]) == 2
+    assert "expected a time in seconds above 0, got 0 @ --seconds" in capsys.readouterr().err

@@ -1,0 +1,162 @@
+"""The sheets of what was measured have every row of the data, and every digit."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import made
+import pytest
+from test_prices import short
+from test_traps import as_measured
+
+from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.studies import contents, measured
+from taylor_verify.studies.accuracy import page as tables
+from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.prices import page as prices
+from taylor_verify.studies.reach import page as reach
+from taylor_verify.studies.traps import page as traps
+from taylor_verify.studies.traps import table
+from taylor_verify.studies.traps.table import TRAPS
+from taylor_verify.studies.worst import page as worst
+
+
+@cache
+def measured_report() -> Path:
+    """A report with a document of every measurement, all of them short."""
+    place = made.folder()
+    shutil.copytree(made.small(), place, dirs_exist_ok=True)
+    prices.write(place, short())
+    some = [trap for trap in TRAPS if trap.key in _TRAPS]
+    traps.publish(place, table.study([replace(t, cases=as_measured(t.key)) for t in some]))
+    return place
+
+
+# With more than one case, and with gates on each.
+_TRAPS = ("T1", "T3")
+
+
+def read(text: str) -> list[dict[str, str]]:
+    """The rows, each with as many cells as there are headings, of which no two are alike."""
+    lines = list(csv.reader(text.splitlines()))
+    assert len(set(lines[0])) == len(lines[0])
+    assert {len(line) for line in lines} == {len(lines[0])}
+    return list(csv.DictReader(text.splitlines()))
+
+
+def number(cell: str) -> float | None:
+    return float(cell) if cell else None
+
+
+def test_growth_has_a_row_for_every_exponent() -> None:
+    """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
+    runs = growth.load(measured_report()).runs
+    found = read(measured.growth(runs))
+    asked = [(run, row) for run in runs for row in run.quantities]
+    assert len(found) == len(asked)
+    for cells, (run, row) in zip(found, asked, strict=True):
+        assert (cells["scene"], cells["rung"], cells["quantity"]) == (
+            *(run.scene, run.rung, row.quantity),
+        )
+        kept = [number(cells[name]) for name in ("exponent", "low", "high", "rms_last")]
+        assert kept == [row.exponent, row.low, row.high, row.rms[-1]]
+        assert tuple(number(cells[f"late{end}"]) for end in ("", "_low", "_high")) == row.late
+        assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
+
+
+def test_reach_has_a_row_for_every_number_of_periods() -> None:
+    """An error that is missing says `lost`; a run that was not made has one row with its reason."""
+    rows = reach.load(measured_report()).rows
+    found = read(measured.reach(rows))
+    assert len(found) == sum(len(row.periods) if row.errors else 1 for row in rows)
+    made = [cells for cells in found if cells["periods"]]
+    assert {cells["lost"] for cells in made} == {"yes", "no"}
+    assert all((cells["error"] == "") == (cells["lost"] == "yes") for cells in made)
+    assert all(cells["why"] for cells in found if not cells["periods"])
+    first = rows[0]
+    kept = [number(cells["error"]) for cells in found[: len(first.periods)]]
+    assert tuple(kept) == first.errors
+
+
+def test_prices_have_a_row_for_every_variant_and_rung() -> None:
+    """With both intervals; the price at equal error stands in the rows of f64 alone."""
+    study = prices.load(measured_report())
+    found = read(measured.prices(study))
+    assert len(found) == len(study.rows)
+    for cells, row in zip(found, study.rows, strict=True):
+        ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
+        assert ends == row.step_ratio
+    equal = {one.variant: one.ratio for one in study.equal}
+    told = {c["variant"]: number(c["ratio_at_equal_error"]) for c in found if c["rung"] == "f64"}
+    assert {name: told[name] for name in equal} == equal
+    assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}
+
+
+def test_traps_have_a_row_for_every_case() -> None:
+    """What heyoka reported, how wrong it was, and each gate's verdict."""
+    rows = traps.load(measured_report()).traps
+    found = read(measured.traps(rows))
+    cases = [(row, case) for row in rows for case in row.cases]
+    assert len(found) == len(cases)
+    for cells, (row, case) in zip(found, cases, strict=True):
+        assert (cells["trap"], cells["reports"]) == (row.key, " ".join(case.said.split()))
+        assert number(cells["error"]) == case.error
+        for name, gate in case.gates.items():
+            assert cells[f"{name}_verdict"] == gate.verdict
+            assert number(cells[f"{name}_over_bound"]) == gate.over_bound
+
+
+def test_worst_has_a_row_for_every_family() -> None:
+    """With its scene and its ratio."""
+    study = worst.load(measured_report())
+    found = read(measured.worst(study))
+    assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
+        (row.name, row.ratio, row.scene) for row in study.families
+    ]
+
+
+def test_claims_have_a_row_for_every_entry() -> None:
+    """Statement, verdict and both residuals; text over several lines is on one."""
+    row = ClaimRow(
+        id="hydromechanics 49 (17)",
+        statement="a,\n b",
+        domain="all",
+        verdict=Verdict.FALSE,
+        recorded=Verdict.FALSE,
+        method="expansion",
+        mutations=("one", "two"),
+        residual=ClaimResiduals(0.0, 4.3),
+        bound=1e-35,
+        because="it is",
+    )
+    (found,) = read(measured.claims(ClaimsStudy(Provenance(), {}, (row,))))
+    assert (found["id"], found["statement"]) == (row.id, "a, b")
+    assert (found["verdict"], found["remark"]) == ("false as transcribed", "")
+    assert (found["residual"], found["residual_transcribed"]) == ("0.0", "4.3")
+    assert found["mutations"] == "one; two"
+
+
+@pytest.mark.parametrize("module", [growth, prices, reach, traps, worst])
+def test_what_is_remade_is_page_and_sheet(module: Any) -> None:
+    """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
+    found = module.pages(measured_report())
+    assert set(found) == {module.PAGE, module.SHEET}
+    end = "".join(found[module.PAGE].split("\n## ")[-2:])
+    assert "heyoka 7." in end or "Made with unknown versions" in end
+    assert "`taylor-verify publish" in end
+
+
+def test_the_index_links_to_the_sheets_that_are_there(tmp_path: Path) -> None:
+    """A page with a sheet has a link to it, one without has none."""
+    made = {"tables/growth.md", "tables/growth.csv", "claims.md", "tables/claims.csv"}
+    besides = contents.others(tmp_path, {*made, "tables/worst.md"})
+    text = tables.readme([], besides)
+    assert "| [growth.md](growth.md)       | [csv](growth.csv) |" in text
+    assert "| [../claims.md](../claims.md) | [csv](claims.csv) |" in text
+    assert "[csv](worst.csv)" not in text

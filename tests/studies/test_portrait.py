@@ -1,0 +1,326 @@
+"""The portraits of the scenes: what they hold is right, complete, and the same whenever it is made."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from latex2mathml.converter import convert
+from made import every_portrait
+
+from taylor_verify.cli import main
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.route import solution
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.measure import (
+    DIGITS,
+    FIGURES,
+    INTERVALS,
+    PERIODS,
+    TIMES,
+    equations,
+    portrait,
+    roots,
+)
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = names()
+# A full tensor, an axis of symmetry that is not the third, and time that runs backward.
+FRESH = ("euler/full-tensor", "kirchhoff/oblate-about-axis-1", "euler/backward")
+# Half a unit of the ninth digit, of a number below 10.
+HALF = 0.5 * 10.0 ** (1 - FIGURES)
+
+
+@cache
+def stored(scene: str) -> dict[str, Any]:
+    found = portraits.load(every_portrait(), scene)
+    assert found is not None
+    return found
+
+
+@cache
+def made(scene: str) -> dict[str, Any]:
+    """A portrait whose run is left out: the rest does not depend on it, and it is most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            "taylor_verify.studies.portraits.measure.explanation",
+            lambda scene, rung: {"cost": {"seconds": 1.0}},
+        )
+        return portrait(load(scene))
+
+
+def with_quartic() -> list[str]:
+    return [name for name in SCENES if stored(name)["potential"]]
+
+
+# What is there
+
+
+@pytest.mark.slow
+def test_every_scene_has_its_portrait() -> None:
+    """There is one for each scene of the standard set, made of the scene as it is now, and no other."""
+    files = {file.stem for file in (every_portrait() / portraits.FOLDER).glob("*.json")}
+    assert files == {of_scene(name) for name in names()}
+    assert {name: stored(name)["sha256"] for name in names()} == {
+        name: load(name).digest for name in names()
+    }
+
+
+def test_a_portrait_is_small() -> None:
+    """No file has more than 120 kB, and all together less than 7 MB: a page can load them."""
+    sizes = [file.stat().st_size for file in (every_portrait() / portraits.FOLDER).glob("*.json")]
+    assert max(sizes) <= 120_000
+    assert sum(sizes) <= 7_000_000
+
+
+@pytest.mark.parametrize("scene", FRESH)
+def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
+    """Without the run on f64, whose roundings are those of a machine, the stored one is made again."""
+    again = json.loads(json.dumps(made(scene)))
+    kept = dict(stored(scene))
+    assert kept.pop("made_by").endswith("do not edit")
+    assert again.pop("explain") == {"cost": {"seconds": None}}
+    assert kept.pop("explain")["rung"] == "f64"
+    assert again == kept
+
+
+def test_no_portrait_holds_a_time_of_the_clock() -> None:
+    """How long the run took is not in it: it would be another file each time."""
+    assert all(stored(name)["explain"]["cost"]["seconds"] is None for name in SCENES)
+
+
+def test_the_comment_and_the_text_are_those_of_the_file() -> None:
+    """`toml` is the scene file to the letter, and `why` all that it says about itself."""
+    for name in SCENES:
+        found = stored(name)
+        lines = [line for line in found["toml"].splitlines() if line.startswith("#")]
+        assert found["toml"] == (ROOT / "cases" / f"{name}.toml").read_text(encoding="utf-8")
+        assert [f"# {line}".rstrip() for line in found["why"]] == lines
+        assert found["why"]
+
+
+# The motion
+
+
+@pytest.mark.parametrize("scene", FRESH)
+def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
+    """Every number is within half a unit of its ninth digit of what the Taylor route finds."""
+    asked, course = load(scene), made(scene)["course"]
+    rows = range(0, INTERVALS + 1, 45)
+    elapsed = [Fraction(repr(course["t"][k])) - asked.clock.start for k in rows]
+    motion = solution(asked, "taylor").motion(elapsed, 15)
+    for name, values in motion.quantities.items():
+        for k, value in zip(rows, values, strict=True):
+            exact = [float(entry) for entry in value.flat]
+            assert max(map(abs, exact)) < 10
+            assert np.abs(np.array(course[name][k]) - exact).max() <= 1.01 * HALF
+
+
+def test_a_course_begins_at_the_start_and_covers_the_span_or_some_periods() -> None:
+    """From the start, forward or backward as asked, to the farthest instant or through three periods."""
+    for name in SCENES:
+        scene, found = load(name), stored(name)
+        times = found["course"]["t"]
+        period = next((e["value"] for e in found["analytic"] if e["name"] == "period"), None)
+        spans = [float(t - scene.clock.start) for t in scene.clock.instants]
+        span = max(spans, key=abs)
+        most = abs(span) if period is None else min(abs(span), PERIODS * float(period))
+        assert len(times) == INTERVALS + 1
+        assert times[0] == pytest.approx(float(scene.clock.start), rel=1e-8)
+        assert (times[-1] - times[0]) * np.sign(span) == pytest.approx(most, rel=1e-6)
+
+
+def test_the_course_has_what_the_scene_tracks() -> None:
+    """Each quantity has a row for each time, an attitude its nine numbers, which are a rotation."""
+    sizes = {"omega": 3, "linear_impulse": 3, "angular_impulse": 3, "attitude": 9, "centre": 3}
+    bare = {"euler": {"omega"}, "kirchhoff": {"linear_impulse", "angular_impulse"}}
+    for name in SCENES:
+        course, scene = dict(stored(name)["course"]), load(name)
+        del course["t"]
+        assert course.keys() == bare[scene.model] | scene.track
+        for quantity, rows in course.items():
+            assert {len(row) for row in rows} == {sizes[quantity]}
+            assert len(rows) == INTERVALS + 1
+        if "attitude" in course:
+            R = np.array(course["attitude"]).reshape(-1, 3, 3)
+            gram = np.einsum("nij,nik->njk", R, R)
+            assert np.abs(gram - np.eye(3)).max() <= 20 * HALF
+            assert (np.linalg.det(R) > 0).all()
+
+
+def test_the_values_are_those_of_the_other_route() -> None:
+    """Balls and mpmath print the same thirty digits, but for the last, at ten times over the span."""
+    scene = load(FRESH[0])
+    values = made(scene.name)["values"]
+    times = [(row["t"], Fraction(row["t"])) for row in values["rows"]]
+    assert len(times) == TIMES
+    assert times[-1][1] == scene.clock.instants[-1]
+    other = document(scene, solution(scene, "mpmath"), times, DIGITS)
+    assert other["route"] != values["route"]
+    for row, same in zip(values["rows"], other["rows"], strict=True):
+        gaps = [Fraction(a) - Fraction(b) for a, b in zip(row["omega"], same["omega"], strict=True)]
+        assert max(map(abs, gaps)) <= Fraction(1, 10 ** (DIGITS - 2))
+
+
+def test_the_numbers_of_the_orbit_are_those_of_explain() -> None:
+    """Thirty digits here, fifteen there, of the same elements in the same order."""
+    for name in SCENES:
+        found = stored(name)
+        ours = {row["name"]: float(row["value"]) for row in found["analytic"]}
+        theirs = {row["name"]: float(row["value"]) for row in found["explain"]["elements"]}
+        assert ours.keys() == theirs.keys()
+        assert ours == pytest.approx(theirs, rel=1e-14, abs=1e-14)
+
+
+# What is drawn besides
+
+
+def test_the_principal_frame_makes_the_tensor_again() -> None:
+    """The moments about the axes add up to the scene's tensor, and the axes are right-handed."""
+    for name in SCENES:
+        body, found = load(name).body, stored(name)["body"]
+        assert (found is None) == isinstance(body, ImmersedBody)
+        if isinstance(body, RigidBody):
+            axes, moments = np.array(found["axes"]), np.array(found["principal_moments"])
+            inertia = np.array([[float(entry) for entry in row] for row in body.inertia])
+            assert np.linalg.det(axes) == pytest.approx(1, abs=1e-8)
+            assert np.abs(axes.T @ np.diag(moments) @ axes - inertia).max() <= 1e-8 * moments.max()
+
+
+def test_the_axial_impulse_follows_the_quartic() -> None:
+    """X3(x3) = (x1 y2 - x2 y1)^2 all along the course: Hydromechanics 49 (9), with the axes renamed.
+
+    y is about the point of the axis where T is of Clebsch's form: a distance a from the origin takes
+    a (x1^2 + x2^2) from x1 y2 - x2 y1.
+    """
+    for name in with_quartic():
+        found = stored(name)
+        axis = int(found["potential"]["variable"][1:]) - 1
+        i, k = (axis + 1) % 3, (axis + 2) % 3
+        x, y = (np.array(found["course"][f"{what}_impulse"]).T for what in ("linear", "angular"))
+        coefficients = found["potential"]["coefficients"]
+        value = np.polyval(coefficients, x[axis])
+        largest = np.polyval(np.abs(coefficients), np.abs(x[axis]))
+        _, distance = centred(upright(load(name))[0])
+        moment = x[i] * y[k] - x[k] * y[i] - float(distance) * (x[i] ** 2 + x[k] ** 2)
+        gap = np.abs(value - moment**2)
+        assert (gap <= 1e-7 * largest.max()).all()
+    assert len(with_quartic()) >= 20
+
+
+def test_the_interval_is_where_the_axial_impulse_goes() -> None:
+    """It lies between roots of the quartic, X3 is above zero within, and the course stays there."""
+    for name in with_quartic():
+        found = stored(name)
+        own = found["potential"]
+        low, high = own["interval"]
+        course = np.array(found["course"]["linear_impulse"]).T[int(own["variable"][1:]) - 1]
+        size = max(abs(low), abs(high))
+        assert low - 1e-8 * size <= course.min()
+        assert course.max() <= high + 1e-8 * size
+        real = [re for re, im in own["roots"] if im == 0]
+        assert all(min(abs(end - root) for root in real) <= 1e-8 * size for end in (low, high))
+        inside = np.linspace(low, high, 33)[1:-1]
+        largest = np.polyval(np.abs(own["coefficients"]), np.abs(inside)).max()
+        assert (np.polyval(own["coefficients"], inside) >= -1e-8 * largest).all()
+
+
+def test_the_roots_make_the_polynomial_again() -> None:
+    """Multiplied out, with the repeated ones as often as they are given, they give its coefficients."""
+    for name in with_quartic():
+        own = stored(name)["potential"]
+        again = own["coefficients"][0] * np.poly([complex(*root) for root in own["roots"]])
+        size = np.abs(own["coefficients"]).max()
+        assert np.abs(again - own["coefficients"]).max() <= 1e-7 * size
+
+
+def test_a_repeated_root_is_told_from_two_near_ones() -> None:
+    """(z - 1)^2 (z^2 + 1) has 1 twice; moved apart by 1e-20 they are equal in nine digits only."""
+    assert roots([Fraction(c) for c in (1, -2, 2, -2, 1)]) == [
+        *([1.0, 0.0], [1.0, 0.0]),
+        *([0.0, -1.0], [0.0, 1.0]),
+    ]
+    split = Fraction(1, 10**20)
+    near = roots([Fraction(1), Fraction(-2), 1 - split**2])
+    assert near == [[1.0, 0.0], [1.0, 0.0]]
+    assert roots([Fraction(1), Fraction(-2), 1 + Fraction(1, 10**8)]) == [
+        *([1.0, -1e-4], [1.0, 1e-4]),
+    ]
+
+
+# The equations
+
+
+def test_the_equations_name_what_acts_and_what_is_tracked() -> None:
+    """A load stands in them if it acts, the attitude and the centre if they are tracked."""
+    for name in SCENES:
+        scene = load(name)
+        lines = "\n".join(equations(scene))
+        body = scene.body
+        if isinstance(body, RigidBody):
+            assert (r"\mathbf M" in lines) == (not body.is_free)
+        elif body.manufactured is None:
+            assert isinstance(scene.initial, Impulse)
+            assert (r"+ \mathbf X" in lines) == any(body.force)
+            assert (r"+ \mathbf L" in lines) == any(body.couple)
+        assert ("^*" in lines) == (body.manufactured is not None)
+        assert (r"\dot{\mathsf R}" in lines) == bool(scene.track)
+        assert (r"\dot{\mathbf c}" in lines) == ("centre" in scene.track)
+        assert equations(scene) == stored(name)["tex"]
+
+
+def test_the_equations_become_mathml() -> None:
+    """Every line is read by the site's converter, which leaves no command as it is written."""
+    lines = {line for name in SCENES for line in stored(name)["tex"]}
+    assert len(lines) >= 15
+    for line in lines:
+        assert line.count("{") == line.count("}")
+        text = re.sub(r"<[^>]*>", "", convert(line))
+        assert "\\" not in text
+
+
+# The files
+
+
+def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
+    """A second set takes the place of the first; a file that names no maker of ours stays."""
+    document = made(FRESH[0])
+    gone = {**document, "scene": "euler/gone"}
+    mine = tmp_path / portraits.FOLDER / "mine.json"
+    first = portraits.write(tmp_path, [document, gone])
+    mine.write_text("{}", encoding="utf-8")
+    contents = {file: file.read_bytes() for file in first}
+    second = portraits.write(tmp_path, [document])
+    assert {file.name for file in second[0].parent.iterdir()} == {second[0].name, "mine.json"}
+    assert contents[second[0]] == second[0].read_bytes()
+    assert portraits.load(tmp_path, "euler/gone") is None
+
+
+def test_the_command_writes_one_file_a_scene(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`publish --portraits` tells each scene as it ends; in the file is all that `explain` says."""
+    monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: ("euler/rest",))
+    assert main(["publish", "--portraits", "--from", str(tmp_path)]) == 0
+    out, err = capfd.readouterr()
+    assert "1/1 euler/rest" in err
+    assert out.split() == [str(tmp_path / portraits.FOLDER / "euler-rest.json")]
+    told = explanation("euler/rest", "f64")
+    told["cost"]["seconds"] = None
+    found = portraits.load(tmp_path, "euler/rest")
+    assert found is not None
+    assert found["explain"] == json.loads(json.dumps(told))

@@ -1,0 +1,136 @@
+"""The prices: one motion is compared, ratios are of one round, the page says what was stored."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+from taylor_verify.models.general import in_general_form
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import rung
+from taylor_verify.solvers.taylor.pace import Pace
+from taylor_verify.studies.prices import measure as prices
+from taylor_verify.studies.prices import page as page
+from taylor_verify.studies.prices.document import PricesStudy
+from taylor_verify.studies.prices.variants import Variant, variants
+
+F64 = rung("f64")
+NAMES = [variant.name for variant in variants()]
+
+
+def named(name: str) -> Variant:
+    return next(variant for variant in variants() if variant.name == name)
+
+
+def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
+    form = problem.form
+    parameters = [state.get(n, problem.parameter.get(n)) for n in form.parameters]
+    found = form.rates([state[n] for n in form.states], parameters)
+    return dict(zip(form.states, found, strict=True))
+
+
+def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
+    """The barest form of each model is its own unit, and every name is there once."""
+    assert len(set(NAMES)) == len(NAMES)
+    for place, variant in enumerate(variants()):
+        assert variant.against in NAMES[: place + 1]
+        assert named(variant.against).against == variant.against
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
+    """In rationals its rates are those of the general equations of its own body, at random points."""
+    problem, random = named(name).posed(F64), Random(1)
+    general = in_general_form(problem)
+    for _ in range(3):
+        state = {n: Fraction(random.randint(-99, 99), 8) for n in general.form.states}
+        held = {n: problem.parameter.get(n, Fraction(0)) for n in state}
+        state |= {n: held[n] for n in state if n not in problem.form.states}
+        chosen = rates_at(problem, state)
+        assert rates_at(general, state) == {n: chosen.get(n, 0) for n in state}
+
+
+@pytest.mark.parametrize("name", ["literals", "differences", "zeros"])
+def test_variants_of_one_scene_take_the_same_steps(name: str) -> None:
+    """The very motion is compared: one step more or less may come of rounding, no more."""
+    steps = [
+        Pace(named(n).posed(F64), Fraction(64), literals=named(n).literals) for n in ("omega", name)
+    ]
+    first, other = (pace.run() for pace in steps)
+    assert abs(first - other) <= 1
+    assert [pace.run() for pace in steps] == [first, other]
+
+
+@cache
+def short() -> PricesStudy:
+    """A short measurement of a few variants."""
+    patch = pytest.MonkeyPatch()
+    kept = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
+    patch.setattr(prices, "variants", lambda: kept)
+    patch.setattr(prices, "RUNGS", {"f64": 6})
+    patch.setattr(prices, "_LEAST_SECONDS", 1e-4)
+    told: list[str] = []
+    try:
+        found = prices.study(told.append)
+    finally:
+        patch.undo()
+    assert told == ["f64"]
+    return found
+
+
+@pytest.fixture(scope="module")
+def measured() -> PricesStudy:
+    return short()
+
+
+def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
+    """Its ratio to itself is 1 in every round, so that median and interval are exactly 1."""
+    for row in measured.rows:
+        if row.variant == row.against:
+            assert row.step_ratio == row.time_ratio == (1.0, 1.0, 1.0)
+
+
+def test_rows_count_what_is_built(measured: PricesStudy) -> None:
+    """States and operations are those of the form, and the error is one of the rung's roundings."""
+    for row in measured.rows:
+        form = named(row.variant).posed(F64).form
+        assert row.states == len(form.states)
+        assert {k: getattr(row, k) for k in ("sums", "products", "quotients")} == form.operations()
+        median, low, high = row.step_ratio
+        assert 0 < low <= median <= high
+        # Scores of periods, each some roundings long: a thousand units, and no coarser number.
+        assert row.error <= 1000 * 2.0**-53
+
+
+def test_equal_error_is_read_between_two_tolerances() -> None:
+    """On a straight line in logarithms; outside the row, or beside NaN, there is no figure."""
+    e = prices._EQUAL_ERROR
+    halfway = prices._between([100 * e, e / 100], [1.0, 4.0])
+    assert halfway is not None
+    assert math.isclose(halfway, 2.0, rel_tol=1e-12)
+    assert prices._between([100 * e, 10 * e], [1.0, 4.0]) is None
+    assert prices._between([math.nan, e / 100], [1.0, 4.0]) is None
+
+
+def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
+    """Every row is on it, it is the same when made again, and without a measurement there is none."""
+    assert page.pages(tmp_path) == {}
+    stored, *drawn, made, flat = page.write(tmp_path, measured)
+    assert {file.suffix for file in drawn} == {".svg", ".pdf"}
+    text = made.read_text(encoding="utf-8")
+    sheet = flat.read_text(encoding="utf-8")
+    assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
+    assert page.load(tmp_path) == measured
+    for row in measured.rows:
+        assert f"| {row.variant} " in text
+    assert "attitude and centre" in text
+    stored.write_text('{"rows": 3}', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
+        page.pages(tmp_path)

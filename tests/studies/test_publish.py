@@ -1,0 +1,605 @@
+"""A report holds what the verdicts say, can be remade from its data, and is never half written."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+import subprocess
+import sys
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import code, prose
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.records import store
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.status import GRAVITY, Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.accuracy import page as tables
+from taylor_verify.studies.report import load, publish, write
+
+VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
+PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
+UNIT = {"f32": 2.0**-24, "f64": 2.0**-53, "mp237": 2.0**-237}
+
+
+def passed(scene: str, rung: str, quantity: str, **changed: Any) -> Verdict:
+    """A verdict of 3 u at t = 7, a mean of 2 u, and 6 u attainable."""
+    u = UNIT[rung]
+    numbers: dict[str, Any] = {
+        "verdict": Status.PASS,
+        "outcome": "reached the last sample",
+        "max": 3 * u,
+        "mean": 2 * u,
+        "final": u,
+        "at": 7.0,
+        "unit": "max|omega|",
+        "bound": 60 * u,
+        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
+        "attainable": 6 * u,
+        "ratio": 0.5,
+        "ratio_at": 7.0,
+        "roundoff": u,
+        "steps": 41,
+        "evaluations": 410,
+        "seconds": 0.25,
+        "provenance": {**PROVENANCE, "scene": f"digest of {scene}"},
+    }
+    return Verdict(scene, "taylor", rung, "", quantity, **numbers | changed)
+
+
+def unscored(scene: str, rung: str, quantity: str, status: Status, outcome: str) -> Verdict:
+    because = f"the reason why {scene} has no number"
+    return Verdict(
+        *(scene, "taylor", rung, "", quantity, status, outcome),
+        reason=stated(Cause.STATED, because),
+        provenance=PROVENANCE,
+    )
+
+
+NAN = {"max": math.nan, "mean": math.nan, "final": math.nan, "ratio": math.nan}
+STOPPED = "stopped: a state or derivative was not finite"
+
+MIXED = [
+    *(passed("kirchhoff/screw", "f64", quantity) for quantity in ("impulse", "T", "F2", "y3")),
+    *(passed("euler/generic", rung, q) for rung in ("mp237", "f64") for q in ("omega", "T")),
+    unscored("euler/generic", "f80", "omega", Status.UNAVAILABLE, "not started"),
+    unscored("euler/broken", "f64", "omega", Status.FAIL, STOPPED),
+    passed("euler/lost", "f64", "omega", verdict=Status.FAIL, **NAN),
+    passed("euler/lost", "f64", "T", verdict=Status.FAIL, **NAN),
+    unscored("euler/vast", "f32", "omega", Status.REFUSED, "not started: out of range"),
+    passed("euler/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0),
+    passed("euler/long", "f64", "T", verdict=Status.FAIL, ratio=50.0, ratio_at=5.0),
+]
+
+RECORD = Record(
+    scene="euler/generic",
+    title="Free asymmetric body",
+    solver="taylor",
+    rung="f64",
+    track=("omega",),
+    equations=("H1' = H2 * w3",),
+    parameters={"K11": "1.0"},
+    units={"time": "1"},
+    regime="max",
+    route="arb",
+    truth_digits=19,
+    outcome="reached the last sample",
+    steps=41,
+    unit_roundoff=2.0**-53,
+    times=(0.0, 0.1),
+    gates=(GateRecord("omega", "max|omega|", (0.0, math.nan), (1e-300, math.inf), 5e-324),),
+)
+
+
+@pytest.fixture
+def report(tmp_path: Path) -> Path:
+    write(tmp_path, MIXED, [RECORD])
+    publish(tmp_path)
+    return tmp_path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        str(file.relative_to(folder)): file.read_bytes()
+        for file in folder.rglob("*")
+        if file.is_file()
+    }
+
+
+def lines(report: Path, table: str, *words: str) -> list[str]:
+    """The lines of a published table's rows in which all the words occur."""
+    text = (report / "tables" / table).read_text(encoding="utf-8")
+    return [
+        line for line in text.splitlines() if line.startswith("|") and all(w in line for w in words)
+    ]
+
+
+def cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split(" | ")]
+
+
+def rows(report: Path, sheet: str) -> list[dict[str, str]]:
+    with (report / "tables" / sheet).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+# What is written is what is read.
+
+
+def finite(verdict: Verdict) -> Verdict:
+    """The verdict with None for what JSON cannot hold."""
+    row = verdict.row()
+    return replace(verdict, **{name: row[name] for name in (*NAN, "at", "bound", "seconds")})
+
+
+FLOATS = st.none() | st.floats()
+TEXT = st.text(st.characters(codec="utf-8"), max_size=12)
+
+
+@st.composite
+def one_run(draw: st.DrawFn) -> list[Verdict]:
+    """A run of any names and numbers, its seconds and machine the same in all its verdicts."""
+    provenance: dict[str, Any] = draw(
+        st.fixed_dictionaries({"scene": TEXT, "processor": TEXT, "command": TEXT}) | st.just({})
+    )
+    if provenance:
+        provenance["versions"] = {**VERSIONS, "python": draw(st.sampled_from(["3.11", "3.12"]))}
+    scene, solver, rung, setting = draw(TEXT), draw(TEXT), draw(TEXT), draw(TEXT)
+    seconds = draw(FLOATS)
+    quantities = draw(st.lists(st.sampled_from(["omega", "impulse", "T", "y3"]), min_size=1))
+    verdicts = []
+    for quantity in quantities:
+        numbers: dict[str, Any] = {name: draw(FLOATS) for name in (*NAN, "at", "bound")}
+        status, outcome = draw(st.sampled_from(Status)), draw(TEXT)
+        verdict = Verdict(scene, solver, rung, setting, quantity, status, outcome, **numbers)
+        rest: dict[str, Any] = {
+            "reason": stated(Cause.STATED, draw(TEXT)),
+            "seconds": seconds,
+            "provenance": provenance,
+        }
+        verdicts.append(replace(verdict, **rest))
+    return verdicts
+
+
+def key(verdict: Verdict) -> tuple[str, ...]:
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
+
+
+@given(st.lists(one_run(), unique_by=lambda run: key(run[0])))
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_verdicts_read_back_as_they_were(tmp_path: Path, runs: list[list[Verdict]]) -> None:
+    """Every field of every verdict reads back to the last bit, what is not finite as None."""
+    same = [run for run in runs if bool(run[0].provenance) == bool(runs[0][0].provenance)]
+    given = [verdict for run in same for verdict in run]
+    write(tmp_path, given, [])
+    read = load(tmp_path)
+    assert sorted(read, key=key) == sorted((finite(v) for v in given), key=key)
+    publish(tmp_path)
+    assert len(rows(tmp_path, "gates.csv")) == len(given)
+
+
+def test_a_record_reads_back_with_null_for_what_is_not_finite(report: Path) -> None:
+    """A run's record is one JSON file with all that the record holds, to the last bit."""
+    file = report / "data" / "records" / "euler-generic.taylor.f64.json"
+    stored = json.loads(file.read_text(encoding="utf-8"), parse_constant=pytest.fail)
+    del stored["made_by"]
+    expected = json.loads(json.dumps(RECORD.document()))
+    expected["gates"][0] |= {"errors": [0.0, None], "attainable": [1e-300, None]}
+    assert stored == expected
+
+
+def test_what_differs_between_machines_is_in_timings_alone(tmp_path: Path) -> None:
+    """Another time, machine and order of the runs change timings.json and no other file."""
+    write(tmp_path, MIXED, [RECORD])
+    publish(tmp_path)
+    before = contents(tmp_path)
+    elsewhere = {
+        "versions": {**VERSIONS, "python": "3.11.2"},
+        "processor": "Another chip",
+        "command": "taylor-verify run --out elsewhere",
+    }
+    later = [
+        replace(verdict, seconds=9.0, provenance={**verdict.provenance, **elsewhere})
+        for verdict in [*MIXED[4:], *MIXED[:4]]
+    ]
+    write(tmp_path, later, [RECORD])
+    publish(tmp_path)
+    after = contents(tmp_path)
+    assert {name for name in after if after[name] != before.get(name)} == {"data/timings.json"}
+    assert set(after) == set(before)
+
+
+def test_verdicts_of_unlike_versions_make_no_report(tmp_path: Path) -> None:
+    """A report states one set of versions; those of two are refused before writing."""
+    other = {**PROVENANCE, "versions": {**VERSIONS, "heyoka": "6.0.0"}}
+    with pytest.raises(ValueError, match=r"one set of versions.*6\.0\.0"):
+        write(tmp_path, [*MIXED, passed("euler/old", "f64", "omega", provenance=other)], [])
+    assert contents(tmp_path) == {}
+
+
+def test_two_unlike_records_of_one_run_are_refused(tmp_path: Path) -> None:
+    """No record silently takes the place of another one of the same run."""
+    with pytest.raises(ValueError, match=r"one record a run.*euler-generic\.taylor\.f64"):
+        write(tmp_path, MIXED, [RECORD, replace(RECORD, steps=42)])
+
+
+# Files.
+
+
+@pytest.mark.parametrize("broken", ["taylor_verify.records.store._json", "pathlib.Path.write_text"])
+def test_a_failure_half_way_leaves_the_old_files(report: Path, broken: str) -> None:
+    """A disk that is full in the middle of writing leaves every old byte and nothing new."""
+    before = contents(report)
+    whole = store._json if broken.endswith("_json") else Path.write_text
+    calls = 0
+
+    def full(*arguments: Any, **named: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise OSError(28, "No space left on device")
+        return whole(*arguments, **named)
+
+    with patch(broken, full), pytest.raises(OSError, match="No space left"):
+        write(report, [passed("euler/new", "f64", "omega")], [replace(RECORD, scene="euler/new")])
+    assert calls == 3
+    assert contents(report) == before
+    assert list(report.rglob(".unfinished*")) == []
+
+
+def test_a_folder_that_cannot_be_made_is_an_error_of_the_system(tmp_path: Path) -> None:
+    """Writing below a plain file raises OSError to the caller, and the file stays."""
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    with pytest.raises(OSError, match="file"):
+        write(tmp_path / "file" / "report", MIXED, [])
+    assert contents(tmp_path) == {"file": b"mine"}
+
+
+def test_parents_are_made(tmp_path: Path) -> None:
+    """A report goes into a folder whose parents do not exist yet."""
+    write(tmp_path / "a" / "b", MIXED, [])
+    assert {file.parent.name for file in publish(tmp_path / "a" / "b")} == {"tables", "b"}
+
+
+def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) -> None:
+    """Old tables and records that name us as maker are removed; other people's files are kept."""
+    tables, records = report / "tables", report / "data" / "records"
+    (tables / "old.md").write_text(f"{MADE_BY}\n# Old\n", encoding="utf-8")
+    (tables / "old.csv").write_text("a\n", encoding="utf-8")
+    (tables / "mine.md").write_text("# Mine\n", encoding="utf-8")
+    (tables / "mine.csv").write_text("a\n", encoding="utf-8")
+    (records / "mine.json").write_text("{}\n", encoding="utf-8")
+    write(report, MIXED, [replace(RECORD, rung="f32")])
+    written = publish(report)
+    mine = {tables / "mine.md", tables / "mine.csv"}
+    assert {*tables.iterdir(), report / "README.md"} == {*written, *mine}
+    assert {file.name for file in records.iterdir()} == {
+        "mine.json",
+        "euler-generic.taylor.f32.json",
+        "verdicts.sha256",
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("{", "expected a JSON document"),
+        ("[]", "expected a JSON object, got list"),
+        ("{}", "expected verdicts"),
+        ('{"versions": {}, "verdicts": [{"scene": "a"}]}', "expected verdicts"),
+    ],
+)
+def test_data_that_are_no_verdicts_are_refused(report: Path, text: str, fault: str) -> None:
+    """A file of something else raises ValueError with what was expected and where; tables stay."""
+    before = contents(report / "tables")
+    (report / "data" / "verdicts.json").write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=rf"{fault}.* @ .*verdicts\.json"):
+        publish(report)
+    assert contents(report / "tables") == before
+
+
+def test_publishing_imports_no_physics(report: Path) -> None:
+    """Publishing, in a process of its own, loads no integrator, no arithmetic and no other room.
+
+    The light modules of the package itself are imported before: tests/test_public_api.py names them.
+    """
+    program = (
+        "import sys, taylor_verify; light = set(sys.modules);"
+        "from taylor_verify.studies.report import publish; publish(sys.argv[1]);"
+        "print(*set(sys.modules) - light)"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", program, str(report)], capture_output=True, text=True, check=True
+    )
+    loaded = set(ran.stdout.split())
+    assert "taylor_verify.studies.accuracy.page" in loaded
+    assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
+    rooms = {name.split(".")[1] for name in loaded if name.startswith("taylor_verify.")}
+    assert rooms == {"publish", "records"}
+
+
+# The front page.
+
+
+def front_page(report: Path) -> str:
+    return (report / "README.md").read_text(encoding="utf-8")
+
+
+def test_every_link_of_the_front_page_leads_somewhere(report: Path) -> None:
+    """Each file and folder that it links to is there; what is not there is not linked to."""
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", front_page(report))
+    assert "tables/README.md" in links
+    assert [link for link in links if not (report / link).exists()] == []
+    assert "reference" not in links
+
+
+def test_the_front_page_links_to_the_reference_where_there_is_one(report: Path) -> None:
+    """A folder of reference motions is linked to, and left alone."""
+    file = report / "reference" / "README.md"
+    file.parent.mkdir()
+    file.write_text("mine", encoding="utf-8")
+    publish(report)
+    assert "](reference/README.md)" in front_page(report)
+    assert file.read_text(encoding="utf-8") == "mine"
+
+
+def test_the_anchor_of_the_front_page_is_a_heading_of_the_tables(report: Path) -> None:
+    """The link to the meanings of the verdicts names a heading that exists."""
+    (anchor,) = re.findall(r"tables/README\.md#([a-z-]+)", front_page(report))
+    headings = re.findall(r"^## (.*)$", (report / "tables/README.md").read_text("utf-8"), re.M)
+    assert anchor in {heading.lower().replace(" ", "-") for heading in headings}
+
+
+def test_the_headline_numbers_are_those_of_the_verdicts(tmp_path: Path) -> None:
+    """Scenes, runs and verdicts are counted; a rung's line has its median and its largest error."""
+    u = UNIT["f64"]
+    sizes = {"a": 2, "b": 3, "c": 40}
+    write(
+        tmp_path,
+        [
+            *(passed(f"euler/{n}", "f64", "omega", max=k * u, ratio=k) for n, k in sizes.items()),
+            passed("euler/a", "f64", "T", max=0.0, ratio=0.0),
+        ],
+        [],
+    )
+    publish(tmp_path)
+    text = front_page(tmp_path)
+    assert "**3** scenes, **3** runs, **4** verdicts." in text
+    assert "below **2.50** of what is attainable; 1 conserved quantities are kept exactly" in text
+    (line,) = (line for line in text.splitlines() if line.startswith("| f64"))
+    assert cells(line) == [
+        *("f64", "1.11e-16", "3", "3", "3.00", "40.0", "40.0", "`omega` of `euler/c`")
+    ]
+
+
+def test_the_front_page_hides_no_failure(report: Path) -> None:
+    """A scene that did not pass has its verdict in its line, and its rung does not count as all."""
+    by_scene = {cells(line)[0]: cells(line) for line in front_page(report).splitlines()}
+    assert by_scene["`euler/broken`"][1:] == [NOTHING, "**fail**", NOTHING, NOTHING]
+    assert by_scene["`euler/lost`"][2] == "**fail**"
+    assert by_scene["`euler/long`"][2].endswith("**fail**")
+    assert by_scene["`euler/vast`"][1] == "**refused**"
+    assert by_scene["f64"][2:4] == ["5", "**2**"]
+    assert by_scene["f64"][5] == "**no number**"
+
+
+def test_a_front_page_of_somebody_else_is_left_alone(report: Path) -> None:
+    """A README.md that does not name us as its maker is neither replaced nor reported as written."""
+    (report / "README.md").write_text("# Mine\n", encoding="utf-8")
+    assert report / "README.md" not in publish(report)
+    assert front_page(report) == "# Mine\n"
+
+
+# Cells.
+
+
+def test_a_failed_run_shows_how_it_ended_and_no_number(report: Path) -> None:
+    """The only cell of its errors that is not empty holds the outcome; its verdict is fail."""
+    (line,) = lines(report, "accuracy.md", "euler/broken")
+    assert cells(line) == ["`euler/broken`", "f64", "`omega`", STOPPED, *[NOTHING] * 7, "**fail**"]
+    (row,) = (row for row in rows(report, "accuracy.csv") if row["scene"] == "euler/broken")
+    assert (row["max"], row["mean"], row["ratio"]) == (STOPPED, "", "")
+
+
+def test_an_error_that_is_no_number_is_shown_as_fail(report: Path) -> None:
+    """A NaN is neither zero nor blank in any table, it is counted, and the reason says so."""
+    (line,) = lines(report, "accuracy.md", "euler/lost")
+    assert cells(line)[3] == "fail"
+    assert cells(line)[8] == "fail"
+    (line,) = lines(report, "conserved.md", "euler/lost")
+    assert "**fail**" in cells(line)
+    for line in lines(report, "gates.md", "euler/lost"):
+        assert cells(line)[-1].startswith("the error is not a finite number; 10 x attainable")
+    assert "2 of 15 without a finite error" in (report / "tables/gates.md").read_text(
+        encoding="utf-8"
+    )
+    assert [row["max"] for row in rows(report, "gates.csv") if row["scene"] == "euler/lost"] == [
+        "fail",
+        "fail",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("scene", "rung", "word"),
+    [("euler/generic", "f80", "unavailable"), ("euler/vast", "f32", "refused")],
+)
+def test_a_run_that_never_began_is_shown(report: Path, scene: str, rung: str, word: str) -> None:
+    """It has its row on every page, a word in place of each error, and its reason."""
+    (line,) = lines(report, "accuracy.md", scene, f" {rung} ")
+    assert cells(line)[3] == word
+    assert cells(line)[-1] == f"**{word}**"
+    (line,) = lines(report, "conserved.md", scene, f" {rung} ")
+    assert cells(line)[2] == f"**{word}**"
+    (line,) = lines(report, "gates.md", scene, f" {rung} ")
+    assert cells(line)[-1] == f"the reason why {scene} has no number"
+    text = (report / "tables" / "accuracy.md").read_text(encoding="utf-8")
+    assert f"- `{scene}`, {rung}: **{word}**, the reason why {scene} has no number" in text
+
+
+def test_a_drift_beyond_its_bound_stands_out(report: Path) -> None:
+    """The cell of a failed quantity says so beside its numbers, and so does the line's verdict."""
+    (line,) = lines(report, "conserved.md", "euler/long")
+    assert cells(line)[2:] == ["**3.00, 2.00 @ 7 fail**", "50.0 (`T`)", "**fail**"]
+
+
+def test_a_quantity_that_a_scene_does_not_have_is_a_dash(report: Path) -> None:
+    """A column of another scene's quantity holds a dash, whether the run was scored or not."""
+    generic = passed("kirchhoff/general", "f64", "T")
+    lost = unscored("kirchhoff/general", "f80", "impulse", Status.UNAVAILABLE, "not started")
+    main = passed("kirchhoff/general", "f64", "impulse")
+    write(report, [*MIXED, main, generic, lost], [])
+    publish(report)
+    (scored,) = lines(report, "conserved.md", "kirchhoff/general", "f64")
+    assert cells(scored)[2:5] == ["3.00, 2.00 @ 7", NOTHING, NOTHING]
+    by_run = {(row["scene"], row["rung"]): row for row in rows(report, "conserved.csv")}
+    sheet = by_run["kirchhoff/general", "f80"]
+    assert (sheet["T_max_u"], sheet["F2_max_u"], sheet["y3_verdict"]) == ("unavailable", "", "")
+    (not_scored,) = lines(report, "conserved.md", "kirchhoff/general", "f80")
+    assert cells(not_scored)[2:5] == ["**unavailable**", NOTHING, NOTHING]
+
+
+def test_the_numbers_of_a_cell_are_the_verdicts(report: Path) -> None:
+    """Errors appear in their unit and in u, with the time, the ratio, the bound and the steps."""
+    (line,) = lines(report, "accuracy.md", "euler/generic", "f64")
+    u = 2.0**-53
+    assert cells(line)[3:] == [
+        *(figure(3 * u), figure(2 * u), "7", "3.00", "2.00", "0.500", figure(60 * u), "41"),
+        "pass",
+    ]
+
+
+def test_every_csv_holds_a_row_for_every_verdict_or_run(report: Path) -> None:
+    """The gates have a row a verdict with every digit, the other sheets a row a state or run."""
+    gates = rows(report, "gates.csv")
+    assert len(gates) == len(MIXED)
+    assert {row["verdict"] for row in gates} <= set(Status)
+    by_place = {(row["scene"], row["rung"], row["quantity"]): row for row in gates}
+    for verdict in MIXED:
+        row = by_place[verdict.scene, verdict.rung, verdict.quantity]
+        if verdict.bound is not None:
+            assert float(row["bound"]) == verdict.bound
+    state = [v for v in MIXED if v.quantity in {"omega", "impulse"}]
+    assert len(rows(report, "accuracy.csv")) == len(state)
+    assert len(rows(report, "conserved.csv")) == len({key(v) for v in MIXED})
+
+
+def test_rows_are_in_reading_order(report: Path) -> None:
+    """Euler comes before Kirchhoff, scenes by name, rungs up the ladder."""
+    extra = [passed("euler/generic", "f32", "omega")]
+    write(report, [*MIXED, *extra], [])
+    publish(report)
+    found = [(row["scene"], row["rung"]) for row in rows(report, "accuracy.csv")]
+    assert [rung for scene, rung in found if scene == "euler/generic"] == [
+        *("f32", "f64", "f80", "mp237")
+    ]
+    scenes = [scene for scene, _ in found]
+    assert scenes == [*sorted(s for s in scenes if s.startswith("euler")), "kirchhoff/screw"]
+
+
+def test_the_ladder_goes_up_by_bits() -> None:
+    """IEEE formats come first, then MPFR by its number of bits and not by its name."""
+    ladder = ["f32", "f64", "f80", "f128", "mp64", "mp237", "mp1000"]
+    assert sorted(sorted(ladder), key=place_of_rung) == ladder
+
+
+def test_the_summary_counts_every_verdict(report: Path) -> None:
+    """The counts of the gates page are those of the verdicts, and the worst is named and timed."""
+    counted = lines(report, "gates.md")[2]
+    assert cells(counted) == ["8", "**4**", "0", "1", "1", "1"]
+    text = (report / "tables" / "gates.md").read_text(encoding="utf-8")
+    assert "attainable: **50.0**, `T` of `euler/long` on f64 at t = 5." in text
+
+
+def pages(report: Path) -> Iterable[str]:
+    return [file.read_text(encoding="utf-8") for file in (report / "tables").glob("*.md")]
+
+
+def test_every_page_names_its_maker_and_says_how_to_remake_it(report: Path) -> None:
+    """The first line is the maker's; the last section has the commands and the versions."""
+    assert len(list(pages(report))) == 5
+    for text in pages(report):
+        assert text.splitlines()[0] == MADE_BY
+        end = text.partition("## To remake this")[2]
+        for needed in ("`make verify`", "`reports/local/`", "`make reports`", "heyoka 7.13.0"):
+            assert needed in end
+
+
+def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) -> None:
+    """No text of a scene, unit, outcome or reason breaks a table, whatever is in it."""
+    nasty = "a|b\n`c` <img> *d* _e_ \\| [f](g) $h$"
+    hostile = [
+        passed(nasty, "f64", "omega", unit=nasty, reason=stated(Cause.STATED, nasty)),
+        replace(
+            unscored(nasty, "f32", "omega", Status.FAIL, nasty), reason=stated(Cause.STATED, nasty)
+        ),
+    ]
+    write(report, [*MIXED, *hostile], [])
+    publish(report)
+    for text in pages(report):
+        for block in text.split("\n\n"):
+            table = [line for line in block.splitlines() if line.startswith("|")]
+            # A bar ends a cell unless a backslash escapes it that is not escaped itself.
+            bars = {len(re.findall(r"\|", re.sub(r"\\.", "", line))) for line in table}
+            assert len(bars) <= 1
+        assert "<img>" not in text.replace(r"\<", "")
+
+
+def test_every_status_has_its_meaning_and_its_gravity() -> None:
+    """A verdict of any kind can be explained and compared with another one."""
+    assert set(tables._MEANINGS) == set(Status) == set(GRAVITY)
+
+
+def test_a_report_of_nothing_is_no_error(tmp_path: Path) -> None:
+    """No verdicts make pages that say that nothing was compared."""
+    write(tmp_path, [], [])
+    publish(tmp_path)
+    assert "Nothing was compared." in (tmp_path / "tables" / "gates.md").read_text()
+
+
+@given(st.floats(min_value=1e-300, max_value=1e300))
+def test_a_figure_has_three_significant_digits(value: float) -> None:
+    """It is off by at most half a unit of its third digit, and shows exactly three digits."""
+    text = figure(value)
+    shown = text.partition("e")[0].replace(".", "").lstrip("0")
+    assert len(shown) == 3
+    # Half a unit of the third digit is at most 1/200 of the number; the rest is this test's own
+    # rounding.
+    assert abs(float(text) - value) <= value * (0.005 + 1e-12)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (None, NOTHING),
+        (9.996, "10.0"),
+        (999.6, "1.00e3"),
+        (0.01, "0.0100"),
+        (1e-7, "1.00e-7"),
+    ],
+)
+def test_a_figure_at_the_edges(value: float | None, text: str) -> None:
+    """A number that rounds up to the next power of ten is still three digits."""
+    assert figure(value) == text
+
+
+def test_prose_and_code_cannot_be_markdown() -> None:
+    """Bars, backticks and line ends do not survive in a form that ends a cell or a span."""
+    assert prose("a|b\n*c*") == r"a\|b \*c\*"
+    assert code("a|b c") == r"`a\|b c`"
+    assert code("a`b|c") == r"a\`b\|c"
+    assert code("a\\|b") == r"a\\\|b"
+    assert prose("y_space") == "y_space"

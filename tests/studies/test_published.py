@@ -1,0 +1,430 @@
+"""What is published in reports is current, complete and small: no other test reads that folder.
+
+The files that the repository does not hold are no part of it here, whether they are there or not.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from fnmatch import fnmatch
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import made
+import pytest
+from test_baseline import regressions
+from test_baseline import row as baseline_row
+from test_ci import violations
+from test_docs import results
+from test_latex import html_has_the_cells, latex_has_the_rows, links_lead_somewhere, page_in
+from test_latex_compiled import compiled
+from test_traps import fresh, judged
+
+from taylor_verify.claims.ledger import claims, examined
+from taylor_verify.claims.numbers import CITED
+from taylor_verify.judge import baseline
+from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.pictures.picture import save
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.replacement import first_line
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.library import EXTREMES, names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies import drawings, measured, report
+from taylor_verify.studies import paper as paper
+from taylor_verify.studies.accuracy.attainable import attainable
+from taylor_verify.studies.bulk import FILES
+from taylor_verify.studies.claims import page as claims_page
+from taylor_verify.studies.controls import page as controls
+from taylor_verify.studies.controls import stored as sights
+from taylor_verify.studies.enclosure import page as widths_page
+from taylor_verify.studies.enclosure.document import EnclosureStudy
+from taylor_verify.studies.enclosure.measure import SCENES, widths
+from taylor_verify.studies.extremes import page as extremes
+from taylor_verify.studies.gallery import page as gallery
+from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.growth.document import GrowthStudy
+from taylor_verify.studies.prices import page as prices
+from taylor_verify.studies.prices.document import PricesStudy
+from taylor_verify.studies.reach import page as reach
+from taylor_verify.studies.reach.document import ReachStudy
+from taylor_verify.studies.reference import page as reference_files
+from taylor_verify.studies.site.builder import build
+from taylor_verify.studies.tradeoff import stored as trades
+from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
+from taylor_verify.studies.traps import page as traps
+from taylor_verify.studies.worst import page as worst
+from taylor_verify.studies.worst.document import WorstStudy
+
+ROOT = Path(__file__).resolve().parents[2]
+REPORTS = ROOT / "reports"
+MEGABYTE = 1_000_000
+# What a user's own runs and the site put there.
+LOCAL = ("local/", "site/", ".")
+
+
+@cache
+def committed() -> tuple[str, ...]:
+    """Every published file but those that the repository does not hold, by its path."""
+    paths = (file.relative_to(REPORTS).as_posix() for file in REPORTS.rglob("*") if file.is_file())
+    return tuple(sorted(path for path in paths if not path.startswith(LOCAL) and not is_bulk(path)))
+
+
+def is_bulk(path: str) -> bool:
+    return any(
+        fnmatch(f"reports/{path}", f"reports/{pattern}{'*' if pattern.endswith('/') else ''}")
+        for pattern in FILES
+    )
+
+
+@cache
+def verdicts() -> tuple[Verdict, ...]:
+    return report.load(REPORTS)
+
+
+def text_of(path: str) -> str:
+    return (REPORTS / path).read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """The published folder as a clone has it, with the two pages beside it that quote it."""
+    for path in committed():
+        place = tmp_path / "reports" / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(REPORTS / path, place)
+    (tmp_path / "docs").mkdir()
+    for page in ("README.md", "docs/results.md"):
+        shutil.copy(ROOT / page, tmp_path / page)
+    return tmp_path / "reports"
+
+
+# What is there.
+
+
+def test_a_repository_one_likes_to_receive() -> None:
+    """At most 250 files and 8 MB are published."""
+    assert len(committed()) <= 250
+    assert sum((REPORTS / path).stat().st_size for path in committed()) <= 8 * MEGABYTE
+
+
+def test_git_leaves_out_what_is_made() -> None:
+    """.gitignore lists the bulk of the reports, and .gitattributes calls the rest generated."""
+    ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
+    assert {f"reports/{pattern}" for pattern in FILES} <= set(ignored)
+    attributes = (ROOT / ".gitattributes").read_text(encoding="utf-8").splitlines()
+    assert "reports/** linguist-generated" in attributes
+
+
+def test_every_link_leads_to_a_committed_file() -> None:
+    """No page of reports, of docs or of the README links to a file that a clone does not have."""
+    pages = [REPORTS / path for path in committed() if path.endswith(".md")]
+    # What `make docs` has built is nobody's page.
+    docs = [file for file in (ROOT / "docs").glob("**/*.md") if "_build" not in file.parts]
+    pages += [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *docs]
+    assert len(pages) > 30
+    assert [lost for page in pages for lost in dead_links(page)] == []
+
+
+def dead_links(page: Path) -> Iterator[str]:
+    # Within code and formulas brackets are no links.
+    text = re.sub(r"`[^`]*`", "", page.read_text(encoding="utf-8"))
+    for link in re.findall(r"\]\((?!https?:|mailto:|#)([^)#\s]+)", text):
+        target = (page.parent / link).resolve()
+        is_published = target.is_relative_to(REPORTS) and target.is_file()
+        made_only = is_published and target.relative_to(REPORTS).as_posix() not in committed()
+        if not target.exists() or made_only:
+            yield f"{link} @ {page}"
+
+
+def test_no_other_test_reads_what_is_published() -> None:
+    """Tests of code make their data; the scripts of reports/upstream are run where they lie."""
+    reading = {
+        file.name
+        for file in Path(__file__).parents[1].rglob("*.py")
+        if re.search(r"""(?<!tmp_path )/ "reports["/]""", file.read_text(encoding="utf-8"))
+    }
+    assert reading == {"test_published.py", "test_upstream.py"}
+
+
+# Current: what is published is what the code makes of the published data.
+
+
+def test_pages_and_tables_are_made_of_the_published_data(clone: Path) -> None:
+    """Made again from the data, every page, table and quotation is the one that is published."""
+    before = {file: file.read_text("utf-8") for file in clone.parent.rglob("*.[mc][ds]*")}
+    report.publish(clone)
+    after = {file: file.read_text("utf-8") for file in before if file.exists()}
+    assert [file for file in before if after.get(file) != before[file]] == []
+    written = {file.relative_to(clone).as_posix() for file in clone.rglob("*") if file.is_file()}
+    assert {path for path in written if not is_bulk(path)} == set(committed())
+
+
+def test_the_ledger_is_made_of_the_published_rows() -> None:
+    """claims.md and its sheet are those of data/claims.json, entry by entry as the ledger has them."""
+    stored = claims_page.load(REPORTS)
+    assert text_of(claims_page.PAGE) == claims_page.page(stored)
+    assert text_of(claims_page.SHEET) == measured.claims(stored)
+    assert stored.cited == dict(CITED)
+    assert text_of(claims_page.PAGE).startswith(MADE_BY)
+    told = {row.id: row.statement for row in stored.claims}
+    assert told == {claim.id: claim.statement for claim in claims()}
+
+
+@pytest.mark.slow
+def test_the_published_ledger_can_be_remade() -> None:
+    """The whole ledger, run anew, makes the page that is published."""
+    rows = tuple(finding.row() for finding in examined(claims()))
+    stored = replace(claims_page.load(REPORTS), claims=rows)
+    assert claims_page.page(stored) == text_of(claims_page.PAGE)
+
+
+def test_data_are_laid_out_as_the_code_writes_them() -> None:
+    """Every document of data is byte for byte what would be written of its contents."""
+    documents = [path for path in committed() if path.startswith("data/")]
+    assert len(documents) > 10
+    unlike = [p for p in documents if store.laid_out(json.loads(text_of(p))) != text_of(p)]
+    assert unlike == []
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "kind"),
+    [
+        (growth.GROWTH, "growth", GrowthStudy),
+        (growth.LONG, "growth", GrowthStudy),
+        (reach.REACH, "reach", ReachStudy),
+        (prices.PRICES, "prices", PricesStudy),
+        (trades.NUMBERS, "tradeoff", TradeNumbers),
+        (trades.TIMINGS, "tradeoff", TradeTimings),
+        (worst.WORST, "worst", WorstStudy),
+        (widths_page.STORED, "enclosure", EnclosureStudy),
+    ],
+)
+def test_a_published_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:
+    """Keys, their order, lines and every digit are those of the committed file."""
+    made_by = {"made_by": f"taylor-verify publish --{option}; do not edit"}
+    text = store.laid_out({**made_by, **complete(read(REPORTS / name, kind))})
+    assert text == text_of(name)
+
+
+def test_every_scene_is_published_as_it_is_now() -> None:
+    """Verdicts have each scene of the standard set on each rung, and the digest of its text."""
+    assert {(v.scene, v.rung) for v in verdicts()} == set(product(names(), LADDER))
+    published = {v.scene: v.provenance["scene"] for v in verdicts()}
+    assert published == {name: load(name).digest for name in names()}
+
+
+def test_every_extreme_is_published_as_it_is_now() -> None:
+    """Each extreme that is run is there with the digest of its text."""
+    published = {v.scene: v.provenance["scene"] for v in extremes.load(REPORTS).verdicts}
+    left_out = {row.scene for row in extremes.load(REPORTS).left_out}
+    assert published == {name: load(name).digest for name in published}
+    assert set(names(EXTREMES)) - left_out <= set(published)
+
+
+def test_exact_trajectories_are_those_of_the_code() -> None:
+    """Each CSV, the page and the examples are byte for byte what is computed now."""
+    fresh_files = (made.every_reference() / reference_files.FOLDER).iterdir()
+    made_now = {
+        f"{reference_files.FOLDER}/{f.name}": f.read_bytes()
+        for f in fresh_files
+        if f.suffix != ".json"
+    }
+    published = [path for path in committed() if path.startswith(reference_files.FOLDER)]
+    assert set(made_now) == set(published)
+    assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
+
+
+def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -> None:
+    """Each picture of a measurement, and each of an exact motion, is the published file."""
+    # What errors of runs are drawn in needs their records, which are not published.
+    motions = [
+        one.picture
+        for one in gallery.shown(gallery.Stored(made.for_gallery()))
+        if not one.picture.stem.endswith(("-errors", "-polhode", "controls-shifts"))
+    ]
+    pictures = [*drawings.pictures(clone), *motions]
+    assert len(pictures) > 25
+    for file in save(pictures, tmp_path / "drawn", ("svg",)):
+        assert file.read_bytes() == (REPORTS / "figures" / file.name).read_bytes(), file.name
+
+
+def test_every_published_picture_can_be_drawn_again() -> None:
+    """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
+    folder = made.for_gallery()
+    gallery_stems = {one.picture.stem for one in gallery.shown(gallery.Stored(folder))}
+    drawn = gallery_stems | {picture.stem for picture in drawings.pictures(REPORTS)}
+    assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
+
+
+def test_the_gallery_shows_every_picture() -> None:
+    """The page has the pictures of the gallery, in their order, and names its maker."""
+    page = REPORTS / gallery.PAGE
+    stems = [one.picture.stem for one in gallery.shown(gallery.Stored(made.for_gallery()))]
+    assert first_line(page) == first_line_of(gallery.page([]))
+    assert re.findall(r"\]\(([\w-]+)\.svg\)", page.read_text(encoding="utf-8")) == stems
+
+
+def first_line_of(text: str) -> str:
+    return text.partition("\n")[0]
+
+
+def test_traps_say_what_is_measured_now() -> None:
+    """The same words, code, cases and verdicts; the digits of an error may differ by processor."""
+    kept, made_now = traps.load(REPORTS).traps, fresh().traps
+    assert [replace(t, cases=()) for t in kept] == [replace(t, cases=()) for t in made_now]
+    known = judged(kept)
+    # A rung or a library that is not here has no case here.
+    assert {name: known.get(name) for name in judged(made_now)} == judged(made_now)
+
+
+# What other pages quote.
+
+
+def test_the_readme_has_the_short_table_of_the_controls() -> None:
+    """Between its marks the README has what the published rows give, to the letter."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown = readme[readme.index(controls.BEGIN) : readme.index(controls.END) + len(controls.END)]
+    assert shown == controls.short(sights.load(REPORTS))
+
+
+@pytest.mark.parametrize("row", results(), ids=lambda row: " ".join(row[:2]))
+def test_the_table_of_results_is_that_of_the_verdicts(row: list[str]) -> None:
+    """Each cell of docs/results.md is max/u (ratio) of a published verdict, to the digits printed."""
+    published = json.loads(text_of("data/verdicts.json"))["verdicts"]
+    scene, quantity, *cells = row
+    expected = [
+        f"{v['max'] / v['roundoff']:.3g} u ({v['ratio']:.2g})"
+        for rung in LADDER
+        for v in published
+        if (f"`{v['scene']}`", v["quantity"], v["rung"]) == (scene, quantity, rung)
+    ]
+    assert cells == expected
+
+
+# The published numbers.
+
+
+def test_published_rows_are_of_the_schema() -> None:
+    """Every row of verdicts.json is of the schema of a verdict."""
+    rows = json.loads(text_of("data/verdicts.json"))["verdicts"]
+    assert rows
+    counts = {status.value: 0 for status in Status}
+    assert violations({"verdicts": rows, "summary": counts}) == []
+
+
+def test_errors_agree_with_their_ratios() -> None:
+    """Of every published error the ratio at its own time is at most the largest of all samples."""
+    found = [v for v in verdicts() if v.attainable and v.max is not None]
+    assert found
+    # The three are rounded to doubles on their own.
+    assert [v for v in found if not v.max / v.attainable <= v.ratio * (1 + 1e-12)] == []
+    lines = [line for line in attainable(found).splitlines() if line.startswith("|")]
+    moving = [
+        v for v in found if v.quantity in ("omega", "impulse", "attitude", "centre") and v.max
+    ]
+    assert sum(line.count(" @ ") for line in lines) == len(moving)
+
+
+def test_unlike_rungs_are_in_one_class() -> None:
+    """In units of attainable every quantity has on all rungs an error of one class: independent draws,
+    and hundreds of pairs. As a baseline none raises a false alarm against another, in either order."""
+    drawn: dict[tuple[str, str], list[float]] = {}
+    for verdict in verdicts():
+        assert verdict.ratio is not None
+        drawn.setdefault((verdict.scene, verdict.quantity), []).append(verdict.ratio)
+    pairs = [pair for same in drawn.values() for pair in product(same, repeat=2)]
+    assert len(pairs) > 1000
+    assert [pair for pair in pairs if max(pair) > FACTOR * max(LEVEL, min(pair))] == []
+    rows = [(baseline_row(was), baseline_row(now)) for was, now in pairs]
+    assert [pair for pair in rows if regressions([pair[0]], [pair[1]])] == []
+
+
+def test_published_rows_are_no_departures_from_themselves() -> None:
+    """Every row is in its own rounding class and no regression, read as a report or as a baseline."""
+    compared = compare(verdicts(), verdicts())
+    assert compared.departures == ()
+    assert compared.compared == len(verdicts()) > 0
+    read = baseline.load(REPORTS / "data" / "verdicts.json")
+    held = baseline.hold(read, read)
+    assert held.compared == len(read) > 0
+    assert (held.regressions, held.undecided, held.changes, held.status) == ((), (), (), 0)
+    keys = [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in verdicts()]
+    assert [(v.scene, v.rung, v.quantity, v.max, v.ratio) for v in read] == keys
+
+
+def test_published_widths_are_above_the_true_errors() -> None:
+    """No true error of an enclosure is larger than the width that is proven."""
+    study = widths_page.load(REPORTS)
+    assert {row.scene for row in study.rows} == set(SCENES)
+    assert all(row.error <= row.width for row in study.rows)
+
+
+@pytest.mark.slow
+def test_published_widths_are_remade() -> None:
+    """The first rows of each motion are those that its scene gives today.
+
+    The steps that lead to them do not know yet where the run ends.
+    """
+    study = widths_page.load(REPORTS)
+    for name in SCENES:
+        rows = [row for row in study.rows if row.scene == name][:40]
+        times = [Fraction(row.t) for row in rows]
+        assert widths(load(name), times, study.bits)[:10] == rows[:10]
+
+
+# What is made of the pages.
+
+
+@cache
+def rendered() -> dict[str, str]:
+    return paper.renderings(REPORTS)
+
+
+@pytest.mark.parametrize("path", paper.PAGES)
+def test_renderings_have_all_of_a_page(path: str) -> None:
+    """No row or cell of a published page is lost in LaTeX or in HTML."""
+    html_has_the_cells(page_in(REPORTS, path), rendered())
+    latex_has_the_rows(page_in(REPORTS, path), rendered())
+
+
+def test_links_of_the_renderings_lead_somewhere(clone: Path) -> None:
+    """Links and pictures of the HTML lead to renderings, or to published files."""
+    links_lead_somewhere(clone, rendered())
+
+
+def test_the_renderings_are_of_a_sane_size() -> None:
+    """All LaTeX and all HTML together stay below 1.5 MB each."""
+    for suffix in (".tex", ".html"):
+        found = [text for name, text in rendered().items() if name.endswith(suffix)]
+        assert sum(len(text.encode()) for text in found) <= 1.5 * MEGABYTE
+
+
+@pytest.mark.slow
+def test_pdflatex_takes_every_published_page(clone: Path, tmp_path: Path) -> None:
+    """Each by itself and the paper of all: none has a line or a table that is wider than its page."""
+    paper.write(clone)
+    for file in sorted((clone / "tables").glob("*.tex")):
+        said = compiled(clone / "tables", file.name, tmp_path)
+        assert [line for line in said.splitlines() if line.startswith("Overfull")] == []
+
+
+@pytest.mark.slow
+def test_the_whole_site_is_small(clone: Path, tmp_path: Path) -> None:
+    """All that is published fits in 15 MB, Plotly's script included, and every scene has its page."""
+    files = build(clone, tmp_path / "site")
+    assert sum(file.stat().st_size for file in files) < 15 * MEGABYTE
+    scenes = {file.stem for file in files if file.parent.name == "scenes"}
+    assert len(scenes) == len(names())
+    assert build(clone, tmp_path / "site") == files

@@ -1,0 +1,277 @@
+"""The reach of each precision: exact families, the judge's own numbers, what recommend makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from math import inf, log10, nan
+
+import pytest
+from mpmath import mp
+
+import taylor_verify
+from taylor_verify.exact.elements import elements
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.studies.reach import measure as reach
+from taylor_verify.studies.reach.document import ReachRow
+from taylor_verify.studies.reach.families import (
+    QUARTERS,
+    Family,
+    at_quarters,
+    families,
+    family,
+    period_of,
+)
+from taylor_verify.studies.tradeoff.attainability import least_error, left_out, narrowest
+from taylor_verify.studies.tradeoff.recommend import MARGIN, OutOfReach, recommend
+from taylor_verify.studies.tradeoff.setting import setting
+
+F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")
+MEMBERS = [(one, value) for one in families() for value in one.values]
+# One of each family, the most extreme.
+EXTREMES = [(one, one.values[-1]) for one in families()]
+
+
+def short(name: str, far: Mapping[str, int]) -> Family:
+    """The family on these rungs alone, for so many periods."""
+    return replace(family(name), far=dict(far))
+
+
+def measured(one: Family, value: str, *names: str) -> dict[str, ReachRow]:
+    return {r.rung: r for r in reach.reaches(one, value, map(rung, names or one.far))}
+
+
+# The families
+
+
+def test_names_are_there_once() -> None:
+    """A family is found by its name, no two members have one label, and a wrong name is refused."""
+    labels = [one.label(value) for one, value in MEMBERS]
+    assert len(set(labels)) == len(labels) == reach.members()
+    assert all(family(one.name).values == one.values for one in families())
+    with pytest.raises(ValueError, match=r"expected one of the families .*, got 'comets'"):
+        family("comets")
+
+
+def test_values_lead_to_the_extreme() -> None:
+    """They are exact, positive and strictly monotonic: away from one, where nothing is extreme."""
+    for one in families():
+        sizes = [abs(log10(Fraction(value))) for value in one.values]
+        assert all(Fraction(value) > 0 for value in one.values)
+        assert sizes == sorted(set(sizes))
+
+
+@pytest.mark.parametrize(("one", "value"), EXTREMES, ids=lambda x: getattr(x, "name", x))
+def test_every_family_is_periodic_and_free(one: Family, value: str) -> None:
+    """Its most extreme member has a period, of the elements' own digits, and no loads."""
+    scene = one.scene(value)
+    assert scene.body.is_free
+    exact = elements(scene, 30)["period"].value
+    with mp.workdps(30):
+        assert abs(mp.convert(period_of(scene)) - exact) <= mp.mpf(10) ** -11 * exact
+
+
+@pytest.mark.parametrize("value", ["1e-2", "1e-8", "1e-14"])
+def test_the_separatrix_is_as_far_as_it_says(value: str) -> None:
+    """1 - k^2 of the member d is d, to as many digits as d has before its square counts."""
+    d = Fraction(value)
+    found = elements(family("separatrix").scene(value), 30)["m_prime"].value
+    with mp.workdps(30):
+        assert abs(found / mp.convert(d) - 1) <= mp.convert(d)
+
+
+def test_instants_are_the_quarters_of_the_periods_named() -> None:
+    """Four for each number of periods, the last of them its end; exact, and rising."""
+    scene = at_quarters(family("unstable-axis").scene("1e-6"), (1, 3, 10))
+    period, instants = period_of(scene), scene.clock.elapsed
+    assert [t / period for t in instants[QUARTERS - 1 :: QUARTERS]] == [1, 3, 10]
+    assert [t / period for t in instants[QUARTERS : 2 * QUARTERS]] == [
+        Fraction(9, 4),
+        Fraction(5, 2),
+        Fraction(11, 4),
+        3,
+    ]
+    assert list(instants) == sorted(set(instants))
+
+
+def test_an_orbit_without_a_period_is_refused() -> None:
+    """A separatrix has none, and it is said."""
+    with pytest.raises(ValueError, match="expected a periodic orbit, got a separatrix one"):
+        period_of(load("euler/separatrix"))
+
+
+# The measurement
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("euler-attitude", "1"), ("unstable-axis", "1e-4"), ("added-mass", "1e5")],
+)
+def test_errors_and_floors_are_the_judges(name: str, value: str) -> None:
+    """The error is the largest that the judge finds in the same run; so is the attainable one there."""
+    one = short(name, {"f64": 3})
+    found = measured(one, value)["f64"]
+    asked = at_quarters(one.scene(value), found.periods)
+    states = {"omega", "impulse", "attitude"}
+    verdicts = [
+        v for v in taylor_verify.run(asked, Taylor(), "f64").verdicts if v.quantity in states
+    ]
+    assert found.errors[-1] == pytest.approx(max(v.max for v in verdicts), rel=1e-3)
+    # The judge's stands at the sample of its largest error, ours is the largest of all samples.
+    assert max(v.attainable for v in verdicts) <= 1.001 * found.floors[-1]
+    assert found.floors[-1] <= 10 * max(v.attainable for v in verdicts)
+
+
+@pytest.fixture(scope="module")
+def axis() -> dict[str, dict[str, ReachRow]]:
+    """Two members beside the unstable axis, by value and rung."""
+    one = short("unstable-axis", {"f32": 3, "f64": 3, "f80": 3})
+    return {value: measured(one, value) for value in ("1e-2", "1e-10")}
+
+
+def test_digits_only_get_fewer(axis: dict[str, dict[str, ReachRow]]) -> None:
+    """Errors and floors are the largest so far: neither falls with the periods."""
+    for by_rung in axis.values():
+        for found in by_rung.values():
+            assert list(found.errors) == sorted(found.errors)
+            assert list(found.floors) == sorted(found.floors)
+            assert len(found.errors) == len(found.periods)
+
+
+def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
+    """Floors are as the roundoffs, but for the steps that each rung takes; and so are the errors."""
+    f64, f80 = axis["1e-2"]["f64"], axis["1e-2"]["f80"]
+    ratio = f80.floors[0] / f64.floors[0] * 2**11
+    assert ratio == pytest.approx((f80.steps / f64.steps) ** 0.5, rel=0.05)
+    assert f80.errors[0] < f64.errors[0] < axis["1e-2"]["f32"].errors[0]
+
+
+def test_solvers_come_near_the_floor(axis: dict[str, dict[str, ReachRow]]) -> None:
+    """What is not lost is within the judge's factor of the attainable error."""
+    for found in axis["1e-2"].values():
+        for error, least in zip(found.errors, found.floors, strict=True):
+            assert error <= GATE_FACTOR * least or least >= 0.1
+
+
+def test_what_is_lost_is_not_followed(axis: dict[str, dict[str, ReachRow]]) -> None:
+    """1e-10 beside the axis doubles are lost in the first period: none is run after, and none told."""
+    found = axis["1e-10"]["f64"]
+    assert found.errors[0] >= 1
+    assert found.errors[1:] == (inf,) * (len(found.periods) - 1)
+    assert found.floors[0] >= 1
+    one = short("unstable-axis", {"f64": 1})
+    assert found.steps == measured(one, "1e-10")["f64"].steps
+    assert reach.stored(found).errors[1:] == (None,) * (len(found.periods) - 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "why"),
+    [
+        ("separatrix", "1e-10", "rounded to f32, the orbit is a separatrix one"),
+        ("nearly-singular", "1e-14", "rounded to f32, T is not positive definite"),
+        ("nearly-spherical", "1e-8", "rounded to f32"),
+    ],
+)
+def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
+    """Where rounding the data makes another orbit of them, nothing is compared, and it is said."""
+    found = measured(family(name), value, "f32")["f32"]
+    assert found.errors == found.floors == ()
+    assert why in found.why
+
+
+def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The digits are of what was solved: at a tolerance of 1e-6 there are no more than some six."""
+    one = short("euler-periods", {"f64": 1})
+    fine = measured(one, "1")["f64"]
+    monkeypatch.setattr(reach, "Taylor", lambda: at_tolerance("1e-6"))
+    coarse = measured(one, "1")["f64"]
+    assert fine.errors[0] <= GATE_FACTOR * fine.floors[0]
+    assert coarse.errors[0] > 1e4 * fine.errors[0]
+
+
+def test_nan_is_lost_for_ever() -> None:
+    """The largest of numbers with a NaN among them is NaN, from there on; JSON has null for it."""
+    errors = reach._up_to([1e-9] * 4 + [1e-9, nan, 1e-9, 1e-9] + [1e-9] * 4)
+    assert errors[0] == 1e-9
+    assert all(error != error for error in errors[1:])
+    row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))
+    assert row.errors == row.floors == (1e-9, None, None)
+
+
+def test_the_precision_of_mpmath_is_left_as_it_was() -> None:
+    """A measurement works at its own precision."""
+    before = mp.prec
+    measured(short("thin-rod", {"f32": 1}), "1e2")
+    assert mp.prec == before
+
+
+# What recommend makes of it
+
+
+@pytest.fixture(scope="module")
+def generic() -> Scene:
+    whole = load("euler/generic")
+    return replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:6]))
+
+
+def test_the_least_error_is_below_what_is_measured(generic: Scene) -> None:
+    """A floor of one rounding a sample is no more than that of the steps that the solver takes."""
+    for name in ("f32", "f64"):
+        least = least_error(generic, rung(name))
+        (_, omega, *_) = taylor_verify.run(generic, Taylor(), name).verdicts
+        assert least is not None
+        assert 0 < least <= omega.attainable * GATE_FACTOR
+        assert omega.max <= GATE_FACTOR * omega.attainable
+
+
+def test_a_rung_that_cannot_reach_it_is_not_measured(generic: Scene) -> None:
+    """Single precision is left out at 1e-10 with the reason in words, and double is recommended."""
+    asked = [setting("taylor", F32), setting("taylor", F64)]
+    found = recommend(generic, 1e-10, asked)
+    assert found.rung == F64
+    (reason,) = found.left_out
+    assert "on f32 rounding alone leaves" in reason
+    assert reason in found.sentence
+    assert found.document()["left_out"] == [reason]
+
+
+def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
+    """It takes a floor of the judge's factor times the target; what is nearer is measured."""
+    least = least_error(generic, F64)
+    assert least is not None
+    assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
+    assert left_out(generic, [F64], 1.01 * least / GATE_FACTOR) == {}
+    assert recommend(generic, 1e-3, [setting("taylor", F32)]).left_out == ()
+
+
+def test_the_narrowest_precision_is_named(generic: Scene) -> None:
+    """Where nothing asked can do it, the text names a rung whose floor reaches it; one bit less may not."""
+    target = 1e-30
+    with pytest.raises(OutOfReach) as caught:
+        recommend(generic, target, [setting("taylor", F64)])
+    found = narrowest(generic, target / MARGIN)
+    assert found is not None
+    wide, least = found
+    assert least <= target / MARGIN
+    assert (
+        f"the narrowest precision on which rounding alone leaves so little is {wide.name}"
+        in str(caught.value)
+    )
+    assert narrowest(generic, 1e-5)[0] in (F32, F64)
+    assert least_error(generic, F80) > target / MARGIN
+
+
+def test_no_precision_reaches_below_the_widest(generic: Scene) -> None:
+    """A floor in proportion to the roundoff is above 1e-305 with a thousand bits: none is named."""
+    assert narrowest(generic, 1e-305) is None
+
+
+def test_what_computes_elsewhere_is_measured_anyway(generic: Scene) -> None:
+    """A solver that works on wider numbers than it answers on is not judged by the floor of these."""
+    with pytest.raises(OutOfReach, match="most accurate"):
+        recommend(generic, 1e-25, [setting("mpmath:odefun?tol=1e-6", F64)])

@@ -1,0 +1,494 @@
+"""The reference trajectories: right, complete, and readable without Python."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+import shutil
+import subprocess
+import tomllib
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from made import every_reference
+
+import taylor_verify
+from taylor_verify.batch.documents import document as document_of
+from taylor_verify.batch.failure import Failed
+from taylor_verify.cli import main
+from taylor_verify.exact.printed import document
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.studies.reference import page as reference_files
+from taylor_verify.studies.reference.measure import DIGITS, reference, references
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# A second or less each; with attitude, centre and a full tensor among them.
+CHEAP = (
+    "euler/generic",
+    "euler/nesc-brick",
+    "kirchhoff/steady-precession",
+    "kirchhoff/steady-spin",
+)
+VECTORS = {
+    "omega": ("w1", "w2", "w3"),
+    "linear_impulse": ("x1", "x2", "x3"),
+    "angular_impulse": ("y1", "y2", "y3"),
+    "attitude": ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"),
+    "centre": ("c1", "c2", "c3"),
+}
+
+Rows = list[dict[str, str]]
+Vector = Sequence[Fraction]
+
+
+def folder() -> Path:
+    return every_reference() / reference_files.FOLDER
+
+
+def file(scene: str, suffix: str) -> Path:
+    return folder() / f"{scene.replace('/', '-')}.{suffix}"
+
+
+def sheet(scene: str) -> Rows:
+    with file(scene, "csv").open(encoding="utf-8", newline="") as lines:
+        return list(csv.DictReader(lines))
+
+
+def question(scene: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(file(scene, "json").read_text(encoding="utf-8"))
+    return found
+
+
+def vector(row: dict[str, str], quantity: str) -> list[Fraction]:
+    return [Fraction(row[name]) for name in VECTORS[quantity]]
+
+
+def rational(value: Any) -> Any:
+    """The exact values of the texts of a JSON file."""
+    return Fraction(value) if isinstance(value, str) else [rational(entry) for entry in value]
+
+
+def flat(value: Any) -> list[Fraction]:
+    return [value] if isinstance(value, Fraction) else [x for part in value for x in flat(part)]
+
+
+def dot(a: Vector, b: Vector) -> Fraction:
+    return sum((p * q for p, q in zip(a, b, strict=True)), Fraction(0))
+
+
+def applied(matrix: Sequence[Vector], v: Vector) -> list[Fraction]:
+    return [dot(row, v) for row in matrix]
+
+
+def turned(row: dict[str, str], v: Vector) -> list[Fraction]:
+    """R v from the printed digits."""
+    r = vector(row, "attitude")
+    return applied([r[:3], r[3:6], r[6:]], v)
+
+
+def size(v: Vector) -> float:
+    return float(sum((float(x) ** 2 for x in v), 0.0)) ** 0.5
+
+
+# Complete.
+
+
+@pytest.mark.parametrize("scene", names())
+def test_every_shipped_scene_has_its_files(scene: str) -> None:
+    """CSV and JSON hold the same columns, a row for every instant, of the scene as it is now."""
+    found, asked = question(scene), load(scene)
+    assert found["sha256"] == asked.digest
+    rows = sheet(scene)
+    assert len(file(scene, "csv").read_bytes().splitlines()) == len(asked.clock.instants) + 1
+    assert len(rows) == len(asked.clock.instants)
+    for name in rows[0]:
+        assert found[name] == [row[name] for row in rows]
+    tracked = {"omega"} if asked.model == "euler" else {"linear_impulse", "angular_impulse"}
+    expected = [n for q in VECTORS if q in tracked | asked.track for n in VECTORS[q]]
+    assert list(rows[0]) == ["t", *expected, "radius"]
+
+
+@pytest.mark.parametrize("scene", names())
+def test_the_question_is_that_of_the_scene(scene: str) -> None:
+    """Body and initial state read back exactly, and every time is the instant to 32 digits."""
+    found, asked = question(scene), load(scene)
+    for name, value in found["body"].items():
+        assert flat(rational(value)) == flat(getattr(asked.body, name))
+    initial = {name: rational(value) for name, value in found["initial"].items()}
+    state = asked.initial
+    assert initial.pop("t") == asked.clock.start
+    short = {"linear_impulse": "linear", "angular_impulse": "angular"}
+    for name, value in initial.items():
+        assert flat(value) == list(getattr(state, short.get(name, name)))
+    for text, instant in zip(found["t"], asked.clock.instants, strict=True):
+        # Half a unit of the last of 32 digits.
+        assert abs(Fraction(text) - instant) <= abs(instant) * Fraction(1, 2 * 10**31)
+
+
+def test_no_file_of_a_scene_that_is_gone() -> None:
+    """The folder holds two files for each shipped scene, the page and the examples."""
+    expected = {file(scene, suffix).name for scene in names() for suffix in ("csv", "json")}
+    assert {path.name for path in folder().iterdir()} == expected | {
+        "README.md",
+        *reference_files.EXAMPLES,
+    }
+
+
+@pytest.mark.parametrize("scene", names())
+def test_at_least_thirty_digits(scene: str) -> None:
+    """Every number but zero shows 32 significant digits, and no row is off by more than 10^-30."""
+    for row in sheet(scene):
+        assert Fraction(row["radius"]) <= Fraction(1, 10**30)
+        for name in set(row) - {"t", "radius"}:
+            shown = re.sub(r"e.*|[-.]", "", row[name]).lstrip("0")
+            assert len(shown) == DIGITS or row[name] == "0"
+
+
+# Right.
+
+
+def agrees(scene: str, route: str | None) -> None:
+    """Five rows of the files are within their radius of the motion computed anew to 45 digits."""
+    asked, rows = load(scene), sheet(scene)
+    chosen = [rows[k * (len(rows) - 1) // 4] for k in range(5)] if len(rows) > 4 else rows
+    times = [(row["t"], Fraction(row["t"])) for row in chosen]
+    sharper = document(asked, solution(asked, route), times, 45)["rows"]
+    for row, exact in zip(chosen, sharper, strict=True):
+        for quantity in VECTORS.keys() & exact.keys():
+            v, w = vector(row, quantity), flat(rational(exact[quantity]))
+            error = dot(d := [p - q for p, q in zip(v, w, strict=True)], d)
+            # The radius of the 45 digits is added: a comparison has two ends.
+            radius = Fraction(row["radius"]) + Fraction(exact["radius"])
+            assert error <= radius**2 * (dot(v, v) or 1)
+
+
+@pytest.mark.parametrize("scene", CHEAP)
+def test_the_digits_are_those_of_the_taylor_route(scene: str) -> None:
+    """The recursion, asked for 45 digits, is within the radius, whatever route made the file."""
+    agrees(scene, "taylor")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", names())
+def test_the_digits_are_those_of_exact(scene: str) -> None:
+    """`exact`, asked for 45 digits, is within the radius of every file."""
+    agrees(scene, None)
+
+
+def drift(scene: str, rows: Rows) -> float:
+    """The largest change over the rows of what a free motion conserves, relative to its scale."""
+    body = load(scene).body
+    found = [_euler(row, body) if isinstance(body, RigidBody) else _kirchhoff(row, body)
+             for row in rows]  # fmt: skip
+    largest = 0.0
+    for name, (first, _) in found[0].items():
+        scale = max(each[name][1] for each in found) or 1.0
+        change = max(size([p - q for p, q in zip(each[name][0], first, strict=True)])
+                     for each in found)  # fmt: skip
+        largest = max(largest, change / scale)
+    return largest
+
+
+def _euler(row: dict[str, str], body: RigidBody) -> dict[str, tuple[list[Fraction], float]]:
+    """T, |H|^2, and H in space: each with the product of sizes that its rounding scales with."""
+    w = vector(row, "omega")
+    H = applied(body.inertia, w)
+    inertia = size(flat(body.inertia))
+    found = {
+        "T": ([dot(w, H) / 2], inertia * size(w) ** 2),
+        "H2": ([dot(H, H)], (inertia * size(w)) ** 2),
+    }
+    if "r11" in row:
+        found["H_space"] = (turned(row, H), inertia * size(w))
+    return found
+
+
+def _kirchhoff(row: dict[str, str], body: Any) -> dict[str, tuple[list[Fraction], float]]:
+    """T, F^2 and FG; with attitude x in space, with centre the moment of the impulse in space."""
+    x, y = vector(row, "linear_impulse"), vector(row, "angular_impulse")
+    T = (dot(x, applied(body.linear, x)) + dot(y, applied(body.angular, y))) / 2
+    T += dot(x, applied(body.coupling, y))
+    a, b, c = (size(flat(m)) for m in (body.linear, body.coupling, body.angular))
+    found = {
+        "T": ([T], a * size(x) ** 2 + 2 * b * size(x) * size(y) + c * size(y) ** 2),
+        "F2": ([dot(x, x)], size(x) ** 2),
+        "FG": ([dot(x, y)], size(x) * size(y)),
+    }
+    if "r11" in row:
+        X = turned(row, x)
+        found["x_space"] = (X, size(x))
+        if "c1" in row:
+            p = vector(row, "centre")
+            cross = [
+                p[1] * X[2] - p[2] * X[1],
+                p[2] * X[0] - p[0] * X[2],
+                p[0] * X[1] - p[1] * X[0],
+            ]
+            moment = [m + n for m, n in zip(turned(row, y), cross, strict=True)]
+            found["y_space"] = (moment, size(y) + size(p) * size(x))
+    return found
+
+
+FREE = [name for name in names() if load(name).body.is_free]
+# Two rows, each with at most four factors (c, R, x and R y) that are off by 5.1e-32, and the sizes
+# of R: ‖R‖ = 3^(1/2). In all below 10^-30.
+THIRTY_DIGITS = 1e-30
+
+
+@pytest.mark.parametrize("scene", FREE)
+def test_what_is_conserved_is_constant_to_thirty_digits(scene: str) -> None:
+    """T and |H|^2, or T, F^2 and FG, and the impulse in space, from the printed digits alone."""
+    assert drift(scene, sheet(scene)) <= THIRTY_DIGITS
+
+
+@pytest.mark.parametrize("column", ["w2", "r12"])
+def test_one_wrong_digit_is_no_longer_constant(column: str) -> None:
+    """A change in the 27th digit of one number of one row is seen by what is conserved."""
+    rows = sheet("euler/nesc-brick")
+    rows[50][column] = str(Fraction(rows[50][column]) * (1 + Fraction(1, 10**27)))
+    assert not drift("euler/nesc-brick", rows) <= THIRTY_DIGITS
+
+
+@pytest.mark.parametrize("scene", [name for name in names() if load(name).track])
+def test_attitudes_are_rotations(scene: str) -> None:
+    """R R^T = 1 and det R = 1 to thirty digits, in every row."""
+    for row in sheet(scene):
+        r = vector(row, "attitude")
+        a, b, c = r[:3], r[3:6], r[6:]
+        gram = [dot(p, q) - (p is q) for p in (a, b, c) for q in (a, b, c)]
+        assert size(gram) <= THIRTY_DIGITS
+        det = dot(
+            a, [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]]
+        )
+        assert abs(det - 1) <= THIRTY_DIGITS
+
+
+# Remade.
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_remaking_gives_the_same_bytes(tmp_path: Path) -> None:
+    """The files of a scene computed anew are those of the folder, byte by byte."""
+    written = reference_files.write(tmp_path, [reference(load("euler/generic"))])
+    assert {path.name for path in written} == {
+        *("euler-generic.csv", "euler-generic.json", "README.md"),
+        *reference_files.EXAMPLES,
+    }
+    for path in written:
+        if path.name != "README.md":
+            assert path.read_bytes() == (folder() / path.name).read_bytes()
+
+
+def test_a_time_without_a_finite_decimal_is_the_decimal_that_is_printed(tmp_path: Path) -> None:
+    """At t = 1/3 the row is the motion at 0.33...3, 32 digits: time and motion go together."""
+    scene = tmp_path / "third.toml"
+    scene.write_text(
+        'title = "a third"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'
+        '[initial]\nomega = ["1e9", "2e9", "1/3"]\n[time]\nat = ["1/3"]\n',
+        encoding="utf-8",
+    )
+    found = reference(load(str(scene)))
+    assert found["columns"]["t"] == ["0." + "3" * 32]
+    assert found["initial"]["omega"] == ["1000000000", "2000000000", "1/3"]
+    asked = load(str(scene))
+    time = ("", Fraction(found["columns"]["t"][0]))
+    (row,) = document(asked, solution(asked), [time], DIGITS)["rows"]
+    assert [found["columns"][name][0] for name in VECTORS["omega"]] == row["omega"]
+
+
+def test_the_verb_writes_the_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`publish --reference` names each scene on stderr, prints what it wrote, and drops old scenes."""
+    scenes = ("euler/rest", "euler/generic")
+    reference_files.write(tmp_path, [reference(load("euler/generic")) | {"scene": "euler/gone"}])
+    mine = tmp_path / "reference" / "mine.json"
+    mine.write_text("{}\n", encoding="utf-8")
+    monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: scenes)
+    assert main(["publish", "--reference", "--from", str(tmp_path), "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert all(f"/2 {scene}\n" in err for scene in scenes)
+    folder = tmp_path / "reference"
+    assert {*json.loads(out)["written"], str(mine)} == {str(path) for path in folder.iterdir()}
+    assert "euler-gone.csv" not in contents(folder)
+    assert contents(folder)["euler-generic.csv"] == file("euler/generic", "csv").read_bytes()
+
+
+def test_a_scene_that_is_gone_loses_its_csv_without_its_json(tmp_path: Path) -> None:
+    """A clone has the CSV alone: the page says which of them are ours. Somebody's own stays."""
+    rest, gone = (
+        reference(load("euler/rest")),
+        {**reference(load("euler/rest")), "scene": "euler/x"},
+    )
+    for path in reference_files.write(tmp_path, [rest, gone]):
+        if path.suffix == ".json":
+            path.unlink()
+    mine = tmp_path / "reference" / "mine.csv"
+    mine.write_text("t\n", encoding="utf-8")
+    written = reference_files.write(tmp_path, [rest])
+    assert {*written, mine} == set((tmp_path / "reference").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [(Unsettled("two evaluations do not agree"), r"euler/rest: two evaluations do not agree$"),
+     (ZeroDivisionError("by zero"), r"euler/rest: ZeroDivisionError: by zero.*please report it")],
+)  # fmt: skip
+def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> None:
+    """Whatever a worker meets comes back as one line with the scene in it."""
+
+    def broken(scene: object) -> dict[str, Any]:
+        raise error
+
+    with pytest.raises(Failed, match=text):
+        document_of(broken, "euler/rest")
+
+
+def test_documents_come_in_the_order_asked_for() -> None:
+    """Whichever worker ends first, and each is told of once."""
+    asked, told = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
+    found = references(asked, told.append)
+    assert [each["scene"] for each in found] == asked
+    assert sorted(told) == sorted(asked)
+    assert found[2] == reference(load("euler/generic"))
+
+
+# Read.
+
+
+def test_the_page_names_every_file() -> None:
+    """Each link of the page leads to a file; it links to all but the JSON; its maker is line 1."""
+    text = (folder() / "README.md").read_text(encoding="utf-8")
+    assert text.splitlines()[0] == MADE_BY
+    assert "{{" not in text
+    links = set(re.findall(r"\]\(([^)]+)\)", text))
+    committed = {path.name for path in folder().iterdir() if path.suffix != ".json"}
+    assert links == committed - {"README.md"} | {"../tables/attainable.csv"}
+    for name in reference_files.EXAMPLES:
+        assert (folder() / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The program of the page, compiled as the page says, with warnings as errors."""
+    compiler = shutil.which("g++")
+    if compiler is None:
+        pytest.skip("there is no g++ on this machine")
+    program = tmp_path_factory.mktemp("example") / "example"
+    options = ["-std=c++17", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+    source = str(folder() / "example.cpp")
+    subprocess.run([compiler, *options, source, "-o", str(program)], check=True)
+    return program
+
+
+def compared(example: Path, reference: Path, mine: Path, tolerance: str) -> int:
+    command = [str(example), str(reference), str(mine), tolerance]
+    return subprocess.run(command, capture_output=True, check=False).returncode
+
+
+@pytest.mark.parametrize(
+    ("cell", "status"),
+    [("0.5000000001", 0), ("0.500001", 1), ("nan", 1), ("-nan", 1), ("inf", 1), ("-0.5", 1)],
+)
+def test_the_example_sees_a_wrong_number(
+    example: Path, tmp_path: Path, cell: str, status: int
+) -> None:
+    """An error above the tolerance, a NaN or an infinity in one cell is status 1, else it is 0."""
+    exact, mine = tmp_path / "exact.csv", tmp_path / "mine.csv"
+    exact.write_text("t,w1,w2,w3,radius\n0,1,0,0,5e-32\n1,0.5,0,0,5e-32\n", encoding="utf-8")
+    mine.write_text(f"w3,w2,w1,t\n0,0,1,0\n0,0,{cell},1\n", encoding="utf-8")
+    assert compared(example, exact, mine, "1e-8") == status
+
+
+def test_the_example_accepts_every_reference(example: Path) -> None:
+    """Each file read twice agrees with itself exactly, and no other scene passes for it."""
+    for scene in names():
+        assert compared(example, file(scene, "csv"), file(scene, "csv"), "0") == 0
+    others = (file("euler/tennis-racket", "csv"), file("euler/generic", "csv"))
+    assert compared(example, *others, "1e-3") == 1
+
+
+def kutta(steps: int, sign: float = 1.0) -> list[list[float]]:
+    """euler/generic by Kutta's method in doubles, so many steps a unit of time, from its JSON alone.
+
+    With ``sign`` -1 the gyroscopic term is wrong.
+    """
+    asked = question("euler/generic")
+    I1, I2, I3 = (float(row[k]) for k, row in enumerate(asked["body"]["inertia"]))
+    h = 1 / steps
+
+    def rate(w: list[float]) -> list[float]:
+        a, b, c = w
+        free = [(I2 - I3) / I1 * b * c, (I3 - I1) / I2 * c * a, (I1 - I2) / I3 * a * b]
+        return [sign * part for part in free]
+
+    def moved(w: list[float], k: list[float], h: float) -> list[float]:
+        return [p + h * q for p, q in zip(w, k, strict=True)]
+
+    w = [float(p) for p in asked["initial"]["omega"]]
+    rows = [w]
+    for _ in asked["t"][1:]:  # 0, 1, 2, ...
+        for _ in range(steps):
+            k1 = rate(w)
+            k2 = rate(moved(w, k1, h / 2))
+            k3 = rate(moved(w, k2, h / 2))
+            k4 = rate(moved(w, k3, h))
+            for part, weight in ((k1, 1), (k2, 2), (k3, 2), (k4, 1)):
+                w = moved(w, part, h * weight / 6)
+        rows.append(w)
+    return rows
+
+
+def test_a_method_of_order_four_converges_to_the_reference() -> None:
+    """Half the step leaves a sixteenth of the error, which it would not towards anything else.
+
+    The next term of the error is smaller by about the step, 1/50: the ratio is 16 to a tenth.
+    """
+    exact = [[float(p) for p in vector(row, "omega")] for row in sheet("euler/generic")]
+    coarse, fine = (
+        max(math.dist(p, q) for p, q in zip(kutta(steps), exact, strict=True))
+        for steps in (50, 100)
+    )
+    assert abs(coarse / fine / 16 - 1) <= 0.1
+
+
+@pytest.mark.parametrize(("sign", "status"), [(1.0, 0), (-1.0, 1)])
+def test_a_solver_of_ones_own_meets_the_reference(
+    example: Path, tmp_path: Path, sign: float, status: int
+) -> None:
+    """A solver written from the page is within 1e-8, where the page says to start; a wrong sign is not.
+
+    At a step of 1/100 and order four, 1e-8 is h^4 itself.
+    """
+    rows = zip(question("euler/generic")["t"], kutta(100, sign), strict=True)
+    lines = ["t,w1,w2,w3", *(",".join([t, *map(repr, w)]) for t, w in rows)]
+    mine = tmp_path / "mine.csv"
+    mine.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    assert compared(example, file("euler/generic", "csv"), mine, "1e-8") == status
+
+
+def test_the_citation_is_of_this_version() -> None:
+    """CITATION.cff has the version of the package, and the name and the licence of pyproject.toml."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    for key, value in {
+        "cff-version": "1.2.0",
+        "version": taylor_verify.__version__,
+        "title": f'"{project["name"]}"',
+        "license": project["license"],
+    }.items():
+        assert f"{key}: {value}" in lines

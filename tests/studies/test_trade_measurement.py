@@ -1,0 +1,297 @@
+"""The published measurement: medians and their intervals, rounds and their yardstick, what is stored."""
+
+from __future__ import annotations
+
+import json
+import random
+from dataclasses import dataclass, fields, replace
+from math import comb, isclose
+from pathlib import Path
+from statistics import median
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies import report
+from taylor_verify.studies.tradeoff import measurement, rounds
+from taylor_verify.studies.tradeoff.document import TradePoint
+from taylor_verify.studies.tradeoff.measurement import PROCESSES, SCENES, published_settings
+from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, coverage, estimate, place
+from taylor_verify.studies.tradeoff.rounds import YARDSTICK, clock_resolution, measured
+from taylor_verify.studies.tradeoff.setting import setting as real_setting
+
+# The median and its interval.
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30))
+def test_the_interval_is_made_of_the_values_and_holds_the_median(values: list[float]) -> None:
+    """Its ends are two of the values, as far from the lowest as from the highest."""
+    found = estimate(values)
+    assert found.median == median(values)
+    if found.low is not None and found.high is not None:
+        assert found.low <= found.median <= found.high
+        rank, ranked = place(len(values), CONFIDENCE), sorted(values)
+        assert (found.low, found.high) == (ranked[rank - 1], ranked[::-1][rank - 1])
+
+
+@pytest.mark.parametrize("count", range(1, 40))
+def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
+    """One step further in, the probability is below it; and it is that of the binomial distribution."""
+    rank = place(count, CONFIDENCE)
+    if rank:
+        assert coverage(count, rank) >= CONFIDENCE
+    assert not coverage(count, rank + 1) >= CONFIDENCE
+    between = sum(comb(count, below) for below in range(rank, count - rank + 1)) / 2**count
+    assert isclose(between, coverage(count, rank), abs_tol=1e-12)
+
+
+def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> None:
+    """With one process fewer not even the extremes would hold the median with 95 %."""
+    assert place(PROCESSES, CONFIDENCE) == 1
+    assert place(PROCESSES - 1, CONFIDENCE) == 0
+    assert estimate(range(PROCESSES - 1)).low is None
+
+
+def test_the_interval_holds_the_median_as_often_as_it_says() -> None:
+    """Drawn from a distribution with a long tail, whose median is 1, in a thousand sets of six."""
+    draw = random.Random(7)
+    sets = 4000
+    held = 0
+    for _ in range(sets):
+        found = estimate(2.0 ** draw.gauss(0, 3) for _ in range(PROCESSES))
+        assert found.low is not None
+        assert found.high is not None
+        held += found.low <= 1 <= found.high
+    expected = coverage(PROCESSES, 1)
+    # Four standard deviations of a binomial count.
+    assert abs(held / sets - expected) <= 4 * (expected * (1 - expected) / sets) ** 0.5
+
+
+# The rounds of a process.
+
+
+class Machine:
+    """A machine whose speed drifts: each solve takes longer than the last by one per cent."""
+
+    def __init__(self) -> None:
+        self.slowness = 1.0
+        self.solved: list[str] = []
+
+    def take(self, name: str, seconds: float) -> float:
+        self.slowness *= 1.01
+        self.solved.append(name)
+        return seconds * self.slowness
+
+
+@dataclass(frozen=True)
+class Paced(Solver):
+    """Takes what it is told to, on a machine that drifts."""
+
+    machine: Machine
+    name: str
+    seconds: float
+    outcome: Outcome = Outcome.FINISHED
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        seconds = self.machine.take(self.name, self.seconds)
+        return Trajectory(self.outcome, seconds=seconds, inner_seconds=seconds / 2)
+
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
+    """Settings are made up; each name says how long a solve takes, or that it fails."""
+    found = Machine()
+
+    def made_up(name: str, on: object) -> object:
+        if name == YARDSTICK[0]:
+            return replace(real_setting(*_taylor()), solver=Paced(found, name, 0.02))
+        word, _, seconds = name.partition(":")
+        outcome = Outcome.NON_FINITE if word == "broken" else Outcome.FINISHED
+        return replace(real_setting(*_taylor()), solver=Paced(found, name, float(seconds), outcome))
+
+    monkeypatch.setattr(rounds, "setting", made_up)
+    return found
+
+
+def _taylor() -> tuple[str, object]:
+    from taylor_verify.scenes.precision import rung
+
+    return "taylor", rung("f64")
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return load("euler/generic")
+
+
+def names(*words: str) -> list[tuple[str, str]]:
+    return [(word, "f64") for word in words]
+
+
+def test_a_ratio_is_formed_within_its_round(machine: Machine, scene: Scene) -> None:
+    """A machine that slows down tenfold over a run shifts no ratio by more than one round does."""
+    asked = names(*(f"a{k}:0.04" for k in range(12)))
+    found = measured(scene, asked, seed=3, rounds=18, resolution=1e-9)
+    assert machine.slowness > 10
+    # A round has 13 solves or so, each a per cent slower than the one before.
+    for one in found.values():
+        assert 2 / 1.01**14 <= one.ratio <= 2 * 1.01**14
+        assert one.inner == pytest.approx(one.seconds / 2)
+
+
+def test_each_round_has_an_order_of_its_own_and_every_setting(
+    machine: Machine, scene: Scene
+) -> None:
+    """Nothing meets always the same neighbour; the yardstick is in every round, asked for or not."""
+    asked = names(*(f"a{k}:0.04" for k in range(8)))
+    measured(scene, asked, seed=3, rounds=4, resolution=1e-9)
+    each = [machine.solved[k : k + 9] for k in range(0, len(machine.solved), 9)]
+    assert len(each) == 5
+    assert all(sorted(one) == sorted(each[0]) for one in each)
+    assert len({tuple(one) for one in each[1:]}) > 1
+    assert all(YARDSTICK[0] in one for one in each)
+
+
+def test_a_short_solve_is_repeated_until_the_clock_resolves_it(
+    machine: Machine, scene: Scene
+) -> None:
+    """A measurement lasts at least a hundred times the clock's resolution."""
+    asked = names("quick:0.001")
+    measured(scene, asked, seed=1, rounds=1, resolution=1e-3)
+    # 0.1 s in solves of a thousandth; the first solve of all is not among them.
+    assert machine.solved.count("quick:0.001") - 1 >= 0.1 / 0.001 / machine.slowness
+
+
+def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
+    """A setting that does not finish has no time, and the others do."""
+    found = measured(scene, names("broken:0.01", "sound:0.01"), 1, 2, 1e-9)
+    assert set(found) == {("sound:0.01", "f64")}
+    assert machine.solved.count("broken:0.01") == 1
+
+
+def test_what_is_dear_is_solved_once(
+    machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its only solve counts, over the yardstick of all the rounds."""
+    monkeypatch.setattr(rounds, "_DEAR", -1.0)
+    found = measured(scene, names("dear:0.3"), 1, 3, 1e-9)
+    assert machine.solved.count("dear:0.3") == 1
+    assert machine.solved.count(YARDSTICK[0]) == 4
+    (one,) = found.values()
+    assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
+
+
+def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
+    """Of a clock that ticks in quarters, a quarter, however often it is asked in between."""
+    asked = 0
+
+    def clock() -> float:
+        nonlocal asked
+        asked += 1
+        return (asked // 3) * 0.25
+
+    assert clock_resolution(clock) == 0.25
+
+
+# What is measured, and what is stored of it.
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_published_setting_can_be_named_again(name: str) -> None:
+    """A worker process gets names alone: each leads to the same solver, once."""
+    asked = published_settings(load(name))
+    found = [(one.solver.name, one.rung.name) for one in asked]
+    assert len(set(found)) == len(found)
+    assert YARDSTICK in found
+    for one in asked:
+        again = real_setting(one.solver.name, one.rung)
+        assert again.solver == one.solver
+        assert again.family == one.family
+
+
+def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
+    """Each name that is published with --outside is one that there is."""
+    scene = load("kirchhoff/general-body")
+    extra = set(published_settings(scene, True)) - set(published_settings(scene))
+    assert len(extra) == len(measurement._COMPILED) * len(measurement._FOR_THE_COLUMNS)
+
+
+def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
+    """No time stands among the numbers, and every setting that is sound has one among the times."""
+    few = [
+        replace(real_setting(name, _taylor()[1]), withheld=reason)  # type: ignore[arg-type]
+        for name, reason in (("taylor", ""), ("taylor?tol=1e-6", ""), ("scipy:DOP853", "too slow"))
+    ]
+    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: tuple(few))
+    monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
+    monkeypatch.setattr(measurement, "_in_a_new_process", measurement.one_process)
+    told: list[str] = []
+    found = measurement.measurement(["euler/generic"], 2, 1, finished=told.append)
+    numbers, times = found.numbers(), found.times()
+    (one,) = numbers.scenes
+    assert {p.scene for p in numbers.points} == {one.scene}
+    assert not {"seconds", "spread", "repeats"} & {f.name for f in fields(TradePoint)}
+    sound, not_run = Standing.SOUND, Standing.NOT_RUN
+    assert [p.standing for p in numbers.points] == [sound, sound, not_run]
+    timed = {(row.solver, row.rung): row for row in times.timings}
+    assert set(timed) == {("taylor", "f64"), ("taylor?tol=1e-6", "f64")}
+    assert timed[YARDSTICK].ratio == 1
+    assert timed[YARDSTICK].processes == 2
+    # Two processes are too few for an interval, and none is claimed.
+    assert timed[YARDSTICK].low is None
+    assert len(told) == 4
+
+
+def test_the_yardstick_is_what_everybody_gets() -> None:
+    """It is the driver as `run` takes it by default."""
+    assert real_setting(*_taylor()).solver == Taylor()  # type: ignore[arg-type]
+
+
+def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
+    """What passes there and back is names and numbers."""
+    short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
+    asked = [(short, names("taylor", "taylor?tol=1e-6"))]
+    found = measurement._in_a_new_process(asked, 1, 1)
+    assert set(found) == {short.name}
+    assert set(found[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
+    assert all(one.seconds > 0 for one in found[short.name].values())
+
+
+def test_the_verb_writes_data_and_page(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`publish --tradeoff` measures and writes; plain `publish` makes the page again from the data."""
+    few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
+    whole = measurement.measurement
+    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
+    monkeypatch.setattr(measurement, "_in_a_new_process", measurement.one_process)
+    monkeypatch.setattr(
+        measurement,
+        "measurement",
+        lambda with_outside, finished: whole(["euler/generic"], 1, 1, with_outside, 1, finished),
+    )
+    assert main(["publish", "--tradeoff", "--from", str(tmp_path), "--json"]) == 0
+    written = json.loads(capsys.readouterr().out)["written"]
+    pictures = {name for name in written if Path(name).parent.name == "figures"}
+    assert {Path(name).suffix for name in pictures} == {".svg", ".pdf"}
+    assert {Path(name).name for name in set(written) - pictures} == {
+        *("tradeoff.json", "tradeoff-timings.json", "tradeoff.md", "tradeoff.csv")
+    }
+    page = tmp_path / "tables" / "tradeoff.md"
+    before = page.read_text(encoding="utf-8")
+    page.unlink()
+    report.write(tmp_path, taylor_verify.run("euler/rest").verdicts, [])
+    assert main(["publish", "--from", str(tmp_path)]) == 0
+    assert page.read_text(encoding="utf-8") == before
+    assert "tables/tradeoff.md" in (tmp_path / "README.md").read_text(encoding="utf-8")

@@ -1,0 +1,315 @@
+"""The page of speed against accuracy says what is stored, and nothing that is not."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from dataclasses import replace
+from math import log10
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from taylor_verify.publish.cells import NOTHING
+from taylor_verify.publish.pictures.wording import floors_of
+from taylor_verify.records.standing import Standing
+from taylor_verify.studies.report import publish_tradeoff
+from taylor_verify.studies.tradeoff.document import (
+    PlainDouble,
+    TimingMachine,
+    TimingMethod,
+    TradeNumbers,
+    TradePoint,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
+)
+from taylor_verify.studies.tradeoff.page import front, page
+from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
+
+
+def point(solver: str, error: float | None, **changed: Any) -> TradePoint:
+    """A point as it is stored, without times."""
+    family = solver.partition("?")[0].replace(":", " ")
+    rung = changed.get("rung", "f64")
+    tolerance = re.search(r"tol=([^&]*)", solver)
+    row = {
+        "scene": "euler/generic",
+        "solver": solver,
+        "setting": "",
+        "rung": rung,
+        "family": f"taylor {rung}" if family == "taylor" else family,
+        "asked": "tolerance" if tolerance else "",
+        "requested": float(tolerance[1]) if tolerance else None,
+        "requested_digits": None,
+        "achieved_digits": None if not error else round(-log10(error), 6),
+        "error": error,
+        "max": {},
+        "final": {},
+        "drift": 1e-15,
+        "drifting": "T",
+        "steps": 7,
+        "evaluations": 70,
+        "outcome": "reached the last sample",
+        "standing": Standing.SOUND,
+        "because": "",
+    }
+    return TradePoint(**(row | changed))
+
+
+POINTS = (
+    point("taylor?tol=1e-6", 1e-7),
+    point("taylor", 1e-14),
+    point("taylor", 1e-32, rung="f128"),
+    point("scipy:DOP853?rtol=1e-6&atol=1e-6", 1e-5),
+    point("scipy:DOP853?rtol=1e-9&atol=1e-9", 1e-8),
+    point("scipy:RK45?rtol=1e-9&atol=1e-9", 1e-7),
+    point(
+        "scipy:RK45?rtol=1e-3&atol=1e-3",
+        1.5,
+        standing=Standing.FALSE,
+        because="it claims success with an error of 1.5, the size | of the motion",
+    ),
+    point("geometric:splitting?step=1/4", 1e-3, asked="step", requested=0.25),
+    point("outside:cvode-bdf?rtol=1e-9&atol=1e-9", 1e-10),
+    point("closed-form:ellipj", 1e-14),
+    point("mpmath:odefun", None, standing=Standing.NOT_RUN, because="it would take minutes"),
+)
+# By solver and rung: ratio to the yardstick.
+RATIOS = {
+    ("taylor?tol=1e-6", "f64"): 0.8,
+    ("taylor", "f64"): 1.0,
+    ("taylor", "f128"): 40.0,
+    ("scipy:DOP853?rtol=1e-6&atol=1e-6", "f64"): 6.0,
+    ("scipy:DOP853?rtol=1e-9&atol=1e-9", "f64"): 12.0,
+    ("scipy:RK45?rtol=1e-9&atol=1e-9", "f64"): 30.0,
+    ("geometric:splitting?step=1/4", "f64"): 2.0,
+    ("outside:cvode-bdf?rtol=1e-9&atol=1e-9", "f64"): 0.9,
+    ("closed-form:ellipj", "f64"): 0.1,
+}
+REACHED = "reached the last sample"
+SCENE = TradeScene("euler/generic", "A body", ("omega",), "0")
+NUMBERS_MADE = TradeNumbers(
+    versions={"heyoka": "7.13.0"},
+    yardstick="taylor f64",
+    scenes=(SCENE,),
+    plain_doubles=(
+        PlainDouble(
+            *("easy", "euler/generic", 100.0, 0.5, 1e-14),
+            *(REACHED, Standing.SOUND, "", "taylor", 2e-14),
+        ),
+        PlainDouble(
+            *("hard", "euler/generic", 100.0, 2e-12, 4e18),
+            *(REACHED, Standing.FALSE, "", "taylor", None),
+        ),
+    ),
+    points=POINTS,
+)
+TIMES_MADE = TradeTimings(
+    machine=TimingMachine("A chip", "3.11.7", "taylor-verify publish"),
+    method=TimingMethod(
+        processes=6,
+        rounds=3,
+        seed=1,
+        least_seconds=2e-3,
+        times_resolution=100,
+        clock_resolution=5e-8,
+        confidence=0.95,
+        coverage=0.96875,
+        formula="1 - 2 sum_{i<k} C(n, i)/2^n",
+        of="the propagation",
+    ),
+    timings=tuple(
+        TradeTiming(
+            scene="euler/generic",
+            solver=solver,
+            rung=rung,
+            seconds=ratio / 500,
+            inner_seconds=0.001 if solver == "taylor" else None,
+            ratio=ratio,
+            low=ratio * 0.9,
+            high=ratio * 1.2,
+            processes=6,
+        )
+        for (solver, rung), ratio in RATIOS.items()
+    ),
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    publish_tradeoff(tmp_path, NUMBERS_MADE, TIMES_MADE)
+    return tmp_path
+
+
+def text_of(folder: Path) -> str:
+    return (folder / "tables" / "tradeoff.md").read_text(encoding="utf-8")
+
+
+def section(text: str, heading: str) -> str:
+    return text.partition(f"## {heading}\n")[2].partition("\n## ")[0]
+
+
+def line(text: str, *words: str) -> list[str]:
+    """The cells of the only line that has all these words."""
+    (found,) = [row for row in text.splitlines() if all(word in row for word in words)]
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", found)[1:-1]]
+
+
+def test_no_time_stands_with_the_numbers(folder: Path) -> None:
+    """The file that can be compared between machines has no seconds and no machine in it."""
+    numbers = (folder / NUMBERS).read_text(encoding="utf-8")
+    assert "seconds" not in numbers
+    assert "chip" not in numbers
+    assert "A chip" in (folder / TIMINGS).read_text(encoding="utf-8")
+
+
+def test_what_was_stored_is_read_again(folder: Path) -> None:
+    """Every row comes back, with its ratio and the width of its interval as a spread."""
+    found = load(folder)
+    assert found is not None
+    (trade,) = found.trades
+    assert found == Trades(NUMBERS_MADE, TIMES_MADE)
+    assert trade.points == POINTS
+    assert trade.rows[1]["ratio"] == 1.0
+    assert trade.rows[1]["spread"] == pytest.approx(1.2 / 0.9)
+    assert trade.rows[-1]["ratio"] is None
+    assert json.dumps(trade.document(), allow_nan=False)
+
+
+def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
+    """Of those that leave so many the fastest, with its tolerance; none that only asked for them."""
+    table = section(text_of(folder), "What so many digits cost")
+    _, _, six, nine, twelve = line(table, "SciPy DOP853")
+    # The one at 1e-6 leaves five digits, so the one at 1e-9 stands here.
+    assert six == "**12.0** [10.8, 14.4] @ 1e-09"
+    assert (nine, twelve) == ("not reached", "not reached")
+    _, _, six, nine, twelve = line(table, "| taylor ")
+    assert six.startswith("**0.80")
+    assert nine == twelve
+    assert nine.startswith("**1.00** ")
+    _, _, six, nine, twelve = line(table, "fastest compiled other library")
+    assert six.startswith("outside cvode-bdf, **0.9")
+    assert twelve == "not reached"
+
+
+def test_a_wider_number_has_its_price(folder: Path) -> None:
+    """A column for each rung of taylor at its own tolerance, narrow ones first."""
+    table = section(text_of(folder), "What a wider number costs")
+    assert table.index("f64") < table.index("f128")
+    assert "**40.0** [36.0, 48.0], 32.0 digits" in table
+
+
+@pytest.mark.parametrize("floors", [{"f64": 2e-16, "f128": None}, {}])
+def test_what_rounding_alone_leaves_stands_beside_it(
+    floors: dict[str, float | None], tmp_path: Path
+) -> None:
+    """A line of digits on each rung where the measurement has them, none where it does not."""
+    write(tmp_path, replace(NUMBERS_MADE, scenes=(replace(SCENE, attainable=floors),)), TIMES_MADE)
+    if not floors:
+        without_key(tmp_path / NUMBERS, "attainable")
+    found = load(tmp_path)
+    assert found is not None
+    table = section(page(found, tmp_path), "What a wider number costs")
+    if not floors:
+        assert "| *attainable*" not in table
+        return
+    assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
+    assert floors_of(found.trades[0].document()) == {"f64": 2e-16}
+
+
+def without_key(file: Path, key: str) -> None:
+    """As a measurement of earlier versions stored it."""
+    document = json.loads(file.read_text(encoding="utf-8"))
+    for scene in document["scenes"]:
+        del scene[key]
+    file.write_text(json.dumps(document), encoding="utf-8")
+
+
+def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
+    """A false success is no digit, no front, no cell of a cost; its reason cannot break the table."""
+    text = text_of(folder)
+    listed = section(text, "What failed, and what was not run")
+    assert "false success" in line(listed, "RK45?rtol=1e-3")
+    assert r"size \| of the motion" in listed
+    assert "it would take minutes" in listed
+    assert "rtol=1e-3" not in section(text, "The front")
+    assert "rtol=1e-3" not in section(text, "What so many digits cost")
+    assert "false success" in line(section(text, "Asked for and achieved"), "SciPy RK45")
+
+
+def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> None:
+    """What takes no steps leads; behind it the integrators have a front of their own."""
+    told = section(text_of(folder), "The front")
+    whole, _, integrators = told.partition("And of the integrators alone:")
+    assert "closed-form:ellipj" in whole
+    assert "outside:cvode-bdf" not in whole
+    assert "closed-form:ellipj" not in integrators
+    assert integrators.index("taylor?tol=1e-6") < integrators.index("outside:cvode-bdf")
+
+
+def test_the_front_is_what_nothing_beats() -> None:
+    """Of equal times the more accurate stays; of equal errors the faster."""
+    timing = TIMES_MADE.timings[0]
+    rows = [
+        TimedPoint(point("taylor", error), replace(timing, ratio=ratio))
+        for ratio, error in ((1.0, 1e-3), (1.0, 1e-4), (2.0, 1e-4), (3.0, 1e-5))
+    ]
+    assert front(rows) == [rows[1], rows[3]]
+
+
+def test_a_false_success_of_the_closed_form_stands_out(folder: Path) -> None:
+    """Its error is bold, and what it claims is called false."""
+    told = section(text_of(folder), "The closed form in plain doubles")
+    assert "**4.00e18**" in told
+    assert "**success, falsely**" in told
+    assert line(told, "| easy ")[-1] == "success"
+
+
+def test_the_method_is_on_the_page(folder: Path) -> None:
+    """Processes, rounds, confidence, formula, machine and command, as they were."""
+    told = section(text_of(folder), "How it was timed, and where")
+    for word in ("6 fresh processes", "3 rounds", "96.9%", "A chip", "seed 1", "n = 6"):
+        assert word in told
+    assert "make tradeoff" in section(text_of(folder), "To remake this")
+
+
+def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
+    """The page says so, and shows no brackets."""
+    method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
+    bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
+    publish_tradeoff(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
+    text = text_of(tmp_path)
+    assert "No interval is given" in text
+    assert "**12.0** @ 1e-09" in text
+
+
+def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
+    """With every digit, the failed ones included."""
+    text = (folder / "tables" / "tradeoff.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
+    assert rows[1]["ratio"] == "1.0"
+    assert rows[6]["standing"] == "false success"
+
+
+def test_the_page_can_be_made_again_from_the_data(folder: Path) -> None:
+    """It is a function of what is stored."""
+    found = load(folder)
+    assert found is not None
+    assert page(found, folder) == text_of(folder)
+
+
+def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:
+    """Nothing is made of nothing."""
+    assert load(tmp_path) is None
+
+
+def test_a_file_of_something_else_is_told(folder: Path) -> None:
+    """With the file."""
+    (folder / NUMBERS).write_text("{}", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
+        load(folder)

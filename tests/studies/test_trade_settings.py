@@ -1,0 +1,304 @@
+"""Which settings a trade-off compares, how each is named, and what one that cannot run is called."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.standing import Standing
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import NAMES, check_name, solver_named
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.trajectory import Trajectory
+from taylor_verify.studies.tradeoff.cold import cold
+from taylor_verify.studies.tradeoff.recommend import recommend
+from taylor_verify.studies.tradeoff.setting import (
+    NOTHING,
+    STEP,
+    TOLERANCE,
+    Setting,
+    chosen,
+    outside,
+    setting,
+    settings,
+)
+from taylor_verify.studies.tradeoff.trade_off import trade_off
+
+F64 = rung("f64")
+
+
+def short(name: str, end: int = 2) -> Scene:
+    times = (Fraction(0), Fraction(1), Fraction(end))
+    return replace(load(name), clock=Clock(Fraction(0), times))
+
+
+# Names.
+
+
+def test_a_tolerance_of_taylor_has_a_name() -> None:
+    """`taylor?tol=NUMBER` is the driver at that tolerance, exactly as written."""
+    found = solver_named("taylor?tol=1e-9")
+    assert isinstance(found, Taylor)
+    assert found.tolerance == Fraction(1, 10**9)
+    assert found == at_tolerance("1e-9")
+    assert solver_named("taylor") == Taylor()
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("taylor?tol=0", r"expected a positive number, got '0' @ tol"),
+        ("taylor?tol=many", r"got 'many' @ tol"),
+        ("taylor?", r"expected \?tol=NUMBER after taylor, got none"),
+        ("taylor?rtol=1e-6", r"got 'rtol'; did you mean tol\?"),
+        ("taylor?tol=1&tol=2", r"got tol twice"),
+        ("taylor:tol=1e-6", r"expected a solver"),
+        ("scipy:extra:RK45", r"expected a method"),
+    ],
+)
+def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
+    """What was expected, what came, and where."""
+    with pytest.raises(ValueError, match=told):
+        check_name(name)
+
+
+def test_checking_a_tolerance_loads_no_heyoka() -> None:
+    """A wrong name is told before anything heavy is imported."""
+    program = (
+        "import sys; from taylor_verify.solvers.registry import check_name; "
+        "check_name('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_a_tolerance_that_the_rung_cannot_hold_is_unavailable() -> None:
+    """heyoka would read a zero as its default; it is never given one."""
+    (verdict,) = taylor_verify.run("euler/generic", "taylor?tol=1e-60", "f32").verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert "f32 has no number" in verdict.because
+
+
+def test_every_solver_of_the_sweep_is_listed() -> None:
+    """`list` shows a name of the form of every setting that is measured."""
+    listed = {name.partition("?")[0] for name in NAMES}
+    measured = {one.solver.name.partition("?")[0] for one in settings(load("euler/generic"))}
+    assert measured <= listed
+
+
+# Settings.
+
+
+@pytest.mark.parametrize(
+    ("name", "asked", "requested", "family"),
+    [
+        ("taylor", TOLERANCE, 2.0**-52, "taylor f64"),
+        ("taylor?tol=1e-6", TOLERANCE, 1e-6, "taylor f64"),
+        ("scipy:RK45?atol=1e-3&rtol=1e-7", TOLERANCE, 1e-7, "scipy RK45"),
+        ("scipy:LSODA", NOTHING, None, "scipy LSODA"),
+        ("geometric:splitting?step=1/64", STEP, 1 / 64, "geometric splitting"),
+        ("mpmath:odefun?degree=9&tol=1e-5", TOLERANCE, 1e-5, "mpmath odefun"),
+        ("closed-form:ellipj", NOTHING, None, "closed-form ellipj"),
+        ("process:./mine?tol=1e-3", NOTHING, None, "process:./mine?tol=1e-3"),
+    ],
+)
+def test_a_setting_is_read_from_its_name(
+    name: str, asked: str, requested: float | None, family: str
+) -> None:
+    """What a solver is asked for is in its name, but for a command of one's own."""
+    found = setting(name, F64)
+    assert (found.asked, found.requested, found.family) == (asked, requested, family)
+    assert found.solver.name == name
+
+
+def test_the_chosen_stand_beside_the_yardstick() -> None:
+    """Named solvers on the rungs they know, every tolerance of taylor, and nothing else, each once."""
+    names = ["scipy:DOP853?rtol=1e-6", "taylor?tol=1e-6", "process:./mine"]
+    found = chosen(names, ["f64", "f128"])
+    assert len(set(found)) == len(found)
+    others = [one for one in found if not isinstance(one.solver, Taylor)]
+    assert [(one.solver.name, one.rung.name) for one in others] == [
+        ("scipy:DOP853?rtol=1e-6", "f64"),
+        ("process:./mine", "f64"),
+        ("process:./mine", "f128"),
+    ]
+    taylor = {one.rung.name for one in found if one.solver == Taylor()}
+    assert taylor == {"f64", "f128"}
+
+
+def test_a_solver_that_knows_none_of_the_rungs_says_so() -> None:
+    """It stands in the trade with its reason rather than being forgotten."""
+    found = chosen(["closed-form:ellipj"], ["f80", "f128"])
+    (one,) = [one for one in found if not one.is_integrator]
+    (p,) = trade_off(short("euler/generic"), [one], repeats=1).points
+    assert p.standing is Standing.NOT_RUN
+    assert "f64 alone" in p.because
+
+
+def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:
+    """Each at four tolerances, coarsest first, on f64, where all of them are at home."""
+    found = outside(["f64", "f128"])
+    assert found
+    assert {one.rung.name for one in found} == {"f64"}
+    for name in {one.family for one in found}:
+        its = [one for one in found if one.family == name]
+        assert name.startswith("outside ")
+        assert [one.requested for one in its] == [1e-3, 1e-6, 1e-9, 1e-12]
+    assert outside(["f128"]) == ()
+    few = outside(["f64"], ["cyrk-dop853"], ["1e-8", "1e-11"])
+    assert [one.requested for one in few] == [1e-8, 1e-11]
+
+
+def test_odefun_is_withheld_from_a_long_motion() -> None:
+    """It would take minutes: the trade says so and does not begin it."""
+    scene = load("euler/generic")
+    long = replace(scene, clock=Clock(Fraction(0), (Fraction(0), Fraction(10**6))))
+    slow = [one for one in settings(long, ["f64"]) if one.family == "mpmath odefun"]
+    assert slow
+    for p in trade_off(long, slow, repeats=1).points:
+        assert p.standing is Standing.NOT_RUN
+        assert "would take minutes" in p.because
+
+
+# What a solver is not made for.
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "reason"),
+    [
+        ("euler/constant-moment", "geometric:splitting?step=0.1", "a body without a moment"),
+        ("kirchhoff/screw", "geometric:lie-rk4?step=0.1", "made for Euler's equations"),
+        ("kirchhoff/screw", "closed-form:ellipj", "made for Euler's equations"),
+    ],
+)
+def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, reason: str) -> None:
+    """Its verdict fails no gate, and its point in the trade is not run; both say why."""
+    (verdict,) = taylor_verify.run(short(scene), name).verdicts
+    assert verdict.verdict is Status.UNAVAILABLE
+    assert reason in verdict.because
+    (p,) = trade_off(short(scene), [setting(name, F64)], repeats=1).points
+    assert (p.standing, p.timed.trajectory.steps) == (Standing.NOT_RUN, 0)
+    assert reason in p.because
+
+
+def test_a_solver_of_ones_own_suits_everything() -> None:
+    """Nobody knows beforehand what a stranger's code is made for."""
+    problem = pose(short("kirchhoff/screw"), F64)
+    assert Callback(lambda problem: []).unsuited(problem) == ""
+    assert solver_named("process:./mine").unsuited(problem) == ""
+
+
+# Recommendations.
+
+
+def test_a_recommendation_can_be_typed() -> None:
+    """Its name, given to `run`, is the same solver, and meets the target again."""
+    scene = short("euler/generic")
+    asked = [one for one in settings(scene, ["f64"]) if isinstance(one.solver, Taylor)]
+    found = recommend(scene, 1e-5, asked)
+    assert solver_named(found.solver.name) == found.solver
+    (_, omega, *_) = taylor_verify.run(scene, found.solver.name, found.rung).verdicts
+    assert omega.max <= 1e-5
+    assert found.solver.name in found.document()["command"]
+
+
+# The first solve of all.
+
+
+@dataclass(frozen=True)
+class Unsendable(Solver):
+    """Holds what cannot be sent to another process."""
+
+    name: str = "unsendable"
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        return Taylor().solve(problem)
+
+    def __reduce__(self) -> str:
+        raise TypeError("not sent")
+
+
+def test_a_cold_solve_is_told_part_by_part() -> None:
+    """Importing, compiling and solving are parts of the whole, and taylor has something to compile."""
+    told: list[str] = []
+    asked = [setting("taylor", F64), Setting(Unsendable(), F64, None, NOTHING, "")]
+    found = cold(short("euler/generic"), asked, told.append)
+    # What cannot be sent has no cold figure, and is no error.
+    assert list(found) == asked[:1]
+    assert told == [one.label for one in asked]
+    (one,) = found.values()
+    parts = one.process + one.importing + one.compiling + one.solving + one.rest
+    assert parts == pytest.approx(one.whole)
+    assert min(one.importing, one.compiling, one.solving) > 0
+
+
+def test_the_library_of_a_solver_is_imported_before_it_is_timed() -> None:
+    """A first solve has heyoka loaded when the solver begins: to import is not to compile."""
+    script = (
+        "import pickle, sys\n"
+        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.scenes.reading.reader import load\n"
+        "from taylor_verify.solvers.taylor import driver\n"
+        "from taylor_verify.studies.tradeoff.cold import first_solve\n"
+        "def compiled(*_, **__): sys.exit('heyoka' not in sys.modules)\n"
+        "driver.compiled = compiled\n"
+        "assert 'heyoka' not in sys.modules\n"
+        "first_solve(pickle.dumps((load('euler/rest'), driver.Taylor(), rung('f64'))))\n"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
+
+
+# The command.
+
+
+@pytest.fixture
+def scene_file(tmp_path: Path) -> str:
+    path = tmp_path / "short.toml"
+    path.write_text(
+        'title = "A moment"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'
+        "[initial]\nomega = [1, 0.4, 0.3]\n[time]\nend = 1\nsamples = 3\n",
+        encoding="utf-8",
+    )
+    return str(path)
+
+
+def test_the_verb_measures_what_it_is_told(
+    scene_file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --solver these settings and taylor's alone, and with --cold each first solve by its parts."""
+    call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--cold", "--json"]
+    assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
+    (trade,) = json.loads(capsys.readouterr().out)["scenes"]
+    families = [row["family"] for row in trade["points"]]
+    assert set(families) == {"taylor f32", "geometric splitting"}
+    for row in trade["points"]:
+        assert (row["cold"] is not None) == (row["standing"] == "sound")
+        assert row["requested"] is not None
+
+
+def test_a_wrong_solver_is_refused_before_any_work(
+    scene_file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exit status 2, and the nearest name there is."""
+    assert main(["tradeoff", scene_file, "--solver", "taylor?tol=none"]) == 2
+    assert "@ --solver" in capsys.readouterr().err
+
+
+def test_outside_asks_for_the_trade(capsys: pytest.CaptureFixture[str]) -> None:
+    """`publish --outside` alone would do nothing of what it says."""
+    assert main(["publish", "--outside"]) == 2
+    assert "--tradeoff" in capsys.readouterr().err

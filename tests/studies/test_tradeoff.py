@@ -1,0 +1,491 @@
+"""Speed against accuracy: the front, the target, and what a time or an error may not do to them."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from math import inf, log10, nan
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from mpmath import mp
+from samples import THREE_INSTANTS
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.cli.tradeoff_text import tradeoff_text
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.precision import Rung, rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
+from taylor_verify.studies.tradeoff.attainability import least_error
+from taylor_verify.studies.tradeoff.front import (
+    dominates,
+    front,
+    front_sentences,
+    request_sentences,
+)
+from taylor_verify.studies.tradeoff.point import Point, point
+from taylor_verify.studies.tradeoff.recommend import MARGIN, OutOfReach, recommend, recommended
+from taylor_verify.studies.tradeoff.setting import Setting, settings
+from taylor_verify.studies.tradeoff.starts import STARTS, nearby
+from taylor_verify.studies.tradeoff.timing import Timed, cold_caches, timed
+from taylor_verify.studies.tradeoff.trade_off import trade_off
+
+F64 = rung("f64")
+
+
+@dataclass(frozen=True)
+class Scripted(Solver):
+    """The driver's answers, with times and outcomes that are made up."""
+
+    name: str
+    seconds: float
+    tolerance: str = ""
+    outcome: Outcome = Outcome.FINISHED
+    factor: Fraction | None = None
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        if self.outcome is not Outcome.FINISHED:
+            return Trajectory(self.outcome, seconds=self.seconds)
+        solver = at_tolerance(self.tolerance) if self.tolerance else Taylor()
+        made = solver.solve(problem)
+        quantities = dict(made.quantities)
+        if self.factor is not None:
+            times = mp.mpf(self.factor.numerator)
+            quantities = {name: values * times for name, values in quantities.items()}
+        return replace(
+            made,
+            quantities=quantities,
+            seconds=self.seconds,
+            compile_seconds=0.0,
+            inner_seconds=None,
+        )
+
+
+@dataclass(frozen=True)
+class Lost(Solver):
+    """Claims success with states that are no numbers, faster than anything."""
+
+    name: str = "lost"
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        made = Taylor().solve(problem)
+        lost = {name: np.full_like(values, mp.nan) for name, values in made.quantities.items()}
+        return replace(made, quantities=lost, seconds=1e-9)
+
+
+def setting_of(solver: Solver, family: str = "") -> Setting:
+    return Setting(solver, F64, 1e-9, "tolerance", family or solver.name)
+
+
+def made_up(error: float, seconds: float, outcome: Outcome = Outcome.FINISHED) -> Point:
+    setting = setting_of(Scripted("made up", seconds))
+    run = Timed(setting, Trajectory(outcome, seconds=seconds), 0.0, (seconds,))
+    return point(run, Accuracy({"omega": error}, {"omega": error}))
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    whole = load("euler/generic")
+    return replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:6]))
+
+
+MADE = st.builds(
+    made_up,
+    st.one_of(st.floats(0, 10), st.sampled_from([nan, inf, 1e-9, 1e-3])),
+    st.sampled_from([0.1, 0.2, 0.3, 0.5, 1.0]) | st.floats(1e-6, 10),
+    st.sampled_from([Outcome.FINISHED] * 4 + [Outcome.STEP_LIMIT, Outcome.NON_FINITE]),
+)
+
+
+@given(st.lists(MADE, max_size=12))
+@example([made_up(1e-3, 1.0), made_up(1e-3, 1.0)])
+def test_the_front_is_what_nothing_sound_beats(points: list[Point]) -> None:
+    """No point of the front is dominated, every sound point off it is, and all on it are sound."""
+    found = front(points)
+    sound = [p for p in points if p.standing is Standing.SOUND]
+    for p in found:
+        assert p.standing is Standing.SOUND
+        assert p.timed.trajectory.outcome is Outcome.FINISHED
+        assert p.error < 1
+        assert not any(dominates(other, p) for other in sound)
+    on = {id(p) for p in found}
+    for p in sound:
+        assert id(p) in on or any(dominates(other, p) for other in found)
+    assert bool(found) == bool(sound)
+
+
+@given(st.lists(MADE, max_size=12))
+def test_the_front_trades(points: list[Point]) -> None:
+    """Along the front times do not fall, and errors do not rise."""
+    found = front(points)
+    for before, after in pairwise(found):
+        assert before.seconds <= after.seconds
+        assert before.error >= after.error
+
+
+@pytest.mark.parametrize("error", [nan, inf, 1.0, 2.0])
+def test_an_error_of_the_motions_size_is_a_false_success(error: float) -> None:
+    """A finished run whose error is no number, or as large as the motion, is told as such."""
+    p = made_up(error, 1e-9)
+    assert p.standing is Standing.FALSE
+    assert front([p, made_up(1e-3, 1.0)])[0].error == 1e-3
+    assert json.loads(json.dumps(p.row(), allow_nan=False))["standing"] == "false success"
+
+
+def test_nan_in_one_quantity_is_the_worst() -> None:
+    """An error of the attitude that is no number is not lost beside a small one of omega."""
+    found = Accuracy({"omega": 1e-9, "attitude": nan})
+    assert not found.worst < 1
+    found = Accuracy({"attitude": nan, "omega": 1e-9})
+    assert not found.worst < 1
+
+
+def test_a_lost_or_failed_run_is_never_on_the_front(scene: Scene) -> None:
+    """The fastest runs of all are one of NaN, one that stopped and one twice too large: none wins."""
+    asked = [
+        setting_of(Lost()),
+        setting_of(Scripted("stopped", 1e-9, outcome=Outcome.STEP_LIMIT)),
+        setting_of(Scripted("tripled", 1e-9, factor=Fraction(3))),
+        setting_of(Scripted("slow", 1.0)),
+    ]
+    trade = trade_off(scene, asked, repeats=1)
+    standing = {p.timed.setting.solver.name: p.standing for p in trade.points}
+    assert standing == {
+        "lost": Standing.FALSE,
+        "stopped": Standing.FAILED,
+        "tripled": Standing.FALSE,
+        "slow": Standing.SOUND,
+    }
+    assert [p.timed.setting.solver.name for p in trade.front] == ["slow"]
+    assert recommended(trade, 1e-6).solver.name == "slow"
+
+
+def test_the_trade_is_the_same_again(scene: Scene) -> None:
+    """With the same clocks, the same seed gives the same document."""
+    asked = [setting_of(Scripted(f"s{k}", 10.0**-k, f"1e-{12 - k}")) for k in range(1, 6)]
+    first, second = (
+        trade_off(scene, asked, 3, seed=5, clock=lambda: 0.0).document() for _ in range(2)
+    )
+    assert first == second
+    # Faster is coarser here, so each of them is on the front, the fastest first.
+    assert first["front"] == [f"s{k} f64" for k in range(5, 0, -1)]
+
+
+def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
+    """By rung the floor of the judge, one rounding a sample: finer on the wider rung, and in the text."""
+    asked = [
+        setting_of(Scripted("coarse", 1.0)),
+        replace(setting_of(Scripted("fine", 1.0)), rung=rung("f32")),
+    ]
+    document = trade_off(scene, asked, repeats=1).document()
+    floors = document["attainable"]
+    assert floors == {r.name: least_error(scene, r) for r in (F64, rung("f32"))}
+    assert floors["f64"] * 2**28 <= floors["f32"] <= floors["f64"] * 2**30
+    assert f"f64 {floors['f64']:.2g}" in " ".join(tradeoff_text([document]).split())
+
+
+def test_each_round_has_an_order_of_its_own(scene: Scene) -> None:
+    """Every setting is solved once first and then once a round; the rounds differ in order."""
+    solved: list[str] = []
+
+    @dataclass(frozen=True)
+    class Noted(Solver):
+        name: str
+        setting: str = ""
+
+        def solve(self, problem: Problem) -> Trajectory:
+            solved.append(self.name)
+            return Trajectory(Outcome.FINISHED, seconds=0.5)
+
+    names = [f"n{k}" for k in range(8)]
+    problem = pose(scene, F64)
+    found = timed({setting_of(Noted(name)): problem for name in names}, 3, seed=2)
+    rounds = [solved[k : k + 8] for k in range(0, len(solved), 8)]
+    assert rounds[0] == names
+    assert len(rounds) == 4
+    assert all(sorted(one) == names for one in rounds)
+    assert len({tuple(one) for one in rounds[1:]}) > 1
+    assert all(one.seconds == (0.5, 0.5, 0.5) and one.spread == 1 for one in found)
+
+
+def test_a_family_is_not_set_finer_than_patience_has_it(scene: Scene) -> None:
+    """Behind a setting that takes too long the finer ones of its family are not run, and say why."""
+    slow, finer, other = (
+        Scripted(n, s) for n, s in (("slow", 1e3), ("finer", 1e3), ("other", 1.0))
+    )
+    asked = [setting_of(slow, "one"), setting_of(finer, "one"), setting_of(other, "two")]
+    trade = trade_off(scene, asked, repeats=2)
+    assert [p.standing for p in trade.points] == [
+        Standing.SOUND,
+        Standing.NOT_RUN,
+        Standing.SOUND,
+    ]
+    assert "coarser" in trade.points[1].because
+    assert len(trade.points[0].timed.seconds) == 1
+
+
+def test_a_tolerance_is_taken(scene: Scene) -> None:
+    """The driver's error falls with its tolerance, and without one it is that of the roundoff."""
+    problem = pose(scene, F64)
+    truth = Truth(problem)
+    solvers = [at_tolerance("1e-3"), at_tolerance("1e-8"), Taylor()]
+    errors = [truth.accuracy(solver.solve(problem)).worst for solver in solvers]
+    assert errors == sorted(errors, reverse=True)
+    # heyoka takes the order from the tolerance: coarser ones need fewer coefficients.
+    orders = [t.evaluations / t.steps for t in (solver.solve(problem) for solver in solvers)]
+    assert orders == sorted(set(orders))
+
+
+@pytest.mark.parametrize("text", ["0", "-1e-9", "many"])
+def test_a_tolerance_is_positive(text: str) -> None:
+    """A tolerance that is no positive number is refused."""
+    with pytest.raises(ValueError):  # noqa: PT011 (two messages: no number, not positive)
+        at_tolerance(text)
+
+
+def test_errors_are_the_judges(scene: Scene) -> None:
+    """The achieved error and drift of a point are those that the judge finds."""
+    (p,) = trade_off(scene, [setting_of(at_tolerance("1e-6"))], repeats=1).points
+    verdicts = {
+        v.quantity: v for v in taylor_verify.run(scene, at_tolerance("1e-6"), "f64").verdicts
+    }
+    # The point adds the width of the truth: a thousandth of a unit of roundoff of 1e-6.
+    assert p.error == pytest.approx(verdicts["omega"].max, rel=1e-9)
+    assert p.accuracy.final["omega"] == pytest.approx(verdicts["omega"].final, rel=1e-9)
+    assert p.accuracy.drift == max(v.max for n, v in verdicts.items() if n != "omega")
+
+
+def test_the_attitude_counts() -> None:
+    """Where the attitude is tracked it has an error of its own, and the larger one is the point's."""
+    found = load("euler/with-attitude")
+    short = replace(found, clock=replace(found.clock, instants=found.clock.instants[:5]))
+    (p,) = trade_off(short, [setting_of(at_tolerance("1e-4"))], repeats=1).points
+    assert set(p.accuracy.max) == {"omega", "attitude"}
+    assert p.error == max(p.accuracy.max.values())
+
+
+@pytest.mark.parametrize("target", [1e-5, 1e-10])
+def test_the_recommended_setting_meets_the_target(scene: Scene, target: float) -> None:
+    """Run again, the setting stays below the target with its margin, here and on every near start."""
+    asked = [s for s in settings(scene, ["f64"]) if isinstance(s.solver, Taylor)]
+    found = recommend(scene, target, asked)
+    assert isinstance(found.solver, Solver)
+    for start in (scene, *nearby(scene, found.seed)):
+        problem = pose(start, found.rung)
+        assert MARGIN * Truth(problem).accuracy(found.solver.solve(problem)).worst <= target
+    (_, omega, *_) = taylor_verify.run(scene, found.solver, found.rung).verdicts
+    assert omega.max is not None
+    assert omega.max <= target
+
+
+def test_the_cheapest_that_reaches_it_is_recommended(scene: Scene) -> None:
+    """Of settings that all reach the target the fastest is taken; one too coarse is not, though faster."""
+    asked = [
+        setting_of(Scripted("coarse", 0.1, "1e-3")),
+        setting_of(Scripted("fine", 0.3, "1e-12")),
+        setting_of(Scripted("dear", 0.5, "1e-12")),
+    ]
+    assert recommend(scene, 1e-8, asked).solver.name == "fine"
+
+
+@dataclass(frozen=True)
+class Fitted(Solver):
+    """Accurate from one start and no other, as a step tuned to one orbit is."""
+
+    own: Scene
+    name: str = "fitted"
+    setting: str = ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        at_home = problem.scene.initial == self.own.initial
+        solver = Taylor() if at_home else at_tolerance("1e-2")
+        return replace(solver.solve(problem), seconds=1e-6)
+
+
+def test_a_setting_that_fails_from_a_near_start_is_passed_over(scene: Scene) -> None:
+    """The fastest setting reaches the target from the scene's own start alone, and is not taken."""
+    asked = [setting_of(Fitted(scene)), setting_of(Scripted("steady", 1.0))]
+    trade = trade_off(scene, asked, repeats=1)
+    assert next(p.timed.setting.solver.name for p in trade.front) == "fitted"
+    found = recommended(trade, 1e-10)
+    assert found.solver.name == "steady"
+    assert found.starts == 1 + STARTS
+
+
+def test_what_is_not_there_is_said(scene: Scene) -> None:
+    """A solver that cannot run on a rung is a point that was not run, with the reason."""
+
+    @dataclass(frozen=True)
+    class Elsewhere(Solver):
+        name: str = "elsewhere"
+        setting: str = ""
+
+        def unavailable(self, rung: Rung) -> str:
+            return f"no {rung.name} here"
+
+        def solve(self, problem: Problem) -> Trajectory:
+            raise AssertionError("it is not to be asked")
+
+    (p,) = trade_off(scene, [setting_of(Elsewhere())], repeats=1).points
+    assert (p.standing, p.because) == (Standing.NOT_RUN, "no f64 here")
+
+
+def test_nothing_drifts_under_loads() -> None:
+    """A loaded body conserves nothing, so that its points have errors and no drift."""
+    found = load("euler/constant-moment")
+    short = replace(found, clock=replace(found.clock, instants=found.clock.instants[:4]))
+    (p,) = trade_off(short, [setting_of(Taylor())], repeats=1).points
+    assert p.standing is Standing.SOUND
+    assert p.accuracy.drift is None
+
+
+def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inside, heyoka's cache is an empty folder of its own; after it, what was set before."""
+    monkeypatch.setenv("HEYOKA_CACHE_DIR", "before")
+    with cold_caches():
+        assert list(Path(os.environ["HEYOKA_CACHE_DIR"]).iterdir()) == []
+    assert os.environ["HEYOKA_CACHE_DIR"] == "before"
+    monkeypatch.delenv("HEYOKA_CACHE_DIR")
+    with cold_caches():
+        assert "HEYOKA_CACHE_DIR" in os.environ
+    assert "HEYOKA_CACHE_DIR" not in os.environ
+
+
+def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:
+    """What no setting reaches is said, with the one that comes nearest."""
+    asked = [setting_of(Scripted("slow", 1.0))]
+    with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow.*rounding alone.*is mp\d+"):
+        recommended(trade_off(scene, asked, repeats=1), 1e-40)
+    # Before it is measured, it is known from the rounding alone.
+    with pytest.raises(OutOfReach, match=r"1e-40.*on f64 rounding alone leaves.*is mp\d+"):
+        recommend(scene, 1e-40, asked)
+
+
+@pytest.mark.parametrize("error", [0.0, -1.0, nan, inf])
+def test_a_target_is_a_positive_number(scene: Scene, error: float) -> None:
+    """Anything else is refused before any work."""
+    with pytest.raises(ValueError, match="positive error"):
+        taylor_verify.recommend(scene, error)
+
+
+def test_starts_are_near_and_drawn_from_the_seed(scene: Scene) -> None:
+    """The same seed draws the same starts; each component is within one per cent, and zero stays."""
+    flat = replace(
+        scene, initial=replace(scene.initial, omega=(Fraction(1), Fraction(0), Fraction(2)))
+    )
+    starts = nearby(flat, 3)
+    assert starts == nearby(flat, 3)
+    assert starts != nearby(flat, 4)
+    assert len({s.initial for s in starts}) == STARTS
+    for start in starts:
+        for moved, own in zip(start.initial.omega, flat.initial.omega, strict=True):
+            assert abs(moved - own) <= abs(own) / 100
+
+
+def test_a_request_is_held_against_what_came_of_it() -> None:
+    """The digits asked for and those achieved are the logarithms of tolerance and error."""
+    p = made_up(1e-7, 1.0)
+    (said,) = request_sentences([p])
+    assert f"{-log10(1e-9):.1f} digits asked for, {-log10(1e-7):.1f} got" in said
+    assert "1e+02 times the tolerance" in said
+    assert request_sentences([made_up(nan, 1.0)]) == []
+
+
+def test_no_sound_answer_is_said() -> None:
+    """A front of nothing is a sentence."""
+    assert front_sentences([made_up(nan, 1.0)]) == ["No setting gave an answer that is sound."]
+
+
+# The command
+
+
+@pytest.fixture
+def short(tmp_path: Path) -> str:
+    path = tmp_path / "short.toml"
+    path.write_text(THREE_INSTANTS, encoding="utf-8")
+    return str(path)
+
+
+def test_the_verb_tells_all_of_it(short: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """One document: points with what was asked and achieved, the front, the machine, the setting."""
+    call = ["tradeoff", short, "--rung", "f32", "--repeats", "2", "--target", "1e-3", "--json"]
+    assert main(call) == 0
+    (trade,) = json.loads(capsys.readouterr().out)["scenes"]
+    assert {row["rung"] for row in trade["points"]} == {"f32"}
+    assert trade["front"]
+    assert trade["provenance"]["processor"]
+    assert trade["timing"]["seed"] == 1
+    chosen = trade["recommendation"]
+    assert chosen["margin"] * chosen["error"] <= 1e-3
+    for row in trade["points"]:
+        assert row["seconds"] is None or row["repeats"] == 2
+
+
+def test_the_verb_says_that_nothing_reaches_the_target(
+    short: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exit status 3, and the reason on stderr; the table is printed all the same."""
+    call = ["tradeoff", short, "--rung", "f32", "--repeats", "1", "--target", "1e-20"]
+    assert main(call) == 3
+    out, err = capsys.readouterr()
+    assert "no setting stays below 1e-20" in err
+    assert "The front" in out
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        ([], "expected a scene"),
+        (["euler/generic", "--target", "0"], "positive error"),
+        (["euler/generic", "--target", "nan"], "positive error"),
+        (["euler/generic", "--repeats", "0"], "--repeats"),
+        (["euler/generic", "--rung", "f63"], "--rung"),
+        (["euler/nowhere"], "nowhere"),
+    ],
+)
+def test_a_wrong_call_is_refused(
+    call: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exit status 2, and what was expected."""
+    assert main(["tradeoff", *call]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_the_pictures_and_their_numbers_are_written_on_request(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """--out DIR holds the document that --json prints, and each picture for page and print."""
+    place = tmp_path / "out"
+    arguments = ["tradeoff", "euler/generic", "--solver", "geometric:splitting?step=0.1"]
+    assert main([*arguments, "--rung", "f64", "--repeats", "1", "--json", "--out", str(place)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert json.loads((place / "tradeoff.json").read_text()) == printed
+    names = {file.name for file in place.iterdir()}
+    expected = {
+        f"euler-generic-{what}.{end}" for what in ("time", "steps") for end in ("svg", "pdf")
+    }
+    assert expected < names
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_measuring(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Minutes of measuring do not end in a refusal to write."""
+    (tmp_path / "file").write_text("")
+    assert main(["tradeoff", "euler/generic", "--out", str(tmp_path / "file" / "out")]) == 2
+    assert "expected a folder that can be written" in capsys.readouterr().err

@@ -1,0 +1,424 @@
+"""Plain calls of heyoka go wrong as published, in silence where it says so; the driver does not."""
+
+import ast
+import json
+import re
+import signal
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from importlib.util import find_spec
+from itertools import pairwise
+from pathlib import Path
+
+import heyoka as hy
+import pytest
+
+from taylor_verify.models.problem import pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.solvers.taylor.cache import heyoka_cache_off
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.plain import numbers, outcomes
+from taylor_verify.solvers.taylor.plain.body import Plain
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.studies.traps import page as published
+from taylor_verify.studies.traps.document import TrapCase, TrapRow, TrapsStudy
+from taylor_verify.studies.traps.measured import GENERIC, free
+from taylor_verify.studies.traps.table import TRAPS, study
+from taylor_verify.studies.traps.trap import Trap, shown
+
+NAMED = {trap.key: trap for trap in TRAPS}
+U = float(rung("f64").unit_roundoff)
+
+needs_sympy = pytest.mark.skipif(
+    find_spec("sympy") is None, reason="sympy asks for mpmath below 1.4 and is not installed"
+)
+
+
+@lru_cache
+def cases(key: str) -> tuple[TrapCase, ...]:
+    """The cases of a trap, measured once for all tests."""
+    return tuple(NAMED[key].measured())
+
+
+def case(key: str, name: str) -> TrapCase:
+    (found,) = (found for found in cases(key) if found.case == name)
+    return found
+
+
+def on_rung(key: str, name: str, on: str) -> TrapCase:
+    """The same for a rung that not every machine has."""
+    if missing := Plain().unavailable(rung(on)):
+        pytest.skip(missing)
+    return case(key, name)
+
+
+def errors(key: str) -> list[float]:
+    found = [c.error for c in cases(key)]
+    assert None not in found
+    return [error for error in found if error is not None]
+
+
+def driver_errors(key: str) -> list[float]:
+    found = [c.driver_error for c in cases(key)]
+    assert None not in found
+    return [error for error in found if error is not None]
+
+
+def rising(values: Sequence[float], factor: float) -> bool:
+    """Each value is more than so many times the one before."""
+    return all(b >= factor * a for a, b in pairwise(values))
+
+
+# The wrong answers.
+
+
+@pytest.mark.parametrize("name", ["f128", "mp237"])
+def test_typed_literal_limits_every_wide_rung_to_a_double(name: str) -> None:
+    """The rounding of 1/3 to 53 bits stays in the answer, while the driver has the rung's digits."""
+    found = on_rung("T1", name, name)
+    assert found.said == "time_limit"
+    # 1/3 is off by 2^-54 of itself, which ten radians may shrink or magnify by some powers of two.
+    assert 2**-60 <= found.error <= 2**-48
+    assert found.driver_error <= 1e4 * float(rung(name).unit_roundoff)
+
+
+def test_literals_of_the_rung_leave_all_its_digits() -> None:
+    """Only the type of the three moments differs, and the plain call is as good as the driver."""
+    found = case("T1", "mp237, moments of its own type")
+    assert found.error <= 1e4 * float(rung("mp237").unit_roundoff)
+    assert {gate.verdict for gate in found.gates.values()} == {"pass"}
+
+
+def test_error_of_a_literal_does_not_depend_on_the_rung() -> None:
+    """It is an error of the equations and not of the arithmetic: the same at 113 and at 237 bits."""
+    quad, octuple = on_rung("T1", "f128", "f128").error, case("T1", "mp237").error
+    assert quad == pytest.approx(octuple, rel=1e-12)
+
+
+def test_small_states_lose_digits_and_steps() -> None:
+    """The smaller the state, the fewer the steps and the larger the relative error, at time_limit."""
+    found = cases("T2a")
+    assert {c.said for c in found} == {"time_limit"}
+    steps = [c.steps for c in found]
+    assert steps == sorted(steps, reverse=True)
+    assert len(set(steps)) == len(steps)
+    # From size to size the absolute tolerance counts for at least a hundred times as much.
+    assert rising(errors("T2a"), 10)
+    assert errors("T2a")[-1] >= 1e6 * U
+
+
+def test_tiny_states_are_taken_in_one_step() -> None:
+    """At 1e-16 ten radians are one step, which is called a success and ends outside of the motion."""
+    assert {(c.said, c.steps) for c in cases("T2b")} == {("time_limit", 1)}
+    # No two states of one body differ by more than twice its largest.
+    assert all(error > 2 for error in errors("T2b"))
+
+
+@pytest.mark.parametrize("key", ["T2a", "T2b", "S1", "T3"])
+def test_driver_answers_at_every_size_and_distance(key: str) -> None:
+    """Within a hundred roundings: fewer than 400 steps, a few roundings each, in random directions."""
+    assert all(error <= 100 * U for error in driver_errors(key))
+
+
+def test_error_beside_the_unstable_axis_grows_as_the_distance_shrinks() -> None:
+    """d = 1e-8 costs four digits, d = 1e-40 all of them in a single step, always at time_limit."""
+    found = cases("T3")
+    assert {c.said for c in found} == {"time_limit"}
+    # The first, at d = 1e-4, is not yet above the roundings.
+    in_doubles = [c.error for c in found if c.case.endswith("f64")]
+    assert len(in_doubles) == 7
+    assert rising(in_doubles[1:], 10)
+    assert case("T3", "d = 1e-08, f64").error >= 1000 * U
+    assert case("T3", "d = 1e-40, f64").error >= 0.1
+    assert case("T3", "d = 1e-40, f64").steps == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "on"), [("d = 1e-20, f128", "f128"), ("d = 1e-80, mp237", "mp237")]
+)
+def test_more_digits_do_not_help_beside_the_unstable_axis(name: str, on: str) -> None:
+    """With moments of its own type a wide rung loses as many digits as d has, the driver none."""
+    found, u = on_rung("T3", name, on), float(rung(on).unit_roundoff)
+    assert found.said == "time_limit"
+    assert found.error >= 1e12 * u
+    # At most 640 steps of a few roundings, in random directions.
+    assert found.driver_error <= 300 * u
+
+
+def test_the_gate_of_the_state_alone_sees_what_is_lost_beside_the_unstable_axis() -> None:
+    """Energy and momentum pass at every distance; omega fails from where the loss shows, at 1e-8."""
+    for found in cases("T3"):
+        assert found.gates["T"].verdict == found.gates["H2"].verdict == "pass"
+        near = float(found.case.partition(",")[0].removeprefix("d = ")) <= 1e-8
+        assert found.gates["omega"].verdict == ("fail" if near else "pass")
+        assert found.driver.endswith("state: pass")
+
+
+@pytest.mark.parametrize("key", ["T2a", "T2b"])
+def test_every_gate_sees_a_state_that_is_too_small(key: str) -> None:
+    """From 1e-5 on the state, the energy and the momentum all fail; at size one all pass."""
+    for found in cases(key):
+        expected = "pass" if found.case == "omega of size 1" else "fail"
+        assert {gate.verdict for gate in found.gates.values()} == {expected}
+
+
+def test_conserved_quantities_certify_no_state() -> None:
+    """A body back at its unstable spin is off by its own size, driver and all; what is kept, passes."""
+    (found,) = cases("T10")
+    assert min(found.error, found.driver_error) >= 0.1
+    assert found.gates["T"].verdict == found.gates["H2"].verdict == "pass"
+    assert found.driver.endswith("state: vacuous")
+
+
+def test_overflow_is_reported_and_in_other_units_does_not_happen() -> None:
+    """At 1e15 heyoka says that the state is not finite; at 1e14 it is right."""
+    near, *beyond = cases("S1")
+    assert (near.said, near.error <= 100 * U) == ("time_limit", True)
+    assert {(c.said, c.error) for c in beyond} == {("err_nf_state", None)}
+
+
+# Numbers.
+
+
+def test_wide_numbers_become_doubles_in_other_hands() -> None:
+    """Norm, root and printout have the error of one rounding to 53 bits; ours that of 237."""
+    assert all(2**-60 <= error <= 2**-52 for error in errors("T4"))
+    assert all(error <= 2**-236 for error in driver_errors("T4"))
+
+
+def test_half_of_the_conversions_to_real128_are_not_the_nearest() -> None:
+    """Cutting off is wrong for one number in two (within ten standard deviations of 2000 draws)."""
+    if missing := Plain().unavailable(rung("f128")):
+        pytest.skip(missing)
+    (found,) = cases("T5")
+    wrong = int(re.search(r"for (\d+) of 2000", found.said)[1])
+    assert abs(wrong - 1000) <= 10 * (2000 / 4) ** 0.5
+    u = float(rung("f128").unit_roundoff)
+    assert u < found.error <= 2 * u
+    assert found.driver_error <= u
+
+
+@needs_sympy
+def test_sympy_number_of_fifty_digits_arrives_as_a_double() -> None:
+    """The error is that of 0.1 as a double, and with mpmath's precision raised it is gone."""
+    (found,) = cases("T6")
+    assert found.error == pytest.approx(2**-54, rel=0.1)
+
+
+def test_equal_numbers_of_two_libraries_are_unequal() -> None:
+    """A real of 1/2 is not equal to mpmath's 1/2, as it is to a double of 1/2."""
+    (found,) = cases("S2")
+    assert found.said == "equal: False"
+    assert numbers.equal(hy.real("0.5", 237), 0.5)
+
+
+# Time.
+
+
+def test_equation_in_time_loses_digits_with_a_late_start() -> None:
+    """The error of x' = cos(t - t0) rises with t0; a body's does not depend on its start at all."""
+    assert {c.said for c in cases("T7")} == {"time_limit"}
+    assert rising(errors("T7"), 100)
+    assert len(set(driver_errors("T7"))) == 1
+
+
+def test_continuous_output_answers_beyond_its_end() -> None:
+    """Ninety units beyond the end the answer is larger than any omega of the body."""
+    assert errors("T8a")[0] > 2
+    assert driver_errors("T8a")[0] <= 1000 * U
+
+
+def test_continuous_output_overwrites_its_last_answer() -> None:
+    """What was kept of the first call is no longer the state at that time."""
+    assert errors("T8b")[0] >= 0.01
+    assert driver_errors("T8b")[0] <= 100 * U
+
+
+def test_late_end_is_reached_without_a_step() -> None:
+    """At 1e16 adding 0.3 changes no double: the body stands still, at time_limit."""
+    (near, late) = cases("S3")
+    assert (late.said, late.steps) == ("time_limit", 0)
+    assert near.error >= 1000 * U
+    assert late.error >= 0.01
+    assert all(error <= 100 * U for error in driver_errors("S3"))
+
+
+# Outcomes.
+
+
+def test_one_lane_stops_the_others_which_report_success() -> None:
+    """The sound lanes of a batch end far from the time asked for, and each calls it a success."""
+    *sound, broken = cases("T9")
+    assert all(c.said.startswith("success, at t = 0.") for c in sound)
+    assert all(c.error >= 0.1 and c.driver_error <= 100 * U for c in sound)
+    assert broken.said == "err_nf_state"
+    assert "expected a finite number, got nan @ initial.omega[0]" in broken.driver
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("S4", "err_nf_state; time nan, state nan"),
+        ("S5", "err_nf_state at t = 0.99999"),
+        ("S6", "step_limit, at t = 3."),
+        ("S7", "cb_stop, at t = 1."),
+        ("S8", "time_limit is True, err_nf_state is True"),
+        ("S9", "time_limit; smallest step inf, largest 0"),
+        ("S10", "tol = 2.22e-16"),
+        ("S11", "KeyboardInterrupt at t = 200000"),
+    ],
+)
+def test_outcome_is_reported_as_published(key: str, said: str) -> None:
+    """What heyoka says today is what the page has it say."""
+    (found,) = cases(key)
+    assert found.said.startswith(said)
+
+
+def test_forgotten_parameters_stop_the_body() -> None:
+    """Without its coefficients a body keeps its omega, and at time_limit."""
+    (found,) = cases("S13")
+    assert found.said == "time_limit"
+    assert found.error >= 0.1
+    assert found.driver_error <= 100 * U
+
+
+def test_tolerance_of_zero_is_refused_here() -> None:
+    """What heyoka takes for its default, the driver sends back."""
+    (found,) = cases("S10")
+    assert found.driver.startswith("refused: expected a positive")
+
+
+def test_stored_code_is_found_without_naming_a_processor() -> None:
+    """The key has versions alone, and is read without leaving the cache elsewhere than before."""
+    heyoka_cache_off()
+    before = hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_enabled()
+    (found,) = cases("S12")
+    assert re.fullmatch(r"HEYOKA_VERSION=[\d.]+;LLVM_VERSION=[\d.]+", found.said)
+    after = hy.llvm_state.get_diskcache_path(), hy.llvm_state.get_diskcache_enabled()
+    assert after == before
+
+
+def test_interruption_leaves_no_handler_and_no_timer() -> None:
+    """What is changed to interrupt a run is put back."""
+    before = signal.getsignal(signal.SIGALRM)
+    outcomes.interrupted(10.0, 1.0)
+    assert signal.getsignal(signal.SIGALRM) is before
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_driver_hears_signals_on_the_way() -> None:
+    """A signal that is repeated during a long run is heard between its stretches, not at its end."""
+    heard = []
+    problem = pose(free("a long run", GENERIC, 2e5), rung("f64"))
+    Taylor().solve(pose(free("compiled before", GENERIC, 1.0), rung("f64")))
+    before = signal.signal(signal.SIGALRM, lambda *_: heard.append(1))
+    signal.setitimer(signal.ITIMER_REAL, 1e-3, 1e-3)
+    try:
+        trajectory = Taylor().solve(problem)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert trajectory.outcome is Outcome.FINISHED
+    # Ten samples make ten stretches of some 60000 steps, each far longer than a millisecond.
+    assert len(heard) >= 10
+
+
+# The table.
+
+
+@pytest.mark.parametrize("trap", [pytest.param(trap, id=trap.key) for trap in TRAPS])
+def test_silent_is_what_reports_no_failure(trap: Trap) -> None:
+    """A trap is called silent if some case is not told by an outcome that is no success."""
+    told = ("err_nf_state", "step_limit", "cb_stop")
+    behind = published.worst_of(stored(trap.key))
+    if behind is None:
+        pytest.skip("what it needs is not installed here")
+    assert trap.silent == (not behind.said.startswith(told))
+
+
+@lru_cache
+def fresh() -> TrapsStudy:
+    """The rows of all traps as they are read back, by way of a file."""
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory() as folder:
+        remembered = [replace(trap, cases=as_measured(trap.key)) for trap in TRAPS]
+        published.publish(Path(folder), study(remembered))
+        return published.load(Path(folder))
+
+
+def as_measured(key: str) -> Callable[[], list[TrapCase]]:
+    return lambda: list(cases(key))
+
+
+def stored(key: str) -> TrapRow:
+    (found,) = (trap for trap in fresh().traps if trap.key == key)
+    return found
+
+
+def test_shown_code_is_python_without_hints() -> None:
+    """What is shown parses, and defines the functions that were run."""
+    for trap in TRAPS:
+        for call in trap.calls:
+            (definition,) = ast.parse(shown(call)).body
+            assert isinstance(definition, ast.FunctionDef)
+            assert definition.name == call.__name__
+            assert not any(argument.annotation for argument in definition.args.args)
+
+
+def test_shown_code_does_what_was_measured() -> None:
+    """Run as it is shown, a call gives what the function itself gives."""
+    names = {"hy": hy}
+    exec(shown(outcomes.tolerance_of_zero), names)
+    assert names["tolerance_of_zero"]() == outcomes.tolerance_of_zero()
+
+
+def test_keys_are_unique_and_in_order() -> None:
+    """T1 to T10, then S1 on, each once, T2 and T8 in two parts."""
+    keys = [trap.key for trap in TRAPS]
+    assert len(NAMED) == len(keys)
+    numbered = [(key[0], int(re.search(r"\d+", key)[0])) for key in keys]
+    assert {number for letter, number in numbered if letter == "T"} == set(range(1, 11))
+    assert [n for letter, n in numbered if letter == "S"] == list(range(1, len(keys) - 11))
+
+
+def judged(traps: Sequence[TrapRow]) -> dict[tuple[str, str], object]:
+    """Of each case what the driver says and what the gates say of the plain answer."""
+    return {
+        (t.key, c.case): (c.driver, {name: gate.verdict for name, gate in c.gates.items()})
+        for t in traps
+        for c in t.cases
+    }
+
+
+def test_page_says_that_conservation_does_not_certify_and_that_the_state_does() -> None:
+    """The sentence is there, with the worst case and its error, and no answer that no gate sees."""
+    told = " ".join(published.proven(fresh().traps))
+    assert "pass every gate on conserved quantities and be wrong" in told
+    assert "The worst is d = 1e-40, f64 (T3)" in told
+    (seen,) = re.findall(r"The gate of the state sees ([^.]*), from", told)
+    assert {"T2a", "T2b", "T3"} <= set(seen.split(", "))
+    assert "No gate of this suite sees" not in told
+
+
+def test_nothing_is_said_to_be_proven_by_rows_that_do_not() -> None:
+    """Where the plain answers are as good as the driver's, neither sentence is said."""
+    equal = [
+        replace(trap, cases=tuple(replace(c, error=c.driver_error) for c in trap.cases))
+        for trap in fresh().traps
+    ]
+    told = " ".join(published.proven(equal))
+    assert "be wrong" not in told
+    assert "No gate of this suite sees" not in told
+
+
+def test_rows_that_are_no_rows_are_refused(tmp_path: Path) -> None:
+    """A file with something else in it is a ValueError that names the file."""
+    file = tmp_path / published.TRAPS
+    file.parent.mkdir()
+    file.write_text(json.dumps({"versions": {}, "traps": [{"key": "T1"}]}), encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=r"expected a key title, got none @ traps\[0\] @ .*traps\.json"
+    ):
+        published.load(tmp_path)

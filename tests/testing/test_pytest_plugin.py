@@ -1,0 +1,460 @@
+"""The pytest plugin: two lines in another project judge a simulator, and say what is wrong with it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from taylor_verify import check, exact, load
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.testing.demand import demanded_rows, is_met, report
+
+pytest_plugins = ["pytester"]
+
+# The plugin, and the modules of the package's own functions.
+LIGHT = {
+    f"taylor_verify.{name}"
+    for name in (
+        *("check", "claims", "exact", "explain", "pytest_plugin", "run", "run_many", "scenes"),
+        *("tradeoff", "version"),
+    )
+}
+HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}
+
+# A body of three equal moments keeps its omega: on euler/spherical `still` is exact, elsewhere wrong.
+SOLVERS = """
+import pytest
+
+def still(problem):
+    return [problem.given.initial.omega] * len(problem.times)
+
+def too_fast(problem):
+    return [[w * (1 + 2**-20) for w in row] for row in still(problem)]
+
+def nan(problem):
+    return [[float("nan")] * 3] * len(problem.times)
+
+def raising(problem):
+    depth = 0
+    return 1 / depth
+"""
+
+
+@pytest.fixture(autouse=True)
+def _as_in_another_project(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only this plugin, and from this checkout, whatever is installed beside it."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+
+
+def session(pytester: pytest.Pytester, tests: str, *options: str) -> pytest.RunResult:
+    pytester.makepyfile(SOLVERS + tests)
+    plugins = ("-p", "taylor_verify.testing.plugin", "-p", "no:cacheprovider")
+    return pytester.runpytest_inprocess(*plugins, *options)
+
+
+# What passes and what fails.
+
+
+def test_two_lines_are_enough(pytester: pytest.Pytester) -> None:
+    """A test of two lines passes with a solver that is right, and hands back its judgement."""
+    tests = """
+def test_my_simulator(verify_solver):
+    verify_solver("euler/spherical", still)
+
+def test_its_judgement(verify_solver):
+    found = verify_solver("euler/spherical", still, rung="f32")
+    assert {v.quantity for v in found.verdicts} == {"initial state", "omega", "T", "H2"}
+"""
+    session(pytester, tests).assert_outcomes(passed=2)
+
+
+def test_a_wrong_solver_fails_with_all_a_person_needs(pytester: pytest.Pytester) -> None:
+    """Which solver and scene, quantity, size, time, against what, bound, why; and the user's line."""
+    tests = """
+def test_my_simulator(verify_solver):
+    verify_solver("euler/generic", still)
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            '>       verify_solver("euler/generic", still)',
+            "E       Failed: still on euler/generic, f64: 1 of 4 judged quantities are no pass",
+            "E       omega: fail; no digit is right at t = * (error *); *; above what f64 * since t = *",
+            "E           against  the exact motion of the same rounded data (route *)",
+            "E           bound    * x max|omega|; the error is * times what perfect rounding *",
+            "E       T: pass, * <= * x scale of T",
+            "E       H2: pass, * <= * x scale of H2",
+            "E       T, H2 hold and the state does not: *",
+        ]
+    )
+    # Nothing of the plugin's own between the user's line and the message.
+    assert "pytest_plugin.py" not in result.stdout.str()
+
+
+def test_what_a_callable_raises_is_shown_where_it_rose(pytester: pytest.Pytester) -> None:
+    """The traceback leads into the user's own code, and the test fails."""
+    result = session(
+        pytester, 'def test_it(verify_solver):\n    verify_solver("euler/spherical", raising)\n'
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["*return 1 / depth", "*ZeroDivisionError*", "*ended with an error*"]
+    )
+
+
+def test_a_program_is_judged_by_its_name(pytester: pytest.Pytester) -> None:
+    """A solver may be a name, of a program too; one that crashes fails with its outcome."""
+    tests = """
+def test_taylor(verify_solver):
+    verify_solver("euler/spherical", "taylor")
+
+def test_program(verify_solver):
+    verify_solver("euler/spherical", "process:false")
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(["*omega: fail, ended by a signal or with an exit status*"])
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        'verify_solver("euler/sphericle", still)',
+        'verify_solver("euler/spherical", "tailor")',
+        'verify_solver("euler/spherical", 17)',
+        'verify_solver("euler/spherical", still, rung="f65")',
+        'verify_solver("euler/spherical", still, tolerance=0)',
+        'verify_solver("euler/spherical", still, tolerance=float("nan"))',
+        'verify_solver("euler/spherical", still, tolerance=True)',
+        'verify_solver("euler/spherical", still, tolerance=1)',
+        'verify_solver("euler/spherical", still, tolerance="1e-8")',
+        'verify_solver("euler/spherical", still, tolerance={"omega": 2})',
+        'verify_solver("euler/spherical", still, tolerance={"attitude": 1e-3})',
+        'verify_solver("euler/spherical", still, tolerance={})',
+        'verify_solver("euler/spherical", still, only=["T", "attitude"])',
+        'verify_solver("euler/spherical", still, only=[])',
+    ],
+)
+def test_a_wrong_call_fails(pytester: pytest.Pytester, call: str) -> None:
+    """A name, a tolerance or a quantity that is not there fails the test and says what is expected."""
+    result = session(pytester, f"def test_it(verify_solver):\n    {call}\n")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["E*Failed: expected *"])
+
+
+# Tolerances, and conserved quantities alone.
+
+
+def test_a_tolerance_takes_the_place_of_the_bound(pytester: pytest.Pytester) -> None:
+    """A coarse method passes within its own tolerance, for all quantities or for each its own."""
+    tests = """
+@pytest.mark.parametrize(
+    "tolerance",
+    [None, 1e-9, 1e-5, {"omega": 1e-5}, {"omega": 1e-5, "T": 1e-5, "H2": 1e-5}],
+)
+def test_it(verify_solver, tolerance):
+    verify_solver("euler/spherical", too_fast, tolerance=tolerance)
+"""
+    result = session(pytester, tests)
+    # Without one, below the error, and where T and H2 keep their bounds, it fails.
+    result.assert_outcomes(passed=2, failed=3)
+    result.stdout.fnmatch_lines(
+        [
+            "E       omega: fail; 6 digits are right up to t = 100 (largest error 9.5e-07); *"
+            "above the tolerance of 1e-09 (roundoff of f64 alone would need *",
+            "E           bound    1e-09 x max|omega|; the error is * times what perfect rounding *",
+        ]
+    )
+
+
+def test_conserved_quantities_alone_are_said_to_be_alone(pytester: pytest.Pytester) -> None:
+    """They may be judged alone; pass or fail, the words say that they certify no state."""
+    tests = """
+def test_blind(verify_solver):
+    verify_solver("euler/generic", still, only="conserved")
+
+def test_one(verify_solver):
+    verify_solver("euler/generic", still, only="T")
+
+def test_seen(verify_solver):
+    verify_solver("euler/generic", too_fast, only=["T", "H2"])
+
+def test_state(verify_solver):
+    verify_solver("euler/spherical", still, only=["omega", "T"])
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=3, failed=1)
+    words = "conserved quantities alone were judged. That does not certify a state"
+    result.stdout.fnmatch_lines([f"E*{words}*", "*= taylor-verify =*"])
+    # pytest's own short summary follows, and repeats a whole message where the variable CI is set.
+    noted = result.stdout.str().partition("= taylor-verify =")[2].partition("= short test summary")
+    summary = noted[0].splitlines()
+    told = [line.partition(": ")[0].rpartition("::")[2] for line in summary if words in line]
+    assert told == ["test_blind", "test_one"]
+
+
+def test_the_note_of_a_worker_reaches_the_summary(pytester: pytest.Pytester) -> None:
+    """Under xdist, where tests run in other processes, the summary has the note all the same."""
+    pytester.makepyfile(
+        SOLVERS
+        + 'def test_blind(verify_solver):\n    verify_solver("euler/generic", still, only="T")\n'
+    )
+    plugins = ("-p", "taylor_verify.testing.plugin", "-p", "xdist.plugin", "-n", "1")
+    result = pytester.runpytest_subprocess(*plugins)
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["*= taylor-verify =*", "*conserved quantities alone*"])
+
+
+def test_no_option_saves_a_run_without_numbers(pytester: pytest.Pytester) -> None:
+    """A NaN meets no tolerance, and a run that did not finish fails whatever is asked of it."""
+    tests = """
+def test_nan(verify_solver):
+    verify_solver("euler/spherical", nan, tolerance=0.9)
+
+def test_unfinished(verify_solver):
+    verify_solver("euler/spherical", raising, tolerance=0.9, only="conserved")
+"""
+    session(pytester, tests).assert_outcomes(failed=2)
+
+
+# Demands, one by one.
+
+
+def verdict(status: Status = Status.PASS, **numbers: Any) -> Verdict:
+    named = {"scene": "s", "solver": "t", "rung": "f64", "setting": "", "outcome": ""}
+    return Verdict(**{**named, "quantity": "omega", "verdict": status, **numbers})
+
+
+@pytest.mark.parametrize("status", list(Status))
+def test_only_a_pass_meets_a_demand(status: Status) -> None:
+    """Undecided, vacuous, refused and unavailable are not green."""
+    assert is_met(verdict(status)) is (status is Status.PASS)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "words"),
+    [
+        (Outcome.NO_PACKAGE, "install the package that is missing"),
+        (Outcome.NO_FORMAT, "take another rung"),
+        (Outcome.UNSUITED, "take another solver, or another rung"),
+    ],
+)
+def test_a_run_that_is_unavailable_says_what_would_mend_it(outcome: Outcome, words: str) -> None:
+    """A missing package is installed; another rung is advised only where the rung is the reason."""
+    row = verdict(Status.UNAVAILABLE, outcome=outcome.value)
+    told = report(Judgement((row,), None), [row])
+    mend = next(line for line in told.splitlines() if line.startswith("    mend "))
+    assert words in mend
+
+
+def test_a_verdict_that_is_no_fail_says_what_to_do() -> None:
+    """A gate of which rounding alone reaches the size of the motion is vacuous, and says so."""
+    # At the first flip all components are of size one, and round at 10^-8; back beside the axis such
+    # a deviation grows by exp(t/sqrt 3), at t = 60 by more than 10^8.
+    text = """
+title = "Beside the middle axis, for too long"
+model = "euler"
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [1e-4, 1, 0]
+[time]
+end = 60
+samples = 61
+"""
+    judgement = run(read(text, "too long"), "taylor", "f32")
+    found = {v.quantity: v.verdict for v in judgement.verdicts}
+    assert found["omega"] is Status.VACUOUS
+    told = report(judgement, demanded_rows(judgement))
+    assert "omega: vacuous" in told
+    assert "    mend     rounding alone reaches the size of the motion" in told
+    assert all(is_met(row) for row in demanded_rows(judgement, only="conserved"))
+
+
+def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
+    """Where perfect rounding would leave more than is allowed, the message does not blame the step."""
+    judgement = run("euler/tennis-racket", "taylor", "f64", tolerance=1e-17)
+    told = report(judgement, demanded_rows(judgement))
+    assert "the tolerance is finer than the roundings of this precision" in told
+
+
+def test_a_time_shift_is_told_beside_a_tolerance() -> None:
+    """What the judge made of the error as a shift of time is passed on with the tolerance."""
+    scene = load("euler/generic")
+    late = exact(scene, [t - Fraction(1, 2000) for t in scene.clock.instants], 20)["omega"]
+    judgement = check(
+        scene, lambda problem: [[float(w) for w in row] for row in late], tolerance=1e-9
+    )
+    told = report(judgement, demanded_rows(judgement))
+    assert "a time shift: the answer is late by 0.0005, and" in told
+    assert "above the tolerance of 1e-09 (roundoff of f64 alone would need" in told
+    assert "x growth" not in told
+
+
+# The marker.
+
+
+def test_a_marker_makes_a_test_of_every_scene_and_rung(pytester: pytest.Pytester) -> None:
+    """Names, patterns and rungs multiply, and each is a test with a name of its own."""
+    tests = """
+@pytest.mark.verify_scenes("euler/spherical", "euler/re*", rung=["f32", "f64"])
+def test_it(verify_scene):
+    assert verify_scene.rung in {"f32", "f64"}
+    verify_scene(still)
+
+@pytest.mark.verify_scenes("euler/spherical", tolerance=1e-5)
+@pytest.mark.verify_scenes("euler/generic", only="conserved")
+class TestOfAClass:
+    def test_it(self, verify_scene):
+        verify_scene(too_fast if verify_scene.scene == "euler/spherical" else still)
+"""
+    result = session(pytester, tests, "-v")
+    result.assert_outcomes(passed=6)
+    names = ["spherical-f32", "rest-f32", "spherical-f64", "rest-f64"]
+    result.stdout.fnmatch_lines([f"*::test_it?euler/{name}? PASSED*" for name in names])
+
+
+@pytest.mark.parametrize(
+    ("tests", "words"),
+    [
+        ("@pytest.mark.verify_scenes()\ndef test_it(verify_scene): pass", "expected scenes"),
+        (
+            '@pytest.mark.verify_scenes("euler/sphericle")\ndef test_it(verify_scene): pass',
+            "did you mean euler/spherical",
+        ),
+        (
+            '@pytest.mark.verify_scenes("nobody/*")\ndef test_it(verify_scene): pass',
+            "expected a pattern that some shipped scene fits, got 'nobody/*'",
+        ),
+        (
+            '@pytest.mark.verify_scenes("euler/rest", rung="f65")\ndef test_it(verify_scene): pass',
+            "expected a rung",
+        ),
+        (
+            '@pytest.mark.verify_scenes("euler/rest", rungs=1)\ndef test_it(verify_scene): pass',
+            "expected rung, tolerance or only, got rungs",
+        ),
+        ("def test_it(verify_scene): pass", "on a test that asks for verify_scene, got none"),
+        (
+            '@pytest.mark.verify_scenes("euler/rest")\ndef test_it(tmp_path): pass',
+            "nothing would be judged",
+        ),
+    ],
+)
+def test_a_marker_that_would_judge_nothing_is_an_error(
+    pytester: pytest.Pytester, tests: str, words: str
+) -> None:
+    """No scene, an unknown one, no fixture, no marker: the collection fails and says why."""
+    result = session(pytester, tests)
+    result.assert_outcomes(errors=1)
+    assert words in result.stdout.str()
+
+
+def test_a_fixture_of_the_same_name_is_left_alone(pytester: pytest.Pytester) -> None:
+    """A project whose own fixture is called verify_scene has that one."""
+    tests = """
+@pytest.fixture
+def verify_scene():
+    return 17
+
+def test_it(verify_scene):
+    assert verify_scene == 17
+"""
+    session(pytester, tests).assert_outcomes(passed=1)
+
+
+def test_the_marker_is_registered(pytester: pytest.Pytester) -> None:
+    """`pytest --markers` lists it, and --strict-markers accepts it."""
+    result = session(pytester, "", "--markers", "--strict-markers")
+    result.stdout.fnmatch_lines(["@pytest.mark.verify_scenes(*"])
+
+
+def test_a_test_that_judges_nothing_is_no_pass(pytester: pytest.Pytester) -> None:
+    """To ask for a fixture and not to call it fails; a test that was skipped or failed is left so."""
+    tests = """
+def test_idle(verify_solver):
+    pass
+
+@pytest.mark.verify_scenes("euler/rest")
+def test_idle_scene(verify_scene):
+    verify_scene.scene
+
+def test_skipped(verify_solver):
+    pytest.skip("no simulator here")
+
+def test_failed(verify_solver):
+    assert False, "before it came to it"
+
+@pytest.fixture
+def simulator(verify_solver):
+    return lambda scene: verify_solver(scene, still)
+
+def test_by_a_fixture_of_ones_own(simulator):
+    simulator("euler/spherical")
+"""
+    result = session(pytester, tests)
+    result.assert_outcomes(passed=1, failed=3, skipped=1)
+    result.stdout.fnmatch_lines(["expected the test to judge a solver with each of its gates*"])
+
+
+# What it costs a project that does not use it.
+
+
+def test_the_plugin_alone_imports_nothing_heavy() -> None:
+    """Neither the plugin nor what it decides by loads an integrator, an array or a big number."""
+    script = (
+        "import sys, pytest\n"
+        "before = set(sys.modules)\n"
+        "import taylor_verify.testing.plugin\n"
+        "print(*sorted(m for m in set(sys.modules) - before if m.partition('.')[0] != '__mp_main__'))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, stdout=subprocess.PIPE)
+    loaded = set(done.stdout.decode().split())
+    assert {"taylor_verify", "taylor_verify.testing.plugin"} <= loaded
+    assert {name for name in loaded if name.startswith("taylor_verify.")} == LIGHT
+    assert not HEAVY & {name.partition(".")[0] for name in loaded}
+
+
+def test_a_session_without_a_scene_loads_nothing_heavy(pytester: pytest.Pytester) -> None:
+    """A project that does not use the plugin has no more of it than the light modules."""
+    pytester.makepyfile(
+        f"""
+        import sys
+
+        def test_mine():
+            assert "taylor_verify.testing.plugin" in sys.modules
+            mine = {{name for name in sys.modules if name.startswith("taylor_verify.")}}
+            assert mine == {LIGHT!r}
+            assert not {HEAVY!r} & set(sys.modules)
+        """
+    )
+    result = pytester.runpytest_subprocess("-p", "taylor_verify.testing.plugin")
+    result.assert_outcomes(passed=1)
+
+
+def test_scenes_are_collected_without_the_heavy_modules(pytester: pytest.Pytester) -> None:
+    """Patterns and rungs are resolved when tests are collected; numbers come when one is run."""
+    pytester.makepyfile(
+        f"""
+        import sys, pytest
+
+        @pytest.mark.verify_scenes("euler/*", rung="f32")
+        def test_mine(verify_scene):
+            assert not {HEAVY!r} & set(sys.modules)
+            verify_scene(lambda problem: [problem.given.initial.omega] * len(problem.times))
+        """
+    )
+    result = pytester.runpytest_subprocess(
+        "-p", "taylor_verify.testing.plugin", "-k", "euler/spherical"
+    )
+    assert result.parseoutcomes()["passed"] == 1

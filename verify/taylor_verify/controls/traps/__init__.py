@@ -1,1 +1,0 @@
-"""Traps: plain calls of heyoka that go wrong, mostly in silence, beside what the driver does there."""

@@ -1,0 +1,1 @@
+"""The derivative of an exact motion in its data and its state."""

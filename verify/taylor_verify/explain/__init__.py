@@ -1,0 +1,41 @@
+"""The explanation of one run, as a document."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.scenes.scene import Scene
+
+
+def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dict[str, Any]:
+    """Run a scene on one rung and explain the equations, the orbit and the terms of each bound.
+
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    rung
+        A Rung or ``f32 f64 f80 f128 mpN``.
+
+    Returns
+    -------
+    dict
+        The document of ``explain --json``: the equations built and their cost, the numbers of the orbit in
+        the scene's units, its conditioning, and each gate with the terms of its bound. A number that
+        the run did not come to is None.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For a name that is no rung.
+    """
+    from taylor_verify.explain.explanation import explanation
+    from taylor_verify.scenes.precision import rung as rung_named
+
+    return explanation(scene, rung_named(rung).name)

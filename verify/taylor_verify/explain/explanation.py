@@ -1,0 +1,281 @@
+"""What a scene asks and how it is judged: the equations as built, the orbit, each gate's terms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from mpmath import mp
+
+from taylor_verify.exact import ellipsoid
+from taylor_verify.exact.balls import midpoint
+from taylor_verify.exact.elements import Element, Elements, elements
+from taylor_verify.exact.kirchhoff.general import screws_beside
+from taylor_verify.exact.kirchhoff.screws import Screw
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.floor.carrying import Carrying, carrying
+from taylor_verify.judge.floor.partial import partial_judgement
+from taylor_verify.judge.initial import with_initial
+from taylor_verify.models.form import Form
+from taylor_verify.models.general import in_general_form, whole_form
+from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.scenes.bodies import Body, ImmersedBody
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.reader import as_scene
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import Recorded
+from taylor_verify.solvers.trajectory import Outcome
+
+if TYPE_CHECKING:
+    from taylor_verify.judge.judgement import Judgement
+
+_DIGITS = 15
+# Beyond the digits of a rung, so that what is rounded to it is the exact number.
+_SPARE_DIGITS = 6
+_FROM_RECORD = (
+    *("equations", "parameters", "units", "regime", "route", "truth_digits", "unit_roundoff"),
+)
+
+
+def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
+    """Run the scene on that rung and return what its record says; no number is an estimate.
+
+    A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
+    orbit, its conditioning, and each gate with the terms of its bound. A number that the run did not
+    come to is None. Without heyoka the exact motion, rounded to the rung, is judged in place of an
+    answer, and a warning says so. Raises scenes.faults.Refused for a scene that cannot be read.
+    """
+    scene = as_scene(scene)
+    found, lacking = _judged(scene, rung_named(rung))
+    record = found.record.document() if found.record is not None else {}
+    first = found.verdicts[0]
+    effort = ("steps", "evaluations", "seconds")
+    orbit = _orbit(scene)
+    period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "source": scene.source,
+        "model": scene.model,
+        "rung": rung,
+        "bits": rung_named(rung).bits,
+        "track": sorted({MAIN[scene.model]} | scene.track),
+        "warnings": [*scene.warnings, *lacking],
+        "body": [*_shape(scene.body), *scene.notes],
+        **{name: record.get(name) for name in _FROM_RECORD},
+        "cost": {
+            **_cost(scene, rung),
+            **{name: None if lacking else getattr(first, name) for name in effort},
+        },
+        **orbit,
+        "screws": [_screw(screw) for screw in screws_beside(scene)],
+        "condition": _condition(scene, rung_named(rung), period) if found.record else None,
+        "outcome": first.outcome,
+        "gates": [_gate(verdict) for verdict in found.verdicts],
+    }
+
+
+def _shape(body: Body) -> list[str]:
+    """Return what body was read, in sentences, where it was given as an ellipsoid."""
+    return ellipsoid.told(body) if isinstance(body, ImmersedBody) else []
+
+
+def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
+    """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
+    found = run(scene, "taylor", rung)
+    (first, *_) = found.verdicts
+    if first.outcome != Outcome.NO_PACKAGE.value:
+        return found, []
+    exact = _judged_exact_motion(scene, rung)
+    if exact is None:
+        return found, []
+    meaning = (
+        f"the gates are those of the exact motion rounded to {rung.name}, a step for each sample"
+    )
+    return exact, [f"{first.because}; {meaning}"]
+
+
+def _judged_exact_motion(scene: Scene, rung: Rung) -> Judgement | None:
+    """Return the judgement of the exact motion rounded once to the rung; None where there is none."""
+    try:
+        problem = pose(scene, rung)
+        digits = truth_digits(rung.bits, _SPARE_DIGITS)
+        exact = solution(problem.given).motion(problem.given.clock.elapsed, digits)
+        with mp.workprec(rung.bits):
+            rounded = {name: +values for name, values in exact.quantities.items()}
+        found = partial_judgement(problem, Recorded(rounded, name="exact"))
+    except (NotRepresentable, Unsettled):
+        return None
+    return with_initial(found, float(problem.given.clock.start))
+
+
+def _orbit(scene: Scene) -> dict[str, Any]:
+    """The numbers of the orbit by name, what each of them is, and what they say in words.
+
+    They belong to the scene's own numbers and to omega or the impulses; attitude and centre do not
+    change them. All empty where the digits cannot be had.
+    """
+    try:
+        found = elements(scene, _DIGITS)
+    except Unsettled as doubt:
+        found = Elements("", (), (str(doubt),))
+    numbers = [_element(element) for element in found.numbers]
+    return {
+        "orbit": {number["name"]: number["value"] for number in numbers},
+        "elements": numbers,
+        "sentences": list(found.sentences),
+    }
+
+
+def _element(element: Element) -> dict[str, str]:
+    value = str(mp.nstr(element.value, _DIGITS))
+    return {
+        "name": element.name,
+        "value": value,
+        "unit": element.unit,
+        "meaning": element.meaning,
+        "source": element.source,
+    }
+
+
+def _screw(screw: Screw) -> dict[str, Any]:
+    """A steady screw with the F and the turning of the start, as numbers that are written out.
+
+    ``axis`` (body axes, unit length), ``velocity`` of the origin along it, ``turning`` Omega about it in
+    radians/time, ``pitch`` the advance in one turn, velocity 2 pi/turning (null of a translation);
+    ``mu`` the eigenvalue that exact.kirchhoff.screws has; ``spectrum`` the exponents of a small
+    disturbance as [re, im], beside the two that are 0; ``stability`` what is proven of it.
+    """
+    # Balls of 128 bits and more: their midpoints have more digits than are written.
+    with mp.workdps(2 * _DIGITS):
+        axis = [midpoint(n) for n in screw.axis()]
+        turning = mp.convert(screw.turn) * mp.norm([midpoint(entry) for entry in screw.x])
+        velocity = midpoint(screw.speed)
+        c2, c0 = midpoint(screw.c2), midpoint(screw.c0)
+        root = mp.sqrt(mp.mpc(c2 * c2 - 4 * c0))
+        # The larger of the two s^2 has no cancellation, and the other is their product over it.
+        larger = max((-c2 - root) / 2, (-c2 + root) / 2, key=abs)
+        roots = [mp.sqrt(square) for square in (larger, c0 / larger if larger else larger)]
+        return {
+            "axis": [_written(n) for n in axis],
+            "velocity": _written(velocity),
+            "turning": _written(turning),
+            "pitch": _written(2 * mp.pi * velocity / turning) if turning else None,
+            "mu": _written(midpoint(screw.mu)),
+            "spectrum": [
+                [_written(part) for part in (sign * s.real, sign * s.imag)]
+                for s in roots
+                for sign in (1, -1)
+            ],
+            "stability": screw.stability.name.lower().replace("_", " "),
+            "sentence": screw.stability.value,
+        }
+
+
+def _written(value: Any) -> str:
+    return str(mp.nstr(value, _DIGITS))
+
+
+def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
+    """How an error at the first sample is carried along the orbit; None where that is not known."""
+    try:
+        found = carrying(scene)
+    except Unsettled:
+        return None
+    if found is None:
+        return None
+    worst, pace = found.worst, found.pace
+    per_period = None if pace is None or period is None else _finite(pace * period)
+    sentences = list(_condition_sentences(found, rung, per_period))
+    return {
+        "from": found.times[0],
+        "worst": _finite(found.factors[worst]),
+        "worst_at": found.times[worst],
+        "end": _finite(found.factors[-1]),
+        "end_at": found.times[-1],
+        "per_period": per_period,
+        "sentence": " ".join(sentences),
+        "sentences": sentences,
+    }
+
+
+def _condition_sentences(found: Carrying, rung: Rung, per_period: float | None) -> Iterator[str]:
+    """Yield the factors in words, and the size that one rounding of this rung grows to."""
+    worst, u = found.worst, float(rung.unit_roundoff)
+    becomes = u * found.factors[worst]
+    later = ""
+    if worst < len(found.times) - 1:
+        later = f", and by {found.factors[-1]:.3g} at the end (t = {found.times[-1]:g})"
+    yield (
+        f"An error in the state at t = {found.times[0]:g} is multiplied, each time relative to the "
+        f"state, by {found.factors[worst]:.3g} at worst (t = {found.times[worst]:g}){later}."
+    )
+    if per_period is not None:
+        yield f"It grows in proportion to time, by about {per_period:.2g} per period."
+    elif found.pace is not None:
+        yield f"It grows in proportion to time, by about {found.pace:.2g} per time unit."
+    lost = "; nothing of the state is left then" if not becomes < 1 else ""
+    yield (
+        f"On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at worst{lost}."
+    )
+
+
+def _finite(factor: float) -> float | None:
+    return factor if isfinite(factor) else None
+
+
+def _gate(verdict: Verdict) -> dict[str, Any]:
+    names = (
+        *("quantity", "max", "mean", "final", "at", "unit", "attainable", "bound", "ratio"),
+        *("ratio_at", "because", "reason"),
+    )
+    row = verdict.row()
+    return {"verdict": verdict.verdict.value} | {name: row[name] for name in names}
+
+
+_COUNTED = ("states", "parameters", "sums", "products", "quotients")
+
+
+def _cost(scene: Scene, rung: str) -> dict[str, Any]:
+    """What an evaluation of the equations takes, why they are these, and what the others would take.
+
+    ``general`` counts the general equations of all that the model has, ``same`` those of the same
+    body for the same quantities, as far as their coefficients are not zero.
+    """
+    try:
+        problem = pose(scene, rung_named(rung))
+    except NotRepresentable:
+        unknown = dict.fromkeys(_COUNTED)
+        return {**unknown, "general": unknown, "same": unknown, "because": []}
+    return {
+        **_counts(problem.form),
+        "general": _counts(whole_form(scene.model)),
+        "same": _counts(in_general_form(problem).form),
+        "because": [*problem.because, *_left_out(scene)],
+    }
+
+
+def _counts(form: Form) -> dict[str, Any]:
+    operations = form.operations()
+    return {
+        "states": len(form.states),
+        "parameters": len(form.entering()),
+        **{name: operations[name] for name in ("sums", "products", "quotients")},
+    }
+
+
+def _left_out(scene: Scene) -> list[str]:
+    """What the scene does not ask for."""
+    possible = TRACKED[scene.model]
+    found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
+    if scene.body.is_free:
+        found.append("no moment" if scene.model == "euler" else "no force and no couple")
+    return found

@@ -1,0 +1,1 @@
+"""Measures of error: state, drift, balance, shift of time."""

@@ -1,0 +1,144 @@
+"""The shift of time behind the error of U = A x + B y or Omega = B^T x + C y, which are no states.
+
+For states judge.shift says more; here it is one constant c with answer(t) ~ Omega(t - c), by least
+squares over the samples that share it. The velocity of Omega is a difference of the exact motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.errors.shift import LEAVES, strays_from
+from taylor_verify.judge.errors.state import largest, norms
+from taylor_verify.judge.floor.inputs import Velocity, angular_velocity
+from taylor_verify.records.reason import Kind
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.precision import exact_value, power_of_two
+from taylor_verify.scenes.scene import Scene
+
+Array = np.ndarray[Any, Any]
+
+# A difference over this part of the span has a velocity to ten digits, where one would do.
+_DIFFERENCE: Final = power_of_two(-35)
+_MORE_DIGITS: Final = 12
+_EVALUATIONS: Final = 8
+# A step that moves Omega by so much less than what is left needs no further one.
+_NEGLIGIBLE: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class AngularShift:
+    """``time_shift`` leaves ``residual`` of the largest error, as Omega has it.
+
+    Samples that do not share a constant shift are left out of both.
+    """
+
+    time_shift: Fraction
+    residual: float
+    kind: Kind
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Omega of the answer at some samples beside the exact one at t - shift."""
+
+    shift: Fraction
+    answer: Array
+    error: Array
+    velocity: Array
+
+    @property
+    def left(self) -> Any:
+        return mp.sqrt(np.sum(self.error**2))
+
+    @property
+    def largest(self) -> Any:
+        return largest(norms(self.error))
+
+    @property
+    def reach(self) -> Any:
+        """How far the answer goes from its first sample."""
+        return largest(norms(self.answer - self.answer[:1]))
+
+    def step(self) -> Any:
+        """The further shift that leaves least, to first order."""
+        weight = np.sum(self.velocity**2)
+        return -np.sum(self.velocity * self.error) / weight if weight else mp.zero
+
+    def strays(self) -> tuple[int, ...]:
+        """The samples that do not share the median of all shifts; none where they are many."""
+        error, velocity = self.error.astype(float), self.velocity.astype(float)
+        speed = np.linalg.norm(velocity, axis=1)
+        if not np.all(speed > 0):
+            return ()
+        further = -np.sum(error * velocity, axis=1) / speed**2
+        across = np.linalg.norm(error + further[:, None] * velocity, axis=1)
+        shifts = float(self.shift) + further
+        return strays_from(np.full(len(shifts), np.median(shifts)), shifts, speed, across)
+
+
+def angular_shift(
+    given: Scene, answer: Array, digits: int, of: Velocity = angular_velocity
+) -> AngularShift | None:
+    """Return the constant shift, at the ambient precision; None where the answer is not finite.
+
+    ``answer`` holds Omega, or whatever velocity ``of`` makes of the impulses, at the instants of ``given``.
+    """
+    if not all(mp.isfinite(value) for value in answer.flat):
+        return None
+    compared, every = _Compared(given, solution(given), answer, digits, of), range(len(answer))
+    best = compared.best(every)
+    whole = compared.shift(every, best)
+    if whole.kind is Kind.NONE and (strays := best.strays()):
+        sharing = [k for k in every if k not in strays]
+        shared = compared.shift(sharing, compared.best(sharing))
+        return whole if shared.kind is Kind.NONE else shared
+    return whole
+
+
+@dataclass(frozen=True)
+class _Compared:
+    given: Scene
+    exact: Solution
+    answer: Array
+    digits: int
+    of: Velocity
+
+    def shift(self, rows: Sequence[int], best: _Fit) -> AngularShift:
+        first = self.fit(Fraction(0), rows)
+        explains = best.shift != 0 and best.largest <= LEAVES * min(first.largest, first.reach)
+        kind = Kind.CONSTANT if explains else Kind.NONE
+        return AngularShift(best.shift, float(best.largest), kind)
+
+    def best(self, rows: Sequence[int]) -> _Fit:
+        """The least squares over some samples."""
+        fit = self.fit(Fraction(0), rows)
+        for _ in range(_EVALUATIONS):
+            step = fit.step()
+            further = self.fit(fit.shift + exact_value(step), rows)
+            if not further.left < fit.left:
+                break
+            fit = further
+            if abs(step) * mp.sqrt(np.sum(fit.velocity**2)) <= _NEGLIGIBLE * fit.left:
+                break
+        return fit
+
+    def fit(self, shift: Fraction, samples: Sequence[int]) -> _Fit:
+        body = self.given.body
+        assert isinstance(body, ImmersedBody)
+        elapsed = [self.given.clock.elapsed[k] - shift for k in samples]
+        h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
+        later = [t + h for t in elapsed]
+        both = self.exact.evaluate([*elapsed, *later], self.digits + _MORE_DIGITS)
+        rows = self.of(body, both)
+        here, ahead = rows[: len(elapsed)], rows[len(elapsed) :]
+        own = self.answer[list(samples)]
+        return _Fit(shift, own, own - here, (ahead - here) / mp.convert(h))

@@ -1,0 +1,278 @@
+"""An answer beside the exact motion at shifted times, and what first order makes of a further shift.
+
+c            shift of time: answer(t) ~ exact(t - c), positive for an answer that is late
+e            answer(t) - exact(t - c), relative to the scale of its error
+v, a         velocity and acceleration of exact(t - c), relative likewise
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate, pairwise
+from math import frexp, inf
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.rates import Rates, rates
+from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.judge.errors.state import Errors, largest
+from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Shifts = tuple[Fraction, ...]
+
+# A sum of a dozen products of float64 cannot tell less than this part of its terms.
+_FLOAT_NOISE: Final = 2.0**-48
+# Beyond this error (relative, or radians) first order may not even know the direction.
+_FAR: Final = 0.1
+# Many shifts are tried on a few samples, to a few digits.
+_SEARCH_SAMPLES: Final = 16
+_SEARCH_DIGITS: Final = 15
+# Below 2^-1000 the numbers of a verdict end; a double has 53 bits above this size.
+_LEAST_EXPONENT: Final = -1000
+_LEAST: Final = 2.0**-960
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """The answer beside exact(t - shifts), as float64 and flattened: rows are samples.
+
+    ``error`` counts ``size``, a power of two near the largest error, and is relative to the scale of
+    the error. ``velocity`` and ``acceleration`` are relative likewise, per ``unit`` of time. ``more``
+    is a further shift, in unit x size, that first order has taken out of ``error``.
+    """
+
+    shifts: Shifts
+    error: Floats
+    velocity: Floats
+    acceleration: Floats
+    size: float
+    unit: Fraction
+    more: Floats
+
+    @property
+    def shift(self) -> Floats:
+        """The whole shift of every sample, in the scene's unit of time."""
+        begun = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
+        found: Floats = begun + self.more * (float(self.unit) * self.size)
+        return found
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether float64 holds all of it."""
+        with np.errstate(all="ignore"):
+            total = np.sum(self.error**2) + np.sum(self.velocity**2) + np.sum(self.acceleration**2)
+        return bool(np.isfinite(total))
+
+    @cached_property
+    def weight(self) -> Floats:
+        """|v|^2: how sharply every sample tells the time."""
+        found: Floats = np.sum(self.velocity**2, axis=1)
+        return found
+
+    @cached_property
+    def wanted(self) -> Floats:
+        """The shift that every sample asks for by itself, times its weight."""
+        found: Floats = -np.sum(self.error * self.velocity, axis=1)
+        return found
+
+    @property
+    def left(self) -> float:
+        """The root mean square of the error."""
+        return float(np.sqrt(np.mean(np.sum(self.error**2, axis=1)))) * self.size
+
+    @property
+    def rate(self) -> float:
+        """The fastest rate of the motion, per unit."""
+        fastest = float(np.max(np.linalg.norm(self.velocity, axis=1)))
+        bend = float(np.max(np.linalg.norm(self.acceleration, axis=1)))
+        return bend / fastest if fastest else 0.0
+
+    def neglects(self, step: Floats) -> float:
+        """What first order does not see of a further shift, in ``size``."""
+        bend = np.linalg.norm(self.acceleration, axis=1) * step**2 * self.size / 2
+        noise = _FLOAT_NOISE * np.linalg.norm(self.velocity, axis=1) * np.abs(step)
+        return float(np.max(bend + noise))
+
+    def moved(self, step: Floats) -> Shifts:
+        """The shifts with a further one, exactly."""
+        unit = self.unit * Fraction(self.size)
+        return tuple(
+            c + Fraction(s) * unit for c, s in zip(self.shifts, step.tolist(), strict=True)
+        )
+
+    def with_first_order(self, step: Floats) -> Shifted:
+        error = self.error + step[:, None] * self.velocity
+        return replace(self, error=error, more=self.more + step)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What all quantities of one answer are held against."""
+
+    scene: Scene
+    exact: Solution
+    truth: Motion
+    answer: Motion
+    digits: int
+
+    @cached_property
+    def rates(self) -> Rates:
+        return rates(self.scene, self.truth)
+
+    @cached_property
+    def elapsed(self) -> tuple[Fraction, ...]:
+        return self.scene.clock.elapsed
+
+    @cached_property
+    def instants(self) -> tuple[float, ...]:
+        return tuple(float(t) for t in self.scene.clock.instants)
+
+    @cached_property
+    def span(self) -> float:
+        return float(self.elapsed[-1] - self.elapsed[0])
+
+    @cached_property
+    def times(self) -> Floats:
+        """The samples' times as parts of the span, the first at 0 and the last at 1."""
+        elapsed = np.array([float(t) for t in self.elapsed])
+        found: Floats = (elapsed - elapsed[0]) / (self.span or 1.0)
+        return found
+
+    @property
+    def unshifted(self) -> Shifts:
+        return (Fraction(0),) * len(self.elapsed)
+
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
+        """The exact motion; None where it cannot be had."""
+        try:
+            return self.exact.motion(elapsed, digits)
+        except Unsettled:
+            return None
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One quantity of an answer, and how to hold it against the exact motion at any shifts."""
+
+    run: Run
+    errors: Errors
+
+    def without(self, strays: Collection[int]) -> Compared:
+        """The comparison of all samples but these."""
+        run = self.run
+        kept = [k for k in range(len(run.elapsed)) if k not in strays]
+        clock = Clock(run.scene.clock.start, tuple(run.scene.clock.instants[k] for k in kept))
+        scene = replace(run.scene, clock=clock)
+        rows = replace(run, scene=scene, truth=run.truth.at(kept), answer=run.answer.at(kept))
+        return replace(self, run=rows)
+
+    @cached_property
+    def reach(self) -> float:
+        """How far the answer goes from its first sample, in the unit of the error."""
+        parts = []
+        for part, scale in self._scales.items():
+            rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
+            with precision():
+                squares = np.sum((rows - rows[:1]) ** 2, axis=1)
+            parts.append(mp.sqrt(largest(to_mpf(squares))) / scale)
+        return float(max(parts))
+
+    @cached_property
+    def doubt(self) -> float:
+        """How wide the truth is: less than this cannot be said to be left."""
+        return float(max(self.errors.truth_radius))
+
+    def evaluated(self, shifts: Shifts) -> Shifted | None:
+        """The exact motion at t - shifts beside the answer; None where it cannot be had."""
+        run = self.run
+        elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
+        motion = run.motion(elapsed, run.digits)
+        if motion is None:
+            return None
+        found = self.fit(motion, rates(run.scene, motion, elapsed), shifts)
+        return found if found.is_finite else None
+
+    def fit(self, truth: Motion, found: Rates, shifts: Shifts) -> Shifted:
+        error, size = self._relative(truth, slice(None))
+        factors = {
+            part: float(mp.ldexp(1, found.units[part]) / scale)
+            for part, scale in self._scales.items()
+        }
+        velocity, acceleration = (
+            np.concatenate(
+                [factor * rows[part].reshape(len(shifts), -1) for part, factor in factors.items()],
+                axis=1,
+            )
+            for rows in (found.velocity, found.acceleration)
+        )
+        return Shifted(
+            shifts=shifts,
+            error=error,
+            velocity=velocity,
+            acceleration=acceleration,
+            size=size,
+            unit=power_of_two(found.time),
+            more=np.zeros(len(shifts)),
+        )
+
+    def is_far(self, fit: Shifted) -> bool:
+        return bool(np.max(np.abs(fit.error)) * fit.size > _FAR)
+
+    def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
+        """The mean square error that each of these shifts leaves, on a few samples."""
+        run, count = self.run, len(self.run.elapsed)
+        rows = sorted({round(k) for k in np.linspace(0, count - 1, min(count, _SEARCH_SAMPLES))})
+        elapsed = [run.elapsed[k] - shifts[k] for shifts in tried for k in rows]
+        motion = run.motion(elapsed, _SEARCH_DIGITS)
+        if motion is None:
+            return None
+        left = []
+        for i in range(len(tried)):
+            part = slice(i * len(rows), (i + 1) * len(rows))
+            quantities = {name: motion[name][part] for name in self._scales}
+            error, size = self._relative(Motion(quantities, motion.radius[part]), rows)
+            left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
+        return left
+
+    def largest(self, fit: Shifted) -> float:
+        """The largest error that is left, in the unit of the error."""
+        ends = accumulate((self.run.answer[part][0].size for part in self._scales), initial=0)
+        parts = [fit.error[:, left:right] for left, right in pairwise(ends)]
+        left = float(max(np.max(np.linalg.norm(part, axis=1)) for part in parts)) * fit.size
+        if self.errors.quantity == "attitude":
+            return float(2 * np.arcsin(min(left / 2, 1.0)))
+        return left
+
+    @cached_property
+    def _scales(self) -> dict[str, Any]:
+        """A frame turned by a small angle is off by sqrt 2 of it in the Frobenius norm."""
+        if self.errors.quantity == "attitude":
+            return {"attitude": mp.sqrt(2)}
+        return self.errors.parts
+
+    def _relative(self, truth: Motion, rows: Sequence[int] | slice) -> tuple[Floats, float]:
+        """The error of these rows of the answer, in units of a power of two near the largest."""
+        parts, count = self._scales, len(truth.radius)
+        errors = {p: (self.run.answer[p][rows] - truth[p]).reshape(count, -1) for p in parts}
+        with np.errstate(all="ignore"):  # what a double cannot hold is seen below
+            found = np.concatenate(
+                [e.astype(float) * float(1 / parts[p]) for p, e in errors.items()], axis=1
+            )
+        largest = float(np.max(np.abs(found)))
+        if _LEAST <= largest < inf:
+            size = 2.0 ** frexp(largest)[1]
+            return found / size, size
+        # Too small for a double, or zero: counted in a unit first.
+        exact = np.concatenate([e / parts[p] for p, e in errors.items()], axis=1)
+        largest = max(abs(value) for value in exact.flat)
+        exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0
+        return (exact * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent

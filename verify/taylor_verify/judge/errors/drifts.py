@@ -1,0 +1,167 @@
+"""Drift of the conserved quantities, and for a loaded body the balances that take their place.
+
+Both are one sum over the samples. With Q a quantity and flow the exact motion over the time between
+two samples,
+
+    drift(t_n) = | sum over k < n of Q(state_k+1) - Q(flow(state_k)) |.
+
+Without loads Q(flow(state)) = Q(state) and the sum telescopes to Q(state_n) - Q(start). With loads
+Q(flow(state)) - Q(state) is the work, or impulse, done along the arc, and the sum is the balance.
+
+Of a manufactured motion it is likewise, and each arc takes up the loads of the time at which it begins.
+A solver integrates the clock of these loads with the rest; what rounding does to it does work, which adds
+up from step to step, and which the bound of the balance has to hold (judge.balances).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.invariants import Invariant, decisive, invariants
+from taylor_verify.exact.taylor import arcs
+from taylor_verify.judge.accumulated import Series, joined
+from taylor_verify.judge.errors.state import Errors
+from taylor_verify.scenes.motion import Motion, State
+from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
+from taylor_verify.scenes.precision import exact_value
+from taylor_verify.scenes.scene import Scene
+
+Column = np.ndarray[Any, Any]
+
+_STATE_FIELDS = {
+    "omega": "omega",
+    "linear_impulse": "linear",
+    "angular_impulse": "angular",
+    "quaternion": "attitude",
+    "centre": "centre",
+}
+
+
+def drifts(
+    scene: Scene, start: Motion, answer: Motion, held: Mapping[str, Column], digits: int
+) -> list[tuple[Invariant, Errors]]:
+    """The drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
+
+    ``start`` is the exact initial state as a Motion of one row; ``held`` are the answer's own exact
+    numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
+    answer that is not finite drifts by NaN.
+    """
+    found = Drifts(scene, start, digits)
+    found.add(scene.clock.elapsed, answer, held)
+    return found.errors()
+
+
+class Drifts:
+    """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath."""
+
+    def __init__(self, scene: Scene, start: Motion, digits: int) -> None:
+        self._scene, self._digits = scene, digits
+        self._found = invariants(scene)
+        self._series = {invariant.name: Series() for invariant in self._found}
+        self._begin = in_mpfr(start)
+        # Where the last block ended: its time, its state, and the sums of all increments.
+        self._before: tuple[Fraction, State] = Fraction(0), scene.initial
+        self._sums: dict[str, Column] = {}
+        # The signed drift of the last row, over its scale, of what is a number.
+        self._changes: dict[str, float] = {}
+        # The rows so far that the scales are made of.
+        self._largest: Motion | None = None
+        self._is_lost = False
+
+    def add(self, elapsed: Sequence[Fraction], answer: Motion, held: Mapping[str, Column]) -> None:
+        """Take in the next rows. Raises Unsettled where an arc cannot be had."""
+        quick = in_mpfr(answer)
+        is_free = self._scene.body.is_free
+        self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
+        ends = None if is_free or self._is_lost else in_mpfr(self._arc_ends(elapsed, held))
+        with precision():
+            self._widen(quick)
+            assert self._largest is not None
+            for invariant in self._found:
+                if is_free:
+                    change = _conserved(invariant, self._begin, quick)
+                elif ends is None:
+                    change = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
+                else:
+                    change = self._balance(invariant, quick, ends)
+                scale = invariant.scale(self._largest)
+                self._series[invariant.name].add(_sizes(change), scale)
+                if change.ndim == 1:
+                    self._changes[invariant.name] = float(change[-1] / scale)
+
+    def errors(self) -> list[tuple[Invariant, Errors]]:
+        """The drifts of all rows; if one is not finite under loads, NaN for all."""
+        return [(invariant, self._errors(invariant)) for invariant in self._found]
+
+    def _errors(self, invariant: Invariant) -> Errors:
+        with precision():
+            values, scale = self._series[invariant.name].joined()
+        if self._is_lost:
+            values = np.full(len(values), np.nan)
+        name, (in_mpf,) = invariant.name, to_mpf(np.array([scale], dtype=object))
+        widths, change = np.zeros(len(values)), self._changes.get(name)
+        return Errors(name, f"scale of {name}", values, widths, {name: in_mpf}, change=change)
+
+    def _widen(self, answer: Motion) -> None:
+        rows = answer.at(decisive(self._scene, answer))
+        if self._largest is not None:
+            rows = joined(self._largest, rows)
+        self._largest = rows.at(decisive(self._scene, rows))
+
+    def _balance(self, invariant: Invariant, answer: Motion, ends: Motion) -> Column:
+        increments = invariant.value(answer) - invariant.value(ends)
+        if invariant.name in self._sums:
+            increments[0] = self._sums[invariant.name] + increments[0]
+        sums = np.cumsum(increments, axis=0)
+        self._sums[invariant.name] = sums[-1]
+        return sums
+
+    def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
+        """Where the exact motion leads from each sample (the first from the start) to the next one."""
+        states = _states(self._scene, held)
+        time, state = self._before
+        begins = (time, *elapsed[:-1])
+        spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
+        self._before = elapsed[-1], states[-1]
+        return arcs(self._scene, [state, *states[:-1]], spans, self._digits, begins)
+
+
+# What follows is in MPFR's numbers.
+
+
+def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
+    change: Column = invariant.value(answer) - invariant.value(start)[0]
+    return change
+
+
+def _sizes(values: Column) -> Column:
+    if values.ndim > 1:
+        return sqrt(np.sum(values * values, axis=1))
+    sizes: Column = abs(values)
+    return sizes
+
+
+# The arcs.
+
+
+def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
+    """The answer's samples as exact initial states."""
+    columns = {_STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()}
+    samples = zip(*columns.values(), strict=True)
+    return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
+
+
+def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
+    return tuple(exact_value(value) for value in row)
+
+
+def _is_finite(motion: Motion) -> bool:
+    return all(
+        not mp.isnan(sum(v - v for v in values.flat)) for values in motion.quantities.values()
+    )

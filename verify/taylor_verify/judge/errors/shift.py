@@ -1,0 +1,256 @@
+"""What an error of the state means: an answer that is right but late, and what is left of the error.
+
+With answer(t) ~ exact(t - c), c is positive if the answer is late. The shift is constant, or linear in t,
+or another one for every sample (judge.courses).
+
+A few samples may not share the course of the others, as a first row that is the given start. The median
+of the shifts of single samples does not see them, nor does the line of Theil and Sen for a drift. They
+are left out, named, and the rest is fitted again by least squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.exact.conditioning.looks import evenly
+from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.errors import courses
+from taylor_verify.judge.errors.compared import Compared, Floats, Run, Shifted
+from taylor_verify.judge.errors.state import Errors
+from taylor_verify.records.reason import Kind, TimeShift
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.scene import Scene
+
+Places = np.ndarray[Any, np.dtype[np.bool_]]
+
+# A shift is the cause of an error only if it leaves no more than this part of it. A wrong equation also
+# moves a body along its orbit, by about as much as across it, so that a third or a half proves nothing.
+LEAVES: Final = 0.1
+# So large a part of the samples, and one at least, may be without the shift that the others share;
+_STRAYS: Final = 0.1
+# a shift that fewer than this share explains nothing.
+_FEWEST: Final = 3
+# A stray is off by so many times what is usual.
+_UNUSUAL: Final = 10.0
+# The line of Theil and Sen looks at all pairs of so many samples.
+_MOST_PAIRED: Final = 201
+# Its square is a double. No shift of time makes an error of that size, nor one that is not finite.
+_LARGEST_ERROR: Final = 2**500
+
+
+@dataclass(frozen=True)
+class Shift:
+    """The shift of one quantity.
+
+    ``kind`` is the simplest course of the shift that explains the error, and ``remains`` the largest
+    error that this course leaves, in the unit of the error. ``time_shift`` is the constant c that leaves
+    least, in the scene's unit of time, and ``residual`` what it leaves. ``trend`` is the shift per unit of
+    time of the best course linear in t. ``strays`` are the times of samples that do not share the course:
+    all these numbers are of the others. ``course`` is the shift of every sample on the course, and
+    ``at_samples`` the shift of every sample by itself; where the motion rests, that of the course.
+    """
+
+    time_shift: float
+    residual: float
+    kind: Kind
+    remains: float
+    trend: float
+    times: tuple[float, ...]
+    at_samples: tuple[float, ...]
+    course: tuple[float, ...]
+    strays: tuple[float, ...] = ()
+
+    def terms(self) -> TimeShift:
+        """Return the shift as a reason has it, at the sample where it is largest."""
+        if self.kind is Kind.NONE:
+            return TimeShift(self.kind)
+        rows = len(self.times)
+        if self.kind is Kind.CONSTANT:
+            return TimeShift(
+                self.kind, self.time_shift, self.remains, rows=rows, strays=self.strays
+            )
+        worst = max(range(rows), key=lambda k: abs(self.course[k]))
+        found = TimeShift(
+            self.kind,
+            self.course[worst],
+            self.remains,
+            self.times[worst],
+            self.trend,
+            rows=rows,
+            strays=self.strays,
+        )
+        first = self.course[0]
+        if abs(first) <= LEAVES * max(map(abs, self.course)):
+            return found
+        return replace(found, begins=first, begins_at=self.times[0])
+
+
+def time_shifts(
+    scene: Scene, exact: Solution, truth: Motion, answer: Motion, digits: int, of: Sequence[Errors]
+) -> list[Shift | None]:
+    """The shift behind the errors of each state quantity, at the ambient precision of mpmath.
+
+    ``truth`` is the exact motion of ``scene`` at its own instants to ``digits`` digits. None for a
+    conserved quantity, and where an error is not finite or a rate is beyond float64. Where the motion
+    rests no shift explains anything.
+    """
+    run = Run(scene, exact, truth, answer, digits)
+    return [_shift(Compared(run, errors)) if errors.is_state else None for errors in of]
+
+
+def _shift(compared: Compared) -> Shift | None:
+    run, errors = compared.run, compared.errors
+    if not all(error <= _LARGEST_ERROR for error in errors.values):
+        return None
+    start = compared.fit(run.truth, run.rates, run.unshifted)
+    if not start.is_finite:
+        return None
+    fits = _Fits.of(compared, start)
+    single = courses.fitted(compared, min(fits.constant, fits.linear, key=_left), courses.single)
+    candidates = [fits, *_without_strays(compared, single)] if fits.kind is Kind.NONE else [fits]
+    best = next((one for one in candidates if one.kind is not Kind.NONE), fits)
+    if best.kind is Kind.NONE and best.explains(single):
+        shift = best.shift(run, Kind.WANDERING, compared.largest(single), single.shift)
+    else:
+        shift = best.shift(run, best.kind, best.remains, best.course(run))
+    return replace(shift, at_samples=tuple(single.shift.tolist()))
+
+
+def _left(fit: Shifted) -> float:
+    return fit.left
+
+
+@dataclass(frozen=True)
+class _Fits:
+    """The constant and the drifting shift of some samples; ``strays`` are the places of the others."""
+
+    compared: Compared
+    start: Shifted
+    constant: Shifted
+    linear: Shifted
+    strays: tuple[int, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        compared: Compared,
+        start: Shifted,
+        line: Shifted | None = None,
+        strays: tuple[int, ...] = (),
+    ) -> _Fits:
+        """The least squares; ``start`` is without a shift, and the drifting fit begins at ``line``.
+
+        The constant fit begins at a constant: what a fit begins with stays part of it.
+        """
+        begin = courses.best_start(compared, start, courses.constant)
+        constant = courses.fitted(compared, begin, courses.constant)
+        onward = line or courses.best_start(compared, constant, courses.linear)
+        return cls(
+            compared, start, constant, courses.fitted(compared, onward, courses.linear), strays
+        )
+
+    def explains(self, fit: Shifted) -> bool:
+        """Return True if the shift leaves next to nothing of the error, and of the answer's motion.
+
+        An answer that stands still is the truth at a clock that stands still, which is no cause.
+        """
+        some = min(self.compared.largest(self.start), self.compared.reach)
+        return bool(some > 0 and self.compared.largest(fit) <= LEAVES * some)
+
+    @property
+    def kind(self) -> Kind:
+        if self.explains(self.constant):
+            return Kind.CONSTANT
+        return Kind.DRIFTING if self.explains(self.linear) else Kind.NONE
+
+    @property
+    def remains(self) -> float:
+        fits = {Kind.CONSTANT: self.constant, Kind.DRIFTING: self.linear}
+        return self.compared.largest(fits.get(self.kind, self.start))
+
+    @property
+    def trend(self) -> float:
+        line, span = self.linear.shift, self.compared.run.span
+        return float(line[-1] - line[0]) / span if span else 0.0
+
+    def course(self, run: Run) -> Floats:
+        """The shift of all samples of a run, strays among them."""
+        if self.kind is not Kind.DRIFTING:
+            return np.full(len(run.instants), float(self.constant.shift[0]))
+        found: Floats = self.linear.shift[0] + self.trend * (
+            np.array(run.instants) - self.compared.run.instants[0]
+        )
+        return found
+
+    def shift(self, run: Run, kind: Kind, remains: float, course: Floats) -> Shift:
+        return Shift(
+            time_shift=float(self.constant.shift[0]),
+            residual=self.compared.largest(self.constant),
+            kind=kind,
+            remains=remains,
+            trend=self.trend,
+            times=run.instants,
+            at_samples=(),
+            course=tuple(course.tolist()),
+            strays=tuple(run.instants[k] for k in self.strays),
+        )
+
+
+# The samples that do not share the course of the others.
+
+
+def _without_strays(compared: Compared, single: Shifted) -> Iterator[_Fits]:
+    """The fits of the samples that share a robust course, constant or linear in t."""
+    moving = courses.moving(single)
+    if np.count_nonzero(moving) < _FEWEST:
+        return
+    for robust in (_median, _theil_sen):
+        course = robust(single.shift, moving, np.array(compared.run.instants))
+        speed = np.sqrt(single.weight) / (float(single.unit) * single.size)
+        across = np.linalg.norm(single.error, axis=1)
+        strays = strays_from(course, single.shift, speed, across)
+        if not strays:
+            continue
+        shared = compared.without(strays)
+        run, kept = shared.run, np.delete(course, strays)
+        line = shared.evaluated(tuple(Fraction(c) for c in kept.tolist()))
+        if line is not None:
+            start = shared.fit(run.truth, run.rates, run.unshifted)
+            yield _Fits.of(shared, start, line, strays)
+
+
+def strays_from(course: Floats, shifts: Floats, speed: Floats, across: Floats) -> tuple[int, ...]:
+    """The samples that are off a course by an unusual part of the shift; none where they are many.
+
+    ``shifts`` are those of single samples, which leave ``across`` of the error, and ``speed`` is the
+    error that a shift of one makes.
+    """
+    off = np.hypot((shifts - course) * speed, across)
+    is_off = (off > LEAVES * np.abs(course) * speed) & (off > _UNUSUAL * np.median(off))
+    strays = tuple(int(k) for k in np.flatnonzero(is_off))
+    few = max(1, int(_STRAYS * len(off)))
+    return strays if len(strays) <= min(few, len(off) - _FEWEST) else ()
+
+
+def _median(shifts: Floats, moving: Places, times: Floats) -> Floats:
+    return np.full(len(times), np.median(shifts[moving]))
+
+
+def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
+    """The line whose slope is the median of those between all pairs of samples."""
+    places = np.flatnonzero(moving)
+    chosen = places[evenly(len(places), _MOST_PAIRED)]
+    first, second = np.triu_indices(len(chosen), 1)
+    t, c = times[chosen], shifts[chosen]
+    gaps = t[second] - t[first]
+    if not gaps.all():
+        # Beside a large start, instants may be one number in float64: there is no slope to tell.
+        return _median(shifts, moving, times)
+    slope = float(np.median((c[second] - c[first]) / gaps))
+    found: Floats = np.median(c - slope * t) + slope * times
+    return found

@@ -1,0 +1,215 @@
+"""What perfect rounding would leave: the floor under every solver that works on a rung.
+
+A solver that rounds each component on its own commits in every step, at time s, an error of about
+u r_i(s) in component i, up or down, with r_i = |x_i| + h S_i(x): the state itself and what a step of
+length h adds to it, every term of the rate S_i in magnitude (judge.magnitude). The orbit's own
+transition matrix Phi carries it on, so that after N steps
+
+    attainable(t) = u [ sum over steps s and components i of |Phi(t, s) e_i|^2 r_i(s)^2 ]^(1/2).
+
+For a conserved quantity its gradient takes the place of Phi, because the orbit carries a change of
+it unchanged. This is a model of independent roundings, not a bound; gates leave a factor for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import log2
+from typing import Any
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.conditioning.condition import Transition, transition
+from taylor_verify.exact.conditioning.gathering import Path, path
+from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.conditioning.looks import chosen, evenly
+from taylor_verify.exact.conditioning.tangent import Flow
+from taylor_verify.exact.invariants import Invariant
+from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.floor.magnitude import roundings
+from taylor_verify.records.reason import Carried, RoundoffFloor, shown
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.mpfr import precision, to_mpfr
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# The gradient of a conserved quantity is as smooth as the motion: more nodes than this refine the sum
+# over the steps by nothing that shows in two digits.
+_MOST_NODES = 41
+# Below this floor, rounding the scene's data moves the orbit too little to change its condition.
+_SAME_ORBIT = 1e-3
+
+
+@dataclass(frozen=True)
+class Floor:
+    """Everything needed to say what is attainable on one run.
+
+    The roundings of the steps between two times of the path count at the later one: ``steps_at[k]`` of
+    size u ``rounded[k]``, component by component, in the path's units. ``carried`` is what they have
+    become, by quantity, without the factor u. ``times`` are those of the samples. With ``velocities`` the
+    roundings are those of U and Omega.
+    """
+
+    unit_roundoff: float
+    times: Floats
+    orbit: Path
+    steps_at: Floats
+    rounded: Floats
+    carried: Mapping[str, Floats]
+    velocities: bool = False
+
+    def of_state(self, errors: Errors) -> Floats:
+        """The attainable error at every sample, in the unit of the errors; the larger part counts."""
+        parts = [
+            self.carried[part] * float(mp.convert(self.orbit.units[part]) / scale)
+            for part, scale in errors.parts.items()
+        ]
+        found: Floats = self.unit_roundoff * np.max(parts, axis=0)
+        return self._at_samples(found, self._path_times())
+
+    def of_invariant(self, invariant: Invariant, motion: Motion, scale: Any) -> Floats:
+        """The attainable drift at every sample, over the invariant's scale; of a motion in MPFR."""
+        return self.of_gradients(invariant, _rows(motion, self.nodes), scale)
+
+    @property
+    def nodes(self) -> list[int]:
+        """The samples at which the gradients of conserved quantities are looked at."""
+        return evenly(len(self.times), _MOST_NODES)
+
+    def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
+        """The same, of a motion at the nodes alone."""
+        nodes = self.nodes
+        ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
+        injected = np.zeros(len(nodes))
+        with precision():
+            (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
+            gradients = invariant.sensitivity(at_nodes)
+            for block, gradient in gradients.items():
+                (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
+                # Divided before it is a float: the square of a small motion would be none.
+                relative = (gradient * unit / whole).astype(float)
+                rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
+                shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
+                injected += np.sum(shares * rounded, axis=1)
+        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
+        return self._at_samples(drift, self.times[nodes])
+
+    def terms(self, attainable: Floats, sample: int, carried: Carried) -> RoundoffFloor:
+        """Return the terms of the floor at one sample."""
+        reached = self._path_times() <= self.times[sample]
+        steps = max(1, round(float(np.sum(self.steps_at[reached]))))
+        floor_there = float(attainable[sample])
+        growth = floor_there / (self.unit_roundoff * steps**0.5)
+        bits = round(-log2(self.unit_roundoff))
+        growth = shown(growth)
+        value, by_velocities = shown(floor_there), self.velocities
+        return RoundoffFloor(carried, value, bits, steps, growth, velocities=by_velocities)
+
+    def worst(self) -> float:
+        """The largest attainable error of a momentum, relative to its own size."""
+        shares = []
+        for k, block in enumerate(self.orbit.blocks):
+            if block not in ("attitude", "centre"):
+                rows = self.orbit.momentum[:, 3 * k : 3 * k + 3]
+                size = float(np.max(np.linalg.norm(rows, axis=1)))
+                shares.append(float(np.max(self.carried[block])) / (size or 1.0))
+        return self.unit_roundoff * max(shares)
+
+    def _squares(self, block: str) -> Floats:
+        """The sums over the steps so far of squared roundings of a block, component by component."""
+        first = 3 * self.orbit.blocks.index(block)
+        rows = self.rounded[:, first : first + 3]
+        found: Floats = np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
+        return found
+
+    def _path_times(self) -> Floats:
+        return np.array([abs(float(t)) for t in self.orbit.elapsed])
+
+    def _at_samples(self, values: Floats, times: Floats) -> Floats:
+        """Between two of the times the larger of both."""
+        later = np.searchsorted(times, self.times)
+        earlier = np.searchsorted(times, self.times, side="right") - 1
+        last = len(times) - 1
+        found: Floats = np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
+        return found
+
+
+def floor(
+    given: Scene, asked: Scene, unit_roundoff: Fraction, steps: int, velocities: bool = False
+) -> Floor:
+    """Return the floor for a run of ``steps`` steps on the rounded scene ``given``.
+
+    With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
+
+    The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
+    rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
+    """
+    shared = _floor(given, asked, unit_roundoff, steps, velocities)
+    if shared.worst() <= _SAME_ORBIT:
+        return shared
+    return _floor(given, given, unit_roundoff, steps, velocities)
+
+
+def _floor(
+    given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int, velocities: bool
+) -> Floor:
+    orbit = _orbit(conditioned)
+    # A row is at least one rounding.
+    count = max(steps, len(given.clock.instants))
+    steps_at = _steps_at(orbit.elapsed, count)
+    bits = unit_roundoff.denominator.bit_length() - 1
+    rounded = roundings(given, orbit, bits, count, velocities)
+    return Floor(
+        unit_roundoff=float(unit_roundoff),
+        times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+        orbit=orbit,
+        steps_at=steps_at,
+        rounded=rounded,
+        carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
+        velocities=velocities,
+    )
+
+
+@lru_cache(maxsize=32)
+def _orbit(scene: Scene) -> Path:
+    return path(scene)
+
+
+def radians(scene: Scene) -> float:
+    """The angle that the fastest of an orbit's rates turns through by its end."""
+    orbit = _orbit(scene)
+    flow = Flow.of(scene, momentum(scene).units)
+    rates = flow.rate(orbit.momentum) / float(flow.time)
+    times = np.array([abs(float(t)) for t in orbit.elapsed])
+    return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
+
+
+def looked_at(scene: Scene) -> list[int]:
+    """The samples at which the floor looks at the orbit: all or many where passages are short."""
+    points = set(_orbit(scene).elapsed)
+    return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
+
+
+@lru_cache(maxsize=8)
+def condition(scene: Scene) -> Transition:
+    """How errors travel along the scene's own orbit, between evenly chosen samples."""
+    return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
+
+
+def _rows(motion: Motion, nodes: Sequence[int]) -> Motion:
+    rows = list(nodes)
+    return Motion({n: values[rows] for n, values in motion.quantities.items()}, motion.radius[rows])
+
+
+def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:
+    """The steps up to each time since the one before, in proportion to time; one at the start."""
+    span = elapsed[-1] or Fraction(1)
+    shares = np.diff([float(t / span) for t in elapsed], prepend=0.0)
+    found: Floats = shares * steps
+    found[0] = 1.0
+    return found

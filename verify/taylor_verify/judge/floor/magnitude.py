@@ -1,0 +1,171 @@
+"""The rounding that one step puts into each component of a state: the terms of its rate in magnitude.
+
+    r_i = |x_i| + h S_i(x)
+
+S_i is the rate of x_i with every term taken in absolute value, and all sums and differences added up: an
+arithmetic that rounds each operation to within u errs by some u S_i in the rate, whatever cancels in
+it. The equations are those of models, with numbers of a kind whose difference is a sum. What is
+formed of the body's data alone is a number like any other: it is known, and cancels.
+
+Who carries the velocities (U, Omega) of a solid in a fluid rounds those. By (x, y) = M (U, Omega) this
+moves x_i by u m_i, with
+
+    m_i = [ sum over j of (M_ij V_j)^2 ]^(1/2),  V = (U, Omega),
+
+which is |x_i| where M is diagonal, and more where terms of M V cancel.
+
+H, x, y  momenta    q  quaternion    c  centre    h  length of a step
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.exact.conditioning.gathering import Path
+from taylor_verify.models.algebra import is_absent
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# The components of a unit quaternion are as large as this on an average.
+_COMPONENT: Final = 0.5
+# A rounding of the components of a unit quaternion turns the frame by twice as much.
+_ANGLE: Final = 2.0
+# No cosine is larger.
+_WAVE: Final = np.ones(1)
+_QUATERNION: Final = ("e0", "e1", "e2", "e3")
+_COMPONENTS: Final = {
+    "momentum": ("H1", "H2", "H3"),
+    **{name: COLUMNS[name] for name in ("linear_impulse", "angular_impulse", "centre")},
+}
+
+
+@dataclass(frozen=True)
+class Magnitude:
+    """The sizes of the terms of an expression, added up; rows of numbers that are not negative."""
+
+    size: Any
+
+    # NumPy's numbers leave the operations to this class.
+    __array_ufunc__ = None
+
+    def __add__(self, other: Any) -> Magnitude:
+        return Magnitude(self.size + _size(other))
+
+    __radd__ = __sub__ = __rsub__ = __add__
+
+    def __neg__(self) -> Magnitude:
+        return self
+
+    def __mul__(self, other: Any) -> Magnitude:
+        return Magnitude(self.size * _size(other))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Magnitude:
+        return Magnitude(self.size / _size(other))
+
+
+def _size(term: Any) -> Any:
+    return term.size if isinstance(term, Magnitude) else abs(term)
+
+
+def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool = False) -> Floats:
+    """r at every time of the path, shape (n, components), in the path's units.
+
+    A step is the span over their number, but no longer than the terms of the rates take to add up
+    to the state: who steps further does as much inside a step. A rounding of a quaternion turns
+    the frame about any axis alike. With ``velocities`` m_i takes the place of |x_i| where it is more.
+    """
+    problem = _posed(given, bits)
+    sizes = _sizes(problem, path)
+    rates = _rates(problem, sizes)
+    moving = [name for name in sizes if name[0] in "Hxy"]
+    span = abs(float(given.clock.elapsed[-1] / problem.units.time))
+    h = min(span / max(steps, 1), _largest(sizes, moving) / (_largest(rates, moving) or 1.0))
+    rounded = {name: size + h * rates[name] for name, size in sizes.items()}
+    columns = []
+    for block in path.blocks:
+        if block == "attitude":
+            turn = _ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
+            columns += [turn / np.sqrt(3.0)] * 3
+        else:
+            unit = float(_unit(problem, block) / path.units[block])
+            columns += [rounded[name] * unit for name in _COMPONENTS[block]]
+    found: Floats = np.column_stack(columns)
+    if velocities and isinstance(given.body, ImmersedBody):
+        by_inertia = _through_velocities(given.body, path)
+        found[:, :6] = np.maximum(found[:, :6], by_inertia)
+    return found
+
+
+def _through_velocities(body: ImmersedBody, path: Path) -> Floats:
+    """m at every time, shape (n, 6), in the path's units."""
+    units = [path.units[block] for block in path.blocks[:2] for _ in range(3)]
+    energy, M = body.energy_matrix, tensors.inverse(body.energy_matrix)
+    to_velocity = [[float(e * d) for e, d in zip(row, units, strict=True)] for row in energy]
+    to_impulse = [[float(m / d) for m in row] for row, d in zip(M, units, strict=True)]
+    velocity = path.momentum @ np.array(to_velocity).T
+    terms = velocity[:, None, :] * np.array(to_impulse)[None, :, :]
+    found: Floats = np.sqrt(np.sum(terms**2, axis=2))
+    return found
+
+
+def _posed(given: Scene, bits: int) -> Problem:
+    """The equations that the body asks for; its data are numbers of the rung, or nearly so."""
+    end = given.clock.instants[-1]
+    return pose(replace(given, clock=Clock(given.clock.start, (end,))), Rung(f"mp{bits}", bits))
+
+
+def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
+    """|component| by name at every time, in the problem's units."""
+    found: dict[str, Floats] = {}
+    momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
+    for k, block in enumerate(momenta):
+        unit = float(path.units[block] / _unit(problem, block))
+        rows = np.abs(path.momentum[:, 3 * k : 3 * k + 3]) * unit
+        found |= dict(zip(_COMPONENTS[block], rows.T, strict=True))
+    if "attitude" in path.blocks:
+        found |= {name: np.full(len(path.elapsed), _COMPONENT) for name in _QUATERNION}
+    if "centre" in path.blocks:
+        assert isinstance(problem.given.initial, Impulse)
+        length = problem.units.length
+        start = np.array([float(c / length) for c in problem.given.initial.centre])
+        rows = np.abs(path.centre * float(path.units["centre"] / length) + start)
+        found |= dict(zip(_COMPONENTS["centre"], rows.T, strict=True))
+    return found
+
+
+def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
+    """S by name, likewise; zero for what nothing changes."""
+    form = problem.form
+    # What is no part of the body's state is a cosine or a sine, of the loads of a manufactured motion.
+    states = [Magnitude(sizes.get(name, _WAVE)) for name in form.states]
+    rates = form.rates(states, [float(value) for value in problem.parameters])
+    found = {name: np.zeros_like(size) for name, size in sizes.items()}
+    for name, rate in zip(form.states, rates, strict=True):
+        if name in found and not is_absent(rate):
+            found[name] = found[name] + _size(rate)
+    return found
+
+
+def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:
+    """The largest norm at any time."""
+    return float(np.sqrt(np.max(sum(columns[name] ** 2 for name in names))))
+
+
+def _unit(problem: Problem, block: str) -> Fraction:
+    units = problem.units
+    by_block = {"linear_impulse": units.impulse, "centre": units.length}
+    return by_block.get(block, units.momentum)

@@ -1,0 +1,284 @@
+"""The judgement of an answer that has only some of the quantities, or velocities besides.
+
+What is missing is taken from the truth, so that the equations of the judge have all they ask for; no
+row that rests on it is reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp, mpf
+
+from taylor_verify.exact.conditioning.looks import evenly
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.accumulated import Series, States
+from taylor_verify.judge.costs import Costs
+from taylor_verify.judge.errors.angular_shift import angular_shift
+from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
+from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
+from taylor_verify.judge.floor.attainable import Floats, floor
+from taylor_verify.judge.floor.inputs import Velocity, angular_velocity, linear_velocity
+from taylor_verify.judge.gates import index_of_largest, judge
+from taylor_verify.judge.judgement import Judgement, judgement, mean
+from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
+from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.doubles import Doubles
+from taylor_verify.records.quantities import UNIT_QUATERNION, VELOCITIES
+from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
+from taylor_verify.records.record import GateRecord
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.tensors import Matrix
+from taylor_verify.solvers.files.file import Recorded
+from taylor_verify.solvers.trajectory import ByRows, Outcome, rows_at
+
+Quantities = Mapping[str, np.ndarray[Any, Any]]
+Gated = tuple[Verdict, GateRecord]
+
+_GUARD_DIGITS: Final = 6
+# The names that a sensitivity has for the quantities of a state.
+_BLOCKS: Final = {"momentum": "omega"}
+
+
+def partial_judgement(
+    problem: Problem, solver: Recorded, tolerances: Tolerances = NO_TOLERANCES
+) -> Judgement:
+    """The verdicts on what the answer has. Raises Unsettled where there is no truth.
+
+    The problem's scenes track what the answer has of attitude and centre, and no more.
+    """
+    own, given = solver.quantities, problem.given
+    exact = solution(given)
+    digits = truth_digits(problem.rung.bits, _GUARD_DIGITS)
+    one_row = exact.motion(given.clock.elapsed[:1], digits)
+    has = {"attitude" if name == "quaternion" else name for name in own}
+    filled = Filled(
+        own,
+        tuple(name for name in own if name not in VELOCITIES or name in one_row.quantities),
+        tuple(name for name in one_row.quantities if name not in has),
+        lambda places: exact.motion([given.clock.elapsed[k] for k in places], digits),
+        len(given.clock.instants),
+    )
+    apart: list[Gated] = []
+    for group, kind in _VELOCITIES.items():
+        if group in own and group not in one_row.quantities:
+            apart.append(_velocity(problem, solver, exact, kind, tolerances))
+    if "attitude" in filled and not given.body.is_free:
+        # The balances of a loaded body start an arc of the exact motion from every row, for which a
+        # matrix that is no rotation to the last digit will not do. States alone are compared.
+        apart += _states_apart(problem, solver, exact, filled, tolerances)
+        filled = filled.without("attitude", "centre")
+        problem = replace(problem, given=replace(given, track=frozenset()))
+    answer = replace(solver, quantities=filled).solve(problem)
+    whole = judgement(problem, solver, answer, tolerances=tolerances)
+    if whole.record is None:
+        return whole
+    sound = _rows_resting_on(problem, one_row, has)
+    pairs = [*zip(whole.verdicts, whole.record.gates, strict=True), *apart]
+    kept = [(verdict, gate) for verdict, gate in pairs if verdict.quantity in sound]
+    record = replace(whole.record, gates=tuple(gate for _, gate in kept))
+    return Judgement(tuple(verdict for verdict, _ in kept), record)
+
+
+@dataclass(frozen=True)
+class Filled(ByRows):
+    """What an answer has, and the truth in place of what it lacks.
+
+    ``exact`` is the truth in some rows, and ``count`` the number of all.
+    """
+
+    own: Quantities
+    has: tuple[str, ...]
+    lacks: tuple[str, ...]
+    exact: Callable[[Sequence[int]], Motion]
+    count: int
+
+    def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
+        own = rows_at(self.own, places)
+        found = {name: own[name] for name in self.has}
+        if self.lacks:
+            truth = self.exact(places)
+            found |= {name: truth[name] for name in self.lacks}
+        return found
+
+    def without(self, *names: str) -> Filled:
+        has, lacks = (
+            tuple(name for name in group if name not in names) for group in (self.has, self.lacks)
+        )
+        return replace(self, has=has, lacks=lacks)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self.has, *self.lacks))
+
+
+def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
+    """The quantities of a verdict all of whose ingredients the answer has."""
+    found = has & {"omega", "attitude", "centre"}
+    found.add(UNIT_QUATERNION)
+    if "linear_velocity" in has:
+        found.add("velocity")
+    if {"linear_impulse", "angular_impulse"} & has:
+        found.add("impulse")
+    for invariant in invariants(problem.given):
+        blocks = {_BLOCKS.get(block, block) for block in invariant.sensitivity(truth)}
+        if blocks <= has:
+            found.add(invariant.name)
+    return found
+
+
+def _states_apart(
+    problem: Problem, solver: Recorded, exact: Solution, filled: Quantities, tolerances: Tolerances
+) -> list[Gated]:
+    """Attitude and centre against the truth, and nothing that is conserved."""
+    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
+    states = Comparison(given, exact, filled, truth_digits(rung.bits, _GUARD_DIGITS), bits).states()
+    with mp.workprec(bits):
+        base = floor(given, problem.scene, rung.unit_roundoff, 0, solver.carries_velocities)
+        rows = []
+        for errors in states:
+            if errors.quantity in ("attitude", "centre"):
+                attainable = base.of_state(errors)
+                worst = index_of_largest(errors.doubles)
+                terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
+                rows.append(_row(problem, solver, errors, attainable, terms, tolerances))
+    return rows
+
+
+# The velocities of a solid in a fluid: U = A x + B y, Omega = B^T x + C y.
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """One of the two velocities: its quantity, its unit, and the blocks of the energy it is made with."""
+
+    quantity: str
+    unit: str
+    group: str
+    of: Velocity
+    carried: Carried
+
+    def blocks(self, body: ImmersedBody) -> dict[str, Matrix]:
+        """The matrices of the two impulses."""
+        is_linear = self.group == "linear_velocity"
+        of_x, of_y = (body.linear, body.coupling) if is_linear else (body.coupling, body.angular)
+        return {"linear_impulse": of_x, "angular_impulse": of_y}
+
+
+_VELOCITIES: Final = {
+    kind.group: kind
+    for kind in (
+        _Kind("omega", "max|omega|", "omega", angular_velocity, Carried.VELOCITY),
+        _Kind("velocity", "max|U|", "linear_velocity", linear_velocity, Carried.LINEAR_VELOCITY),
+    )
+}
+
+
+def _velocity(
+    problem: Problem, solver: Recorded, exact: Solution, kind: _Kind, tolerances: Tolerances
+) -> Gated:
+    given, rung, bits = problem.given, problem.rung, working_bits(problem.rung.bits)
+    digits = truth_digits(rung.bits, _GUARD_DIGITS)
+    compared = Comparison(given, exact, solver.quantities, digits, bits)
+    errors, sizes = _velocity_errors(compared, kind)
+    with mp.workprec(bits):
+        scale = errors.parts[kind.group]
+        attainable = _velocity_attainable(problem, solver, kind, sizes, scale)
+        terms = Reason(floor=RoundoffFloor(kind.carried))
+        row, gate = _row(problem, solver, errors, attainable, terms, tolerances)
+        places = evenly(len(sizes), MOST_SHIFTED)
+        clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
+        own = rows_at(solver.quantities, places)[kind.group]
+        shift = angular_shift(replace(given, clock=clock), own, digits, kind.of)
+        if shift is None:
+            return row, gate
+        late, left = float(shift.time_shift), shift.residual / float(scale)
+        remains = None if shift.kind is Kind.NONE else left
+        row = replace(row, time_shift=late, residual=left, shift=shift.kind.value)
+        return replace(row, remains=remains), gate
+
+
+def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]:
+    """The errors of a velocity, and its own size at every sample over the largest."""
+    body = compared.scene.body
+    assert isinstance(body, ImmersedBody)
+    states, sizes, radii = States(), Series(), Series()
+    for block in compared.blocks(Costs()):
+        with mp.workprec(compared.bits):
+            rows = kind.of(body, block.truth.quantities)
+            size, distances = norms(rows), norms(block.own[kind.group] - rows)
+            zeros, most = {kind.group: 0 * block.truth.radius}, {kind.group: largest(size)}
+            found = Distances(kind.quantity, kind.unit, {kind.group: distances}, zeros, most)
+            scale = states.add(found)[kind.group]
+            sizes.add(size, scale)
+            radii.add(block.truth.radius, mpf(1))
+    (errors,) = states.errors()
+    errors = replace(errors, truth_radius=radii.joined()[0], is_state=False)
+    return errors, sizes.joined()[0]
+
+
+def _velocity_attainable(
+    problem: Problem, solver: Recorded, kind: _Kind, sizes: Floats, scale: Any
+) -> Floats:
+    """What a rounding of x and y, and of the velocity itself, leaves."""
+    body = problem.given.body
+    assert isinstance(body, ImmersedBody)
+    roundoff, by_velocities = problem.rung.unit_roundoff, solver.carries_velocities
+    base = floor(problem.given, problem.scene, roundoff, 0, by_velocities)
+    squares = (base.unit_roundoff * sizes) ** 2
+    for part, matrix in kind.blocks(body).items():
+        norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
+        alone = Errors(part, "", sizes, sizes, {part: scale})
+        squares = squares + (norm * base.of_state(alone)) ** 2
+    attainable: Floats = np.sqrt(squares)
+    return attainable
+
+
+def _row(
+    problem: Problem,
+    solver: Recorded,
+    errors: Errors,
+    attainable: Floats,
+    terms: Reason,
+    tolerances: Tolerances,
+) -> Gated:
+    finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
+    instants, worst, values = problem.given.clock.instants, finding.worst, errors.doubles
+    verdict = Verdict(
+        scene=problem.scene.name,
+        solver=solver.name,
+        rung=problem.rung.name,
+        setting=solver.setting,
+        quantity=errors.quantity,
+        verdict=finding.status,
+        outcome=Outcome.FINISHED.value,
+        max=float(values[worst]),
+        mean=mean(values),
+        final=float(values[-1]),
+        at=float(instants[worst]),
+        unit=errors.unit,
+        bound=finding.bound,
+        tolerance=finding.tolerance,
+        reason=finding.reason,
+        attainable=float(attainable[worst]),
+        ratio=finding.ratio,
+        ratio_at=float(instants[finding.ratio_at]),
+        roundoff=float(problem.rung.unit_roundoff),
+        provenance=provenance(problem.scene.digest),
+    )
+    gate = GateRecord(
+        quantity=errors.quantity,
+        unit=errors.unit,
+        errors=Doubles(values),
+        attainable=Doubles(attainable),
+        truth_radius=float(np.max(errors.widths)),
+    )
+    return verdict, gate

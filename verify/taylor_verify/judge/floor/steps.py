@@ -1,0 +1,50 @@
+"""The steps that a gate counts: a solver's own count, or somebody else's claim as far as it is plausible.
+
+A gate grows with the square root of the steps, so that a claim of many steps would buy a wide gate. The
+judge knows the samples, the radians of the orbit and the seconds that the answer took, and counts
+
+    min(claim, WIDENING^2 (samples + STEPS_PER_RADIAN radians), STEPS_PER_SECOND seconds).
+
+The constants are those of judge.gates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from taylor_verify.judge.floor.attainable import radians
+from taylor_verify.judge.gates import STEPS_PER_RADIAN, STEPS_PER_SECOND, WIDENING
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.reason import ClaimedSteps
+from taylor_verify.solvers.solver import Solver
+
+
+@dataclass(frozen=True)
+class Steps:
+    """The steps that are counted, and the claim where they are fewer than the solver says."""
+
+    counted: int
+    claim: ClaimedSteps | None = None
+
+
+def count_steps(problem: Problem, solver: Solver, claimed: int, seconds: float | None) -> Steps:
+    """Return the claimed steps, or as many of them as are plausible.
+
+    ``seconds`` is the time that the answer took by the judge's own clock; None where it has none. A
+    solver that counts its own steps is believed.
+    """
+    samples = len(problem.times)
+    if solver.counts_steps or claimed <= samples:
+        return Steps(claimed)
+    turned = radians(problem.scene)
+    most = int(WIDENING**2 * (samples + STEPS_PER_RADIAN * turned))
+    limit = (
+        f"{WIDENING}^2 x ({samples} samples + {STEPS_PER_RADIAN} for each of the {turned:.3g} radians "
+        "of the orbit)"
+    )
+    if seconds is not None and STEPS_PER_SECOND * seconds < most:
+        most = int(STEPS_PER_SECOND * seconds)
+        limit = f"{STEPS_PER_SECOND:.0e} for each of the {seconds:.3g} seconds that it took"
+    if claimed <= most:
+        return Steps(claimed)
+    return Steps(most, ClaimedSteps(claimed, most, limit))

@@ -1,0 +1,1 @@
+"""Several files of one solver: order of convergence and best step."""

@@ -1,0 +1,366 @@
+"""The order of convergence of a fixed-step answer, observed over a sweep of steps.
+
+    h, e(h)      step and error; e ~ C h^p where the order p shows
+    p_i          local order between neighbouring steps, log(e_i / e_i+1) / log(h_i / h_i+1)
+
+With large steps the next power of h is not small yet; with small ones roundings take over. The order
+is read between the two: on the longest run of steps over which the local order stays the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, isfinite, log, sqrt
+from os import PathLike
+from typing import Any, Final, final
+
+import numpy as np
+
+from taylor_verify.judge.judgement import judgement
+from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.positive import positive
+from taylor_verify.scenes.reading.reader import as_scene
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.trajectory import Trajectory
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# An error that is not this much above the floor of rounding has some of it.
+CLEAR: Final = 10.0
+# And one beyond this multiple of the floor is not made by rounding on this rung.
+_FAR: Final = 100.0
+# Local orders that differ by less are the same one: the integers and halves that orders are, are apart
+# by twice as much.
+SAME: Final = 0.25
+# Two local orders can agree by chance, and one cannot disagree.
+_FEWEST: Final = 3
+# Errors that fall more slowly than with this order have stopped falling.
+_STALLED: Final = 0.5
+# Student's t for 95 % and 1 to 8 degrees of freedom; beyond, that of 8.
+_STUDENT: Final = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306)
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What a sweep shows.
+
+    ``order`` is the observed one and ``spread`` half of its 95 % interval, from the scatter about a
+    straight line in log-log; None where no range of steps has an order. ``steps`` are those used,
+    falling. ``level`` is the error below which smaller steps do not lead, None if they still do;
+    ``stalls_at`` is the step from which on they do not, and ``by_rounding`` is True if rounding explains
+    it. ``reason`` says all this in words, and the order expected if it is another.
+    """
+
+    order: float | None
+    spread: float | None
+    steps: tuple[float, ...]
+    level: float | None
+    reason: str
+    expected: float | None = None
+    stalls_at: float | None = None
+    by_rounding: bool = False
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether there is an order, and it is the expected one if one was named."""
+        if self.order is None or self.spread is None:
+            return False
+        return self.expected is None or _agree(self.order, self.spread, self.expected)
+
+
+def convergence(
+    steps: Sequence[float],
+    errors: Sequence[float | None],
+    roundoff_floor: float | Sequence[float] = 0.0,
+    expected: float | None = None,
+) -> Convergence:
+    """The order seen in errors over steps, given in any order of their own.
+
+    ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is what
+    perfect rounding would leave, for all steps or for each, and ``expected`` the order that the method
+    ought to have. Raises ValueError for unlike lengths and
+    for steps that are not positive or not distinct.
+    """
+    points = _points(steps, errors, roundoff_floor)
+    finite = [point for point in points if point.error is not None]
+    stop = _stop(finite)
+    usable = [point for point in finite[:stop] if point.is_clear]
+    chosen = _straight(usable)
+    least = min(finite[stop:], key=lambda point: point.size, default=None)
+    remarks = [_broken(points), _rounding(finite, least)]
+    found = Convergence(
+        None,
+        None,
+        (),
+        least.size if least else None,
+        _joined([f"no order: {_lacking(usable)}", *remarks]),
+        expected,
+        finite[stop].step if least else None,
+        least is not None and least.is_rounding,
+    )
+    if chosen is None:
+        return found
+    order, spread = _slope(chosen)
+    words = [_compared(order, spread, expected), _used(chosen, usable), *remarks]
+    used = tuple(point.step for point in chosen)
+    return replace(found, order=order, spread=spread, steps=used, reason=_joined(words))
+
+
+def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
+    """Return the order between neighbouring steps, of positive errors; the steps fall."""
+    points = [_Point(step, error, 0.0) for step, error in zip(steps, errors, strict=True)]
+    return tuple(_local(a, b) for a, b in pairwise(points))
+
+
+@dataclass(frozen=True)
+class _Point:
+    step: float
+    error: float | None
+    floor: float
+
+    @property
+    def size(self) -> float:
+        assert self.error is not None
+        return self.error
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the error is one of the method: zero, and what roundings may make, is not."""
+        return self.size > CLEAR * self.floor
+
+    @property
+    def is_rounding(self) -> bool:
+        """True if rounding on this rung explains the error, whatever an answer rounds besides."""
+        return self.floor > 0 and self.size <= _FAR * self.floor
+
+
+def _points(
+    steps: Sequence[float],
+    errors: Sequence[float | None],
+    floors: float | Sequence[float],
+) -> list[_Point]:
+    """From the largest step to the smallest."""
+    each = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
+    if not len(steps) == len(errors) == len(each):
+        raise ValueError(
+            f"expected an error and a floor for each of {len(steps)} steps, got {len(errors)} errors "
+            f"and {len(each)} floors"
+        )
+    if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
+        raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
+    found = [
+        _Point(float(step), _finite(error), float(floor))
+        for step, error, floor in zip(steps, errors, each, strict=True)
+    ]
+    return sorted(found, key=lambda point: -point.step)
+
+
+def _finite(error: float | None) -> float | None:
+    return float(error) if error is not None and isfinite(error) else None
+
+
+def _local(a: _Point, b: _Point) -> float:
+    """The order between two neighbours, of which the second has the smaller step."""
+    if not b.size > 0:
+        return float("inf")
+    return log(a.size / b.size) / log(a.step / b.step) if a.size > 0 else 0.0
+
+
+def _stop(points: Sequence[_Point]) -> int:
+    """Where errors stop falling for good: the first point that no smaller step improves on.
+
+    No improvement is one that is slower, from there to the end, than an order of a half: a step that
+    happens to do well stops nothing, nor does a start that is not falling yet, or slowly.
+    """
+    for i, point in enumerate(points[:-1]):
+        later = min(points[i + 1 :], key=lambda p: p.size)
+        slow = _local(point, replace(later, step=points[-1].step)) < _STALLED
+        if slow and not _is_gaining(points[i:]):
+            return i
+    return len(points)
+
+
+def _is_gaining(points: Sequence[_Point]) -> bool:
+    """Return True for errors that fall faster from step to step: their steps were too large at first."""
+    orders = [_local(a, b) for a, b in pairwise(points)]
+    rises = all(before < after for before, after in pairwise(orders))
+    return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
+
+
+def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
+    """The longest run of steps over which the local order is the same; of two, that of smaller steps."""
+    best: Sequence[_Point] | None = None
+    for first in range(len(points)):
+        for last in range(first + _FEWEST, len(points) + 1):
+            run = points[first:last]
+            orders = [_local(a, b) for a, b in pairwise(run)]
+            if max(orders) - min(orders) <= SAME and (best is None or len(run) >= len(best)):
+                best = run
+    return best
+
+
+def _slope(points: Sequence[_Point]) -> tuple[float, float]:
+    """The least-squares slope of log e over log h, and half of its 95 % interval."""
+    x = np.log([p.step for p in points])
+    y = np.log([p.size for p in points])
+    x, y = x - x.mean(), y - y.mean()
+    slope = float(x @ y / (x @ x))
+    freedom = len(points) - 2
+    scatter = float(np.sum((y - slope * x) ** 2)) / freedom
+    student = _STUDENT[min(freedom, len(_STUDENT)) - 1]
+    return slope, student * sqrt(scatter / float(x @ x))
+
+
+# The words.
+
+
+def _joined(parts: Iterable[str]) -> str:
+    return "; ".join(part for part in parts if part)
+
+
+def _compared(order: float, spread: float, expected: float | None) -> str:
+    """The order, and the expected one if it is another."""
+    told = f"order {order:.2f}"
+    if expected is not None and not _agree(order, spread, expected):
+        return f"{told}, expected {expected:g}"
+    return told
+
+
+def _agree(order: float, spread: float, expected: float) -> bool:
+    """Whether an order is the expected one, as far as a sweep can tell.
+
+    Scatter excuses nothing beyond half of the way to the next order.
+    """
+    return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
+
+
+def _used(chosen: Sequence[_Point], usable: Sequence[_Point]) -> str:
+    told = f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
+    before = [point for point in usable if point.step > chosen[0].step]
+    return f"{told}; larger ones are not asymptotic yet" if before else told
+
+
+def _broken(points: Sequence[_Point]) -> str:
+    broken = [point.step for point in points if point.error is None]
+    return f"no answer with step {', '.join(f'{step:.3g}' for step in broken)}" if broken else ""
+
+
+def _rounding(points: Sequence[_Point], level: _Point | None) -> str:
+    """Say that errors stop falling, at ``level``, and if it is rounding that stops them."""
+    if level is None:
+        near = [point for point in points if not point.is_clear]
+        return f"errors reach rounding at {near[0].size:.1g}" if near else ""
+    told = f"errors stop falling at {level.size:.1g}"
+    if not level.floor > 0:
+        return told
+    if level.is_rounding:
+        return f"{told}: rounding"
+    return f"{told}: {level.size / level.floor:.1g} times what rounding leaves, so not by rounding"
+
+
+def _lacking(usable: Sequence[_Point]) -> str:
+    if len(usable) < _FEWEST:
+        return f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
+    orders = [_local(a, b) for a, b in pairwise(usable)]
+    told = ", ".join(f"{order:.2f}" for order in orders)
+    return f"from step to step it is {told}, nowhere twice the same"
+
+
+# A solver at many steps.
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The convergence of every quantity of a scene, and the verdicts it was read from."""
+
+    quantities: Mapping[str, Convergence]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def reason(self) -> str:
+        """All in one line: `omega is 4th order, attitude 2nd`."""
+        orders = {name: found.order for name, found in self.quantities.items()}
+        known = [(name, _ordinal(order)) for name, order in orders.items() if order is not None]
+        told = [f"{n} {o}" if i else f"{n} is {o} order" for i, (n, o) in enumerate(known)]
+        told += [f"{name} has none" for name, order in orders.items() if order is None]
+        return ", ".join(told)
+
+    def __str__(self) -> str:
+        """That line, and under it the reason of every quantity."""
+        wide = max(map(len, self.quantities), default=0)
+        rows = [f"  {name:{wide}}  {found.reason}" for name, found in self.quantities.items()]
+        return "\n".join([self.reason, *rows])
+
+
+def sweep(
+    scene: Scene | str | PathLike[str],
+    solve_with_step: Callable[[Problem, float], Any],
+    steps: Sequence[float],
+    rung: Rung | str = "f64",
+    expected: float | None = None,
+) -> Sweep:
+    """Judge ``solve_with_step(problem, step) -> states`` at every step, in the scene's unit of time.
+
+    ``states`` are as taylor_verify.check has them; ``expected`` is the order that the method ought to
+    have. A run that raises, or answers what is no number, has no error at its step. Raises
+    ValueError where the rung cannot hold the scene, and for a step that is no positive number.
+    """
+    scene, rung = as_scene(scene), rung_named(rung)
+    steps = [positive(step, f"steps[{i}]") for i, step in enumerate(steps)]
+    try:
+        problem = pose(scene, rung)
+    except NotRepresentable as reason:
+        raise ValueError(f"expected a scene that {rung.name} can hold, got: {reason}") from reason
+    by_step = [_judged(problem, solve_with_step, step) for step in steps]
+    names = dict.fromkeys(v.quantity for found in by_step for v in found if v.at is not None)
+    quantities = {}
+    for name in names:
+        rows = [next((v for v in found if v.quantity == name), None) for found in by_step]
+        errors = [row.max if row is not None and _is_measured(row) else None for row in rows]
+        floors = [(row.attainable or 0.0) if row is not None else 0.0 for row in rows]
+        quantities[name] = convergence(steps, errors, floors, expected)
+    return Sweep(quantities, tuple(v for found in by_step for v in found))
+
+
+def _judged(
+    problem: Problem, solve_with_step: Callable[[Problem, float], Any], step: float
+) -> tuple[Verdict, ...]:
+    solver = _AtStep(solve_with_step, step, f"step {step:g}")
+    return judgement(problem, solver, solver.solve(problem)).verdicts
+
+
+def _is_measured(verdict: Verdict) -> bool:
+    """A truth that is wider than a gate allows measures no error either."""
+    return verdict.verdict is not Status.UNDECIDED
+
+
+@final
+@dataclass(frozen=True)
+class _AtStep(Solver):
+    """A callable at one step: it takes as many steps as fit into the span."""
+
+    answer: Callable[[Problem, float], Any]
+    step: float
+    setting: str
+    name: str = "fixed step"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        found = Callback(lambda posed: self.answer(posed, self.step)).solve(problem)
+        span = max(abs(t) for t in problem.given.clock.elapsed)
+        return replace(found, steps=ceil(float(span) / self.step))
+
+
+def _ordinal(order: float) -> str:
+    """4th for 3.97; an order that is no integer is told as it is."""
+    nearest = round(order)
+    if not abs(order - nearest) <= SAME:
+        return f"{order:.2f}th"
+    ending = {1: "st", 2: "nd", 3: "rd"}.get(nearest % 10, "th")
+    return f"{nearest}{ending if nearest not in (11, 12, 13) else 'th'}"

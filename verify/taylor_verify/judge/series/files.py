@@ -1,0 +1,264 @@
+"""The judgement of several files of one solver: each by itself, and their order of convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from os import PathLike, fspath
+from os.path import samefile
+from typing import Any, Final, TypeVar
+
+from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.series.order import Sample, orders
+from taylor_verify.judge.showing import counts, html_table
+from taylor_verify.records.answers import Order
+from taylor_verify.records.json_text import complete
+from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import summary
+from taylor_verify.scenes.reading.faults import Refused, brief
+from taylor_verify.scenes.reading.positive import positive
+from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows
+
+Asked = TypeVar("Asked")
+
+# Orders of the state that differ by half a one are those of unlike methods.
+_LOWER: Final = 0.5
+# Steps that differ by less show no order: the ratio of two errors is noise beside it.
+_ALIKE: Final = 1.01
+_HOW: Final = (
+    "say them with --steps 0.1,0.05,... (in Python steps=[...]), in the files' names (run_h0.05.csv) or "
+    "in a comment of each file (# h = 0.05)"
+)
+
+
+@dataclass(frozen=True, repr=False)
+class FilesJudgement(Judgement):
+    """The verdicts on several files of one solver, and the order of convergence of each quantity.
+
+    ``verdicts`` are those of all files; the ``setting`` of each is its file. ``files`` are the judgements
+    one by one, ``steps`` the step of each (None where it is not known), ``order`` a record for each
+    quantity, and ``notes`` sentences on where the steps are from and what has no part in the order.
+    """
+
+    files: tuple[FileJudgement, ...]
+    steps: tuple[FileStep | None, ...]
+    order: tuple[Order, ...]
+    notes: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Return the document that `check --json` prints of several files."""
+        return {
+            "files": [
+                {**judged.document(), **_step(step)}
+                for judged, step in zip(self.files, self.steps, strict=True)
+            ],
+            "order": [complete(order) for order in self.order],
+            "notes": list(self.notes),
+            "summary": summary(self.verdicts),
+        }
+
+    def __repr__(self) -> str:
+        first, word = self.verdicts[0], "passed" if self.passed else "not passed"
+        return (
+            f"<FilesJudgement of {len(self.files)} files on {first.scene} {first.rung}: {word}; "
+            f"{counts(self.verdicts)}>"
+        )
+
+    def _repr_html_(self) -> str:
+        headings = ("quantity", "order", "best step", "in words")
+        rows = (
+            (o.quantity, _short(o.order, ".2f"), _short(o.best_step, "g"), o.sentence)
+            for o in self.order
+        )
+        return html_table(repr(self)[1:-1], headings, rows)
+
+
+def files_judgement(
+    judged: Sequence[FileJudgement], steps: Sequence[float] | None = None
+) -> FilesJudgement:
+    """Return the judgement of several files that are judged one by one, with their order of convergence.
+
+    ``steps`` are those of the files, if the caller states them; otherwise each file, its name or the
+    spacing of its rows says its step.
+    """
+    known = steps_of([judgement.file for judgement in judged], steps)
+    samples = [
+        Sample(judgement, step.value)
+        for judgement, step in zip(judged, known, strict=True)
+        if step is not None
+    ]
+    whole = _reaching_the_end(samples)
+    short = [sample.judged.file.name for sample in samples if sample not in whole]
+    alike = _alike(whole)
+    order = orders(whole) if len(whole) > 1 and not alike else ()
+    notes = (
+        *_source_notes(judged, known),
+        *(f"{name} ends before the others do, and has no part in the order" for name in short),
+        *alike,
+        *_lower_orders(order),
+        *_other_starts(judged),
+    )
+    verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
+    return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
+
+
+def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
+    """Return ``judge(file)`` for each file. Raises Refused with the faults of all that are refused."""
+    judged: list[FileJudgement] = []
+    faults: list[str] = []
+    for file in files:
+        try:
+            judgement = judge(file)
+        except Refused as error:
+            faults += error.faults
+            continue
+        if not isinstance(judgement, FileJudgement):
+            raise ValueError(f"expected trajectory files alone in a list, got {brief(file)}")
+        judged.append(judgement)
+    if faults:
+        raise Refused(faults)
+    return judged
+
+
+def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
+    """Return a step for each of ``count`` files as doubles.
+
+    Raises ValueError for another number of steps, for one that is no positive number, and for one that
+    stands there twice.
+    """
+    asked = None if isinstance(steps, str) or not isinstance(steps, Iterable) else [*steps]
+    if asked is None or len(asked) != count:
+        got = brief(steps) if asked is None else len(asked)
+        raise ValueError(f"expected a step for each of {count} files, got {got} @ steps")
+    values = [positive(step, f"steps[{i}]") for i, step in enumerate(asked)]
+    if len(set(values)) < count:
+        twice = next(value for value in values if values.count(value) > 1)
+        raise ValueError(
+            f"expected steps no two of which are the same, got {twice:g} again @ steps"
+        )
+    return values
+
+
+def steps_of(
+    files: Sequence[TrajectoryFile], given: Sequence[float] | None = None
+) -> tuple[FileStep | None, ...]:
+    """Return the step of each file: as given, as the file states it, or as its name does.
+
+    Where no file has one of these, equally spaced rows whose spacing differs from file to file are
+    taken for the steps.
+    """
+    if given is not None:
+        return tuple(FileStep(step, Source.CALL) for step in given)
+    stated = tuple(file.step or step_in_name(file.name) for file in files)
+    if any(stated):
+        return stated
+    rows = tuple(step_of_rows(file.times) for file in files)
+    values = sorted(row.value for row in rows if row is not None)
+    differ = all(large >= _ALIKE * small for small, large in pairwise(values))
+    return rows if differ and len(values) == len(files) > 1 else stated
+
+
+def repeated(files: Iterable[str | PathLike[str]]) -> list[str]:
+    """Return a fault for each file that is named twice, by one path or by two."""
+    once: list[str] = []
+    faults = []
+    for name in [fspath(file) for file in files]:
+        if any(name == other or _is_same(name, other) for other in once):
+            faults.append(f"expected every file once, got {name} again")
+        once.append(name)
+    return faults
+
+
+def _is_same(one: str, other: str) -> bool:
+    try:
+        return samefile(one, other)
+    except (OSError, ValueError):
+        return False
+
+
+def _step(step: FileStep | None) -> dict[str, Any]:
+    return {} if step is None else {"step": step.value, "step_from": step.source.value}
+
+
+def _short(value: float | None, form: str) -> str:
+    return "" if value is None else format(value, form)
+
+
+# What has a part in the order.
+
+
+def _reaching_the_end(samples: Sequence[Sample]) -> list[Sample]:
+    """Return the files that end no more than a row before the longest one: errors grow with time."""
+    longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
+    return [
+        sample for sample in samples if _span(sample.times) + _span(sample.times[-2:]) >= longest
+    ]
+
+
+def _span(times: Sequence[Fraction]) -> Fraction:
+    return abs(times[-1] - times[0])
+
+
+def _alike(samples: Sequence[Sample]) -> list[str]:
+    """Return a sentence for each two files whose steps are too near to each other for an order."""
+    ordered = sorted(samples, key=lambda sample: sample.step)
+    return [
+        f"no order of convergence: {small.judged.file.name} and {large.judged.file.name} have the same "
+        f"step, h = {small.step:g}; --steps says others"
+        for small, large in pairwise(ordered)
+        if large.step < _ALIKE * small.step
+    ]
+
+
+# The notes.
+
+
+def _source_notes(
+    judged: Sequence[FileJudgement], steps: Sequence[FileStep | None]
+) -> Iterator[str]:
+    if len(judged) == 1:
+        yield "no order of convergence: one file alone shows none"
+        return
+    known = [step for step in steps if step is not None]
+    if len(known) < 2:
+        yield f"no order of convergence: the steps of the files are not known; {_HOW}"
+        return
+    sources = dict.fromkeys(step.source for step in known)
+    if Source.ROWS in sources:
+        yield f"assumed: {Source.ROWS} is the step, because nothing states it; --steps says others"
+    elif Source.CALL not in sources:
+        yield f"the steps are from {' and '.join(sources)}; --steps says others"
+    for judgement, step in zip(judged, steps, strict=True):
+        if step is None:
+            yield f"the step of {judgement.file.name} is not known: it has no part in the order"
+
+
+def _lower_orders(order: Sequence[Order]) -> list[str]:
+    """Return a sentence for each state quantity whose order is below that of the body's own."""
+    known = {each.quantity: each.order for each in order if each.order is not None}
+    states = [name for name in STATES if name in known]
+    return [
+        f"{name} has a lower order ({known[name]:.1f}) than {states[0]} ({known[states[0]]:.1f}): it is "
+        "integrated by a method of its own"
+        for name in states[1:]
+        if known[name] < known[states[0]] - _LOWER
+    ]
+
+
+def _other_starts(judged: Sequence[FileJudgement]) -> list[str]:
+    """Return a sentence for each file, of some and not all, that does not start as the scene does."""
+    wrong = [
+        judgement.file.name
+        for judgement in judged
+        if any(v.quantity == INITIAL and v.verdict is Status.FAIL for v in judgement.verdicts)
+    ]
+    if len(wrong) == len(judged):
+        return []
+    return [
+        f"{name} does not start as the scene does: is it a file of another scene?" for name in wrong
+    ]

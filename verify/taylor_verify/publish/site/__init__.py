@@ -1,1 +1,0 @@
-"""The published folder as a site: static pages that work from a file, with pictures to turn and read."""

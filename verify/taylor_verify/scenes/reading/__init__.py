@@ -1,0 +1,1 @@
+"""A scene's text, read into exact numbers; all faults at once."""

@@ -1,0 +1,209 @@
+"""The ``[body]`` table of a scene becomes a body, its positivity decided in rationals.
+
+Legend: ``inertia`` I, ``moment`` M; ``clebsch`` has p, p', q, q', r, r' (``p_prime`` and so on);
+``energy`` has A, B, C of T = x.A x/2 + x.B y + y.C y/2 as ``linear``, ``coupling``, ``angular``;
+``ellipsoid`` has ``semi_axes`` along body axes 1, 2, 3, ``density`` and ``fluid_density``;
+``mass_matrix`` is M of (x, y) = M (U, Omega), whose inverse is [[A, B], [B^T, C]].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
+from taylor_verify.scenes.precision import float_text
+from taylor_verify.scenes.reading.faults import shown
+from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+
+_CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
+
+
+def rigid_body(table: Table) -> RigidBody | None:
+    """The body of model euler; None beside a fault."""
+    inertia = _inertia(table)
+    moment = table.vector("moment", default=ZERO_VECTOR)
+    if inertia is None or moment is None:
+        return None
+    return RigidBody(inertia, moment)
+
+
+def _inertia(table: Table) -> Matrix | None:
+    """I from three principal moments or from a symmetric tensor; positive definite."""
+    if table.has_rows("inertia"):
+        tensor = table.symmetric("inertia")
+        cells = ("[0][0]", "[1][1]", "[2][2]")
+    else:
+        moments = table.vector("inertia")
+        tensor = None if moments is None else tensors.diagonal(moments)
+        cells = ("[0]", "[1]", "[2]")
+    if tensor is None or not _has_positive_moments(table, tensor, cells):
+        return None
+    return tensor if _is_positive(table, "a positive definite tensor", tensor, "inertia") else None
+
+
+def _has_positive_moments(table: Table, tensor: Matrix, cells: tuple[str, ...]) -> bool:
+    wrong = [(cell, tensor[i][i]) for i, cell in enumerate(cells) if tensor[i][i] <= 0]
+    for cell, moment in wrong:
+        table.fault("a positive moment of inertia", shown(moment), f"inertia{cell}")
+    return not wrong
+
+
+def _is_positive(
+    table: Table, expected: str, matrix: Matrix, key: str = "", mend: str = ""
+) -> bool:
+    """Sylvester: a symmetric matrix is positive definite if all its leading minors are positive."""
+    for size in range(1, len(matrix) + 1):
+        leading = tuple(row[:size] for row in matrix[:size])
+        if not tensors.is_positive_definite(leading):
+            got = f"one whose leading {size}x{size} minor is not positive"
+            table.fault(expected, got, key, mend)
+            return False
+    return True
+
+
+def immersed_body(table: Table) -> ImmersedBody | None:
+    """The body of model kirchhoff; None beside a fault."""
+    force = table.vector("force", default=ZERO_VECTOR)
+    couple = table.vector("couple", default=ZERO_VECTOR)
+    form = _form(table)
+    body = form(table) if form else None
+    if body is None or force is None or couple is None:
+        return None
+    return replace(body, force=force, couple=couple)
+
+
+def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
+    """The reader of the one form of T that the body writes."""
+    written = [form for form in FORMS if table.has(form)]
+    if len(written) == 1:
+        return FORMS[written[0]]
+    for form in written:
+        table.take(form, "a table")
+    names = ", ".join(f"`{form}`" for form in FORMS)
+    table.fault(f"exactly one of {names}", " and ".join(written) or "none of them")
+    return None
+
+
+def _clebsch(table: Table) -> ImmersedBody | None:
+    """Hydromechanics 49 (1)."""
+    form = table.table("clebsch")
+    if form is None:
+        return None
+    six = [form.number(key) for key in _CLEBSCH_KEYS]
+    form.close()
+    known = [number for number in six if number is not None]
+    return _positive(form, Clebsch(*known).body()) if len(known) == len(six) else None
+
+
+def _energy(table: Table) -> ImmersedBody | None:
+    """The 21 coefficients, as A, B and C."""
+    form = table.table("energy")
+    if form is None:
+        return None
+    a, b, c = form.symmetric("linear"), form.matrix("coupling"), form.symmetric("angular")
+    form.close()
+    return _positive(form, ImmersedBody(a, b, c)) if a and b and c else None
+
+
+def _positive(form: Table, body: ImmersedBody) -> ImmersedBody | None:
+    expected = "a positive definite energy [[A, B], [B^T, C]]"
+    return body if _is_positive(form, expected, body.energy_matrix) else None
+
+
+def _mass_matrix(table: Table) -> ImmersedBody | None:
+    """The inertia of body and fluid, inverted exactly."""
+    matrix = table.symmetric("mass_matrix", size=6)
+    expected = "a positive definite mass matrix"
+    mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
+    if matrix is None or not _is_positive(table, expected, matrix, "mass_matrix", mend):
+        return None
+    body = ImmersedBody.of_mass_matrix(matrix)
+    table.note(
+        "T is given by the mass matrix M of (x, y) = M (U, Omega). The equations hold its inverse "
+        "[[A, B], [B^T, C]], which is formed exactly, in rationals."
+    )
+    for number, row in enumerate(body.energy_matrix, 1):
+        table.note(f"Row {number} of the inverse: {', '.join(map(float_text, row))}.")
+    return body
+
+
+def _ellipsoid(table: Table) -> ImmersedBody | None:
+    """A homogeneous ellipsoid, its inertia and added inertia by Lamb's integrals."""
+    form = table.table("ellipsoid")
+    if form is None:
+        return None
+    semi_axes = form.vector("semi_axes")
+    density, fluid_density = form.number("density"), form.number("fluid_density")
+    form.close()
+    are_sound = [
+        _has_positive_axes(form, semi_axes),
+        _is_density(form, density, "density"),
+        _is_density(form, fluid_density, "fluid_density"),
+    ]
+    if semi_axes is None or density is None or fluid_density is None or not all(are_sound):
+        return None
+    ellipsoid = Ellipsoid(semi_axes, density, fluid_density)
+    return ellipsoid.body() if _resists(form, ellipsoid) else None
+
+
+def _has_positive_axes(form: Table, semi_axes: Vector | None) -> bool:
+    wrong = [(i, axis) for i, axis in enumerate(semi_axes or ()) if axis <= 0]
+    for i, axis in wrong:
+        form.fault("a positive semi-axis", shown(axis), f"semi_axes[{i}]")
+    return not wrong
+
+
+def _is_density(form: Table, density: Fraction | None, key: str) -> bool:
+    if density is not None and density < 0:
+        form.fault("a density that is not negative", shown(density), key)
+        return False
+    return True
+
+
+def _resists(form: Table, ellipsoid: Ellipsoid) -> bool:
+    """Whether every motion takes an impulse: of a body without mass the fluid alone resists."""
+    if ellipsoid.density == 0 and ellipsoid.fluid_density == 0:
+        form.fault("a body or a fluid with mass", "two densities of 0", "density")
+        return False
+    if ellipsoid.density == 0 and len(set(ellipsoid.semi_axes)) < 3:
+        expected = "a positive density where two semi-axes are equal"
+        form.fault(expected, "0", "density", "a shell has little mass, but some")
+        return False
+    return True
+
+
+def warnings(body: Body) -> tuple[str, ...]:
+    """What no real solid does, although the equations do not mind."""
+    if isinstance(body, ImmersedBody) or obeys_triangle_inequality(body.inertia):
+        return ()
+    return (
+        "one principal moment exceeds the sum of the other two: "
+        "no distribution of mass has this tensor @ body.inertia",
+    )
+
+
+def obeys_triangle_inequality(inertia: Matrix) -> bool:
+    """Whether each principal moment is at most the sum of the other two, for I positive definite.
+
+    The eigenvalues of S = (tr I / 2) 1 - I are (J2 + J3 - J1)/2 and so on. Any two of them add to a
+    principal moment, so at most one is negative, and exactly then is det S negative.
+    """
+    half_trace = sum((inertia[i][i] for i in range(3)), Fraction(0)) / 2
+    s1, s2, s3 = (
+        tuple((half_trace if i == j else Fraction(0)) - inertia[i][j] for j in range(3))
+        for i in range(3)
+    )
+    return tensors.dot(s1, tensors.cross(s2, s3)) >= 0
+
+
+FORMS: Final[dict[str, Callable[[Table], ImmersedBody | None]]] = {
+    "clebsch": _clebsch,
+    "energy": _energy,
+    "ellipsoid": _ellipsoid,
+    "mass_matrix": _mass_matrix,
+}

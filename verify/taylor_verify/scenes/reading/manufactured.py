@@ -1,0 +1,88 @@
+"""The ``[manufactured]`` table of a scene becomes a motion in exact coefficients.
+
+A vector is written as an array of terms, each { frequency = nu, cosine = [..], sine = [..] } and meaning
+cosine cos(nu t) + sine sin(nu t), with t since the start; frequency 0 is the constant part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.scenes.manufactured import Manufactured, Wave
+from taylor_verify.scenes.reading.faults import shown
+from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
+
+# A frequency has one digit in the names of the equations' parameters.
+MOST_FREQUENCIES: Final = 9
+
+# By frequency, the coefficients of its cosine and of its sine.
+_Terms = Mapping[Fraction, tuple[Vector, Vector]]
+
+
+def manufactured(table: Table, vectors: Sequence[str]) -> Manufactured | None:
+    """The motion of these vectors, one after the other; None beside a fault."""
+    read = [_terms(table, name) for name in vectors]
+    found = [terms for terms in read if terms is not None]
+    if len(found) < len(read):
+        return None
+    frequencies = sorted(set().union(*found) - {Fraction(0)})
+    if len(frequencies) > MOST_FREQUENCIES:
+        table.fault(f"at most {MOST_FREQUENCIES} frequencies", str(len(frequencies)))
+        return None
+    constant, _ = _joined(found, Fraction(0))
+    return Manufactured(constant, tuple(Wave(nu, *_joined(found, nu)) for nu in frequencies))
+
+
+def _joined(found: Sequence[_Terms], frequency: Fraction) -> tuple[Vector, Vector]:
+    nothing = (ZERO_VECTOR, ZERO_VECTOR)
+    cosine: Vector = ()
+    sine: Vector = ()
+    for terms in found:
+        own = terms.get(frequency, nothing)
+        cosine, sine = cosine + own[0], sine + own[1]
+    return cosine, sine
+
+
+def _terms(table: Table, name: str) -> _Terms | None:
+    """The terms of one vector, no frequency twice."""
+    entries = table.tables(name)
+    if entries is None:
+        return None
+    found: dict[Fraction, tuple[Vector, Vector]] = {}
+    is_sound = True
+    for entry in entries:
+        term = _term(entry)
+        if term is not None and term[0] in found:
+            expected = "a frequency that no term before has"
+            entry.fault(expected, shown(term[0]), "frequency", "write one term for it")
+            term = None
+        if term is None:
+            is_sound = False
+            continue
+        frequency, cosine, sine = term
+        found[frequency] = (cosine, sine)
+    return found if is_sound else None
+
+
+def _term(entry: Table) -> tuple[Fraction, Vector, Vector] | None:
+    """Frequency, cosine and sine of one term; what is not written of the two is zero."""
+    frequency = entry.number("frequency")
+    written = entry.has("cosine") or entry.has("sine")
+    cosine = entry.vector("cosine", default=ZERO_VECTOR)
+    sine = entry.vector("sine", default=ZERO_VECTOR)
+    entry.close()
+    if not written:
+        entry.fault("`cosine` or `sine`", "neither of them")
+        return None
+    if frequency is not None and frequency < 0:
+        entry.fault("a frequency of 0 or more", shown(frequency), "frequency")
+        return None
+    if frequency == 0 and sine is not None and any(sine):
+        entry.fault("no sine of frequency 0", shown(list(sine)), "sine", "sin 0 = 0: remove it")
+        return None
+    if frequency is None or cosine is None or sine is None:
+        return None
+    return frequency, cosine, sine

@@ -1,0 +1,72 @@
+"""The bytes of a regular file of bounded size; anything else is refused before it is opened.
+
+A pipe would block for ever and a device never ends. What a path leads to is asked twice: by its name,
+because opening may do something already, and by the open file, because the name may have changed hands.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.reading.limit import Limit
+
+_KINDS: Final = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a FIFO",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
+
+
+@contextmanager
+def regular_file(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
+    """Open a regular file for reading, of no more bytes than the limit.
+
+    ``expected`` names what the file should be. Raises Refused for a file that is missing, too large, or
+    not regular, and for one that cannot be opened or read.
+    """
+    try:
+        _check(_status(path, expected), path, expected, most)
+        with open(path, "rb", opener=_open_without_waiting) as file:
+            _check(os.fstat(file.fileno()), path, expected, most)
+            yield file
+    except FileNotFoundError:
+        raise Refused([f"expected {expected}, got no such file @ {path}"]) from None
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise Refused([f"expected {expected}, got {reason!r} @ {path}"]) from None
+
+
+def read_bytes(path: Path, expected: str, most: Limit) -> bytes:
+    """Return the whole content; Refused as in `regular_file`, and for a file that grows."""
+    with regular_file(path, expected, most) as file:
+        content = file.read(most.most + 1)
+    if len(content) > most.most:
+        raise most.refusal("more", path)
+    return content
+
+
+def _status(path: Path, expected: str) -> os.stat_result:
+    try:
+        return path.stat()
+    except ValueError:  # a NUL in it, or what this system cannot encode
+        raise Refused([f"expected {expected}, got a name that no file has @ {path}"]) from None
+
+
+def _open_without_waiting(path: str, flags: int) -> int:
+    # Windows has no such flag, and no FIFO that a name could lead to.
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _check(found: os.stat_result, path: Path, expected: str, most: Limit) -> None:
+    if not stat.S_ISREG(found.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(found.st_mode), "no regular file")
+        raise Refused([f"expected {expected}, got {kind} @ {path}"])
+    most.check(found.st_size, path)

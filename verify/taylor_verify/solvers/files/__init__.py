@@ -1,0 +1,1 @@
+"""Trajectories that somebody brings, as files or as objects of Python."""

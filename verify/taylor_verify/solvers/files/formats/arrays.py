@@ -1,0 +1,133 @@
+"""Columns of the named arrays in a file: whose length is that of the times, and how they are called.
+
+A vector is a column of its own name. An array N of n rows and k columns is k columns N[0] ... N[k-1], one
+of n matrices is N[0][0] ... . The names of groups stand before a dot: sim.omega[0]. A group that holds
+everything is not named.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import product
+from math import prod
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
+
+_TIMES: Final = ("t", "time", "times", "tout", "timestamp")
+_NUMBERS: Final = "fiu"
+_MOST_LISTED: Final = 8
+
+
+class Array(NamedTuple):
+    """An array that is not read yet: ``load`` reads it, ``kind`` is NumPy's letter of its numbers."""
+
+    name: str
+    shape: tuple[int, ...]
+    kind: str
+    itemsize: int
+    load: Callable[[], np.ndarray[Any, Any]]
+
+    @property
+    def is_time(self) -> bool:
+        return self.name.rpartition(".")[2].lower() in _TIMES
+
+    @property
+    def longest(self) -> int:
+        return max(self.shape, default=0)
+
+
+def table(arrays: Iterable[Array], part: str, place: object) -> Table:
+    """Return the columns of the arrays in a part of a file, or in the whole of it.
+
+    The sizes that the file declares are checked before any array is read. An array of another length than
+    the times, and one of no real numbers, is left out, and a note names it.
+    """
+    inner = _without_common_group(_within(list(arrays), part, place))
+    _refuse_several(inner, place)
+    numbers = [array for array in inner if array.kind in _NUMBERS and array.shape]
+    rows = _rows(numbers)
+    read = [array for array in numbers if rows in array.shape]
+    COLUMNS.check(len(read), place)
+    check_size(sum(prod(a.shape) // max(rows, 1) for a in read), rows, place)
+    BYTES.check(sum(prod(array.shape) * array.itemsize for array in read), place)
+    columns = [column for array in read for column in _columns(array, rows)]
+    return Table(columns, tuple(_left_out(inner, read, rows)))
+
+
+def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
+    """The arrays of a group, named without it."""
+    group = part.strip("/.").replace("/", ".")
+    if not group:
+        return arrays
+    inner = [
+        array._replace(name=array.name.removeprefix(f"{group}."))
+        for array in arrays
+        if array.name.startswith(f"{group}.")
+    ]
+    if not inner:
+        groups = ", ".join(sorted({a.name.rpartition(".")[0] for a in arrays} - {""})) or "none"
+        raise Refused(
+            [f"expected one of the groups in the file ({groups}), got `#{part}` @ {place}"]
+        )
+    return inner
+
+
+def _without_common_group(arrays: list[Array]) -> list[Array]:
+    """The arrays, named without the group that holds them all."""
+    while len({array.name.partition(".")[0] for array in arrays}) == 1:
+        if not all("." in array.name for array in arrays):
+            return arrays
+        arrays = [a._replace(name=a.name.partition(".")[2]) for a in arrays]
+    return arrays
+
+
+def _refuse_several(arrays: Sequence[Array], place: object) -> None:
+    groups = sorted({a.name.rpartition(".")[0] for a in arrays if a.is_time})
+    if len(groups) > 1 and "" not in groups:
+        raise Refused(
+            [
+                f"expected one trajectory, got times in the groups {_listed(groups)} @ {place} "
+                f"(name one of them: FILE#{groups[0]})"
+            ]
+        )
+
+
+def _rows(arrays: Sequence[Array]) -> int:
+    """The number of times; where nothing is called so, the length that most arrays have."""
+    times = [array for array in arrays if array.is_time and array.longest == prod(array.shape)]
+    if times:
+        return min(times, key=lambda array: array.name.count(".")).longest
+    lengths = Counter(array.longest for array in arrays)
+    return max(lengths, key=lambda length: (lengths[length], length), default=0)
+
+
+def _columns(array: Array, rows: int) -> Iterator[Column]:
+    values = np.moveaxis(array.load(), array.shape.index(rows), 0)
+    if values.size == rows:
+        yield Column(array.name, values.reshape(rows).tolist())
+        return
+    for index in product(*map(range, values.shape[1:])):
+        name = array.name + "".join(f"[{i}]" for i in index)
+        place: tuple[Any, ...] = (slice(None), *index)
+        yield Column(name, values[place].tolist())
+
+
+def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iterator[str]:
+    names = {array.name for array in read}
+    other = [array for array in arrays if array.name not in names]
+    short = [array.name for array in other if array.kind in _NUMBERS]
+    if short:
+        yield f"not read, because they have no {rows} rows: {_listed(short)}"
+    strange = [array.name for array in other if array.kind not in _NUMBERS]
+    if strange:
+        yield f"not read, because they hold no real numbers: {_listed(strange)}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - _MOST_LISTED
+    return ", ".join(names[:_MOST_LISTED]) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,123 @@
+"""Columns in an NPZ archive: named one-dimensional arrays of numbers.
+
+The header of a member says how much it will be, and is believed only if the member is as long. Pickled
+objects are never read.
+"""
+
+from __future__ import annotations
+
+import re
+import zipfile
+import zlib
+from collections.abc import Collection, Sequence
+from io import BytesIO
+from itertools import islice
+from lzma import LZMAError
+from mmap import ACCESS_READ, mmap
+from pathlib import Path
+from tokenize import TokenError
+from typing import Any, BinaryIO, Final, NamedTuple, cast
+
+import numpy as np
+
+from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.solvers.files.formats.column import (
+    BYTES,
+    CHARACTERS,
+    COLUMNS,
+    Column,
+    check_size,
+)
+
+_SUFFIX: Final = ".npy"
+_VERSIONS: Final = ((1, 0), (2, 0), (3, 0))
+_ENTRY: Final = re.compile(rb"PK\x01\x02")
+# NumPy's own bound on a header, and the twelve bytes before it.
+_LONGEST_HEADER: Final = 10_012
+# What a member that is no array, or no archive, makes of the libraries.
+_BROKEN: Final = (
+    *(ValueError, TypeError, KeyError, EOFError, SyntaxError, TokenError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, LZMAError, RuntimeError),
+)
+
+
+class _Member(NamedTuple):
+    """An array of an archive that is not read yet."""
+
+    name: str
+    place: str
+    info: zipfile.ZipInfo
+    header_bytes: int
+    shape: tuple[int, ...]
+    dtype: np.dtype[np.generic]
+
+
+def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+    """Return the arrays; every header is checked before the data of any is read."""
+    del known
+    try:
+        _check_entries(file, path)
+        with zipfile.ZipFile(file) as archive:
+            members = [_member(archive, info, path) for info in archive.infolist()]
+            _check(members, path)
+            return [Column(member.name, _values(archive, member)) for member in members]
+    except _BROKEN as error:
+        raise Refused([f"expected an NPZ archive, got a fault in it: {error} @ {path}"]) from None
+
+
+def _check_entries(file: BinaryIO, path: Path) -> None:
+    """Count the entries of the directory, of which zipfile would make an object each."""
+    if file.read(6) == np.lib.format.MAGIC_PREFIX:
+        raise ValueError("one array, and no archive of named ones")
+    with mmap(file.fileno(), 0, access=ACCESS_READ) as content:
+        entries = sum(1 for _ in islice(_ENTRY.finditer(content), COLUMNS.most + 1))
+    if entries > COLUMNS.most:
+        raise COLUMNS.refusal("more", path)
+
+
+def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Member:
+    """What the header of an array says of it."""
+    name = info.filename.removesuffix(_SUFFIX)
+    place = f"{path}, column {name}"
+    with archive.open(info) as stream:
+        start = BytesIO(stream.read(_LONGEST_HEADER))
+    try:
+        version = np.lib.format.read_magic(start)
+        if version not in _VERSIONS:
+            raise ValueError(f"format version {version}")
+        if version == (1, 0):
+            shape, _, dtype = np.lib.format.read_array_header_1_0(start)
+        else:
+            shape, _, dtype = np.lib.format.read_array_header_2_0(start)
+    except _BROKEN as error:
+        reason = str(error).splitlines()[0]
+        raise Refused([f"expected an array in NPY form, got {reason!r} @ {place}"]) from None
+    return _Member(name, place, info, start.tell(), shape, dtype)
+
+
+def _check(members: list[_Member], path: Path) -> None:
+    faults = Faults()
+    for member in members:
+        shape, dtype = member.shape, member.dtype
+        if len(shape) != 1 or shape[0] < 0 or dtype.kind not in "fiuUb":
+            expected = "a one-dimensional array of real numbers"
+            faults.add(expected, f"shape {shape} of {dtype}", member.place)
+        elif dtype.kind == "U" and dtype.itemsize > 4 * CHARACTERS.most:
+            faults.lines += CHARACTERS.refusal(dtype.itemsize // 4, member.place).faults
+        elif member.info.file_size != member.header_bytes + shape[0] * dtype.itemsize:
+            expected = f"{shape[0] * dtype.itemsize} bytes of data as its header says"
+            got = str(member.info.file_size - member.header_bytes)
+            faults.add(expected, got, member.place)
+    if faults.lines:
+        raise Refused(faults.lines)
+    check_size(len(members), max((member.shape[0] for member in members), default=0), path)
+    BYTES.check(sum(member.info.file_size for member in members), path)
+
+
+def _values(archive: zipfile.ZipFile, member: _Member) -> Sequence[Any]:
+    with archive.open(member.info) as stream:
+        data = stream.read()
+    if len(data) != member.info.file_size:
+        raise ValueError(f"{member.name} ends early")
+    found: Any = np.frombuffer(data, member.dtype, offset=member.header_bytes)
+    return cast("Sequence[Any]", found)

@@ -1,0 +1,136 @@
+"""A column of a trajectory file as it is written, and how much of a file is read.
+
+Every format holds a file to these limits before it makes anything of its content.
+"""
+
+from __future__ import annotations
+
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Final, NamedTuple, final, overload
+
+from taylor_verify.scenes.reading.clock import MOST_SAMPLES
+from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.scenes.reading.limit import Limit
+
+ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
+VALUES: Final = Limit(
+    22 * MOST_SAMPLES,
+    "values",
+    "t, w, x, y, R and c in as many rows as a scene has samples at most",
+)
+BYTES: Final = Limit(
+    2**29, "bytes", "a million rows of t, x, y, q and c in hexadecimal floats take 350 MB"
+)
+COLUMNS: Final = Limit(
+    1000, "columns", "a trajectory has 22, and a logger some hundreds beside them"
+)
+CHARACTERS: Final = Limit(4000, "characters in a number", "beyond them none is read")
+
+MOST_ALIKE: Final = 3
+_MOST_SHOWN: Final = 40
+
+
+# So many entries of a column are packed, and worked on, at once.
+CHUNK: Final = 4096
+
+
+class Column(NamedTuple):
+    """A name and its entries: a list, an array of NumPy, or packed texts."""
+
+    name: str
+    values: Sequence[Any]
+
+
+@final
+class Texts(Sequence[str]):
+    """Texts that are added one by one, packed: as a string each they would take 50 bytes besides."""
+
+    def __init__(self) -> None:
+        self._packed: list[str | list[str]] = []
+        self._open: list[str] = []
+        self._last: tuple[int, list[str]] = (-1, [])
+
+    def append(self, text: str) -> None:
+        self._open.append(text)
+        if len(self._open) == CHUNK:
+            joined = "\n".join(self._open)
+            # A text that holds the mark between two of them cannot be packed.
+            is_whole = joined.count("\n") == CHUNK - 1
+            self._packed.append(joined if is_whole else self._open)
+            self._open = []
+
+    def __len__(self) -> int:
+        return CHUNK * len(self._packed) + len(self._open)
+
+    @overload
+    def __getitem__(self, place: int) -> str: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[str]: ...
+
+    def __getitem__(self, place: int | slice) -> str | list[str]:
+        if isinstance(place, slice):
+            return self._some(range(len(self))[place])
+        k = range(len(self))[place]
+        return self._chunk(k // CHUNK)[k % CHUNK]
+
+    def __iter__(self) -> Iterator[str]:
+        for number in range(len(self._packed) + 1):
+            yield from self._chunk(number)
+
+    def _some(self, places: range) -> list[str]:
+        if places.step != 1:
+            return [self[k] for k in places]
+        found: list[str] = []
+        for number in range(places.start // CHUNK, (places.stop - 1) // CHUNK + 1):
+            low = max(places.start - CHUNK * number, 0)
+            found += self._chunk(number)[low : places.stop - CHUNK * number]
+        return found
+
+    def _chunk(self, number: int) -> list[str]:
+        if number == len(self._packed):
+            return self._open
+        if self._last[0] != number:
+            packed = self._packed[number]
+            texts = packed.split("\n") if isinstance(packed, str) else packed
+            self._last = number, texts
+        return self._last[1]
+
+
+class Table(NamedTuple):
+    """The columns of a file, and sentences that say how its format was read."""
+
+    columns: list[Column]
+    notes: tuple[str, ...] = ()
+
+
+def check_size(columns: int, rows: int, place: object) -> None:
+    """Raise Refused for a file of more columns, rows or values than are read."""
+    COLUMNS.check(columns, place)
+    ROWS.check(rows, place)
+    VALUES.check(columns * rows, place)
+
+
+def no_utf8(start: bytes, place: object) -> Refused:
+    """Return the refusal of text in another encoding, told by the first bytes of its file."""
+    is_utf16 = start[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
+    got = "UTF-16 (save it as UTF-8)" if is_utf16 else "other bytes"
+    return Refused([f"expected text in UTF-8, got {got} @ {place}"])
+
+
+def check_lengths(columns: Iterable[Column], place: object) -> None:
+    """Raise Refused for columns that are longer than any scene."""
+    ROWS.check(max((len(column.values) for column in columns), default=0), place)
+
+
+def add_more_alike(faults: Faults, wrong: int, place: str) -> None:
+    """Say how many more faults of a kind there are than are told one by one."""
+    if wrong > MOST_ALIKE:
+        faults.lines.append(f"and {wrong - MOST_ALIKE} more of this kind @ {place}")
+
+
+def shown(value: object) -> str:
+    """A value as its file writes it, cut short where it is long."""
+    text = repr(value) if isinstance(value, str) or value is None else str(value)
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."

@@ -1,0 +1,71 @@
+"""Columns in JSON: an object of arrays, or one that has such an object under ``columns``."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.solvers.files.formats.column import ROWS, VALUES, Column, no_utf8, shown
+
+_BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
+
+
+def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+    """Return the arrays; their commas are counted before anything is made of the text."""
+    content = file.read()
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise no_utf8(content[:2], path) from None
+    _check_count(text, path)
+    document = _parsed(text, path)
+    if isinstance(document, dict) and isinstance(document.get("columns"), dict):
+        document = document["columns"]
+    if not isinstance(document, dict):
+        expected = 'an object of column arrays {"t": [...], "w1": [...]}'
+        raise Refused([f"expected {expected}, got {shown(document)} @ {path}"])
+    faults, columns = Faults(), []
+    for name, values in document.items():
+        if isinstance(values, list):
+            columns.append(Column(name, values))
+        elif name in known:
+            faults.add("an array of numbers", shown(values), f"{path}, column {name}")
+    if faults.lines:
+        raise Refused(faults.lines)
+    return columns
+
+
+def _parsed(text: str, path: Path) -> Any:
+    try:
+        return json.loads(
+            text,
+            parse_float=str,
+            parse_int=str,
+            parse_constant=float,
+            object_pairs_hook=_named_once,
+        )
+    except (ValueError, RecursionError) as error:
+        reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
+        raise Refused([f"expected a JSON document, got a fault in it: {reason} @ {path}"]) from None
+
+
+def _named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    document = dict(pairs)
+    if len(document) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the key {shown(twice)} twice")
+    return document
+
+
+def _check_count(text: str, path: Path) -> None:
+    """Count the commas of each array and of all: no array has more entries than commas and one."""
+    longest = max((text.count(",", *m.span()) for m in _BETWEEN_BRACKETS.finditer(text)), default=0)
+    if longest > ROWS.most:
+        raise ROWS.refusal("more", path)
+    if text.count(",") > VALUES.most:
+        raise VALUES.refusal("more", path)

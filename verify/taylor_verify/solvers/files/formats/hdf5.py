@@ -1,0 +1,87 @@
+"""Columns in an HDF5 file, read with h5py; NetCDF 4 is HDF5 too.
+
+Only datasets of numbers in the file itself are read: no link leads out of it, and no filter is loaded that
+HDF5 has not built in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.solvers.files.formats.arrays import Array, table
+from taylor_verify.solvers.files.formats.column import COLUMNS, Table
+from taylor_verify.solvers.files.formats.package import needed, unbroken
+
+# Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
+_FILTERS: Final = {1, 2, 3, 4, 5, 6, 32000}
+
+
+def read(file: BinaryIO, path: Path, part: str) -> Table:
+    """Return the datasets of a group; their declared sizes are checked before any is read."""
+    return opened(file, path, lambda content: table(_arrays(content, path), part, path))
+
+
+def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Table:
+    """Return the table that is made of the open file; whatever is broken in it is refused."""
+    with needed("h5py", "HDF5", "hdf5", path):
+        import h5py
+    with unbroken("an HDF5 file", path), h5py.File(file, "r") as content:
+        return tabulate(content)
+
+
+def _arrays(content: Any, path: Path) -> Iterator[Array]:
+    """The datasets of the file; the fields of a table stand beside it, or below its name."""
+    for name, dataset in datasets(content, path):
+        if dataset.dtype.names is None:
+            yield _array(name, dataset, path)
+            continue
+        prefix = name.rpartition(".")[0] if name.endswith("table") else name
+        for field in dataset.dtype.names:
+            yield _array(f"{prefix}.{field}".lstrip("."), dataset, path, field)
+
+
+def datasets(content: Any, path: Path) -> Iterator[tuple[str, Any]]:
+    """The datasets of a file with their names, a dot between groups; no link out of it is followed."""
+    import h5py
+
+    waiting, visited, count = [("", content)], set[int](), 0
+    while waiting:
+        prefix, group = waiting.pop()
+        address = h5py.h5o.get_info(group.id).addr
+        if address in visited:
+            continue
+        visited.add(address)
+        for name in group:
+            count += 1
+            COLUMNS.check(count, path)
+            if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+                continue
+            member = group[name]
+            if isinstance(member, h5py.Group):
+                waiting.append((f"{prefix}{name}.", member))
+            elif isinstance(member, h5py.Dataset):
+                yield f"{prefix}{name}", member
+
+
+def _array(name: str, dataset: Any, path: Path, field: str = "") -> Array:
+    check_stored(dataset, path)
+    dtype = dataset.dtype[field] if field else dataset.dtype
+
+    def load() -> Any:
+        return dataset.fields(field)[()] if field else dataset[()]
+
+    return Array(name, dataset.shape or (), dtype.kind, dtype.itemsize, load)
+
+
+def check_stored(dataset: Any, path: Path) -> None:
+    """Refuse a dataset whose numbers are not in this file, or are packed by a foreign filter."""
+    place = f"{path}, dataset {cut(dataset.name)}"
+    properties = dataset.id.get_create_plist()
+    filters = {properties.get_filter(i)[0] for i in range(properties.get_nfilters())}
+    if dataset.is_virtual or dataset.external:
+        raise Refused([f"expected numbers in this file, got a reference to another @ {place}"])
+    if filters - _FILTERS:
+        raise Refused([f"expected HDF5's own filters, got {sorted(filters - _FILTERS)} @ {place}"])

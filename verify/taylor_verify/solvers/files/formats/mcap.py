@@ -1,0 +1,168 @@
+"""Messages of a topic in an MCAP file, read with mcap: ROS 2 messages in CDR, and messages in JSON.
+
+Chunks are unpacked here and not by the library, which unpacks as much as they claim.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr
+from io import BytesIO, StringIO
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, BinaryIO, Final, NamedTuple
+
+from taylor_verify.scenes.reading.faults import Refused, cut
+from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.solvers.files.formats import messages
+from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.messages import Topic
+from taylor_verify.solvers.files.formats.package import needed, unbroken
+
+_EXTRA: Final = "mcap"
+_MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
+
+
+def read(file: BinaryIO, path: Path, part: str) -> Table:
+    """Return the columns of a topic; the file is read twice, first for the topics there are."""
+    with needed("mcap", "MCAP", _EXTRA, path):
+        import mcap  # noqa: F401
+    with unbroken("an MCAP file", path):
+        recording = _Recording.of(file, path)
+        topic = messages.chosen(recording.topics(), part, path)
+        return messages.table(topic, recording.decoded(topic, path), path)
+
+
+class _Recording(NamedTuple):
+    """What an MCAP file has: its schemas and channels by their numbers, and messages by channel."""
+
+    file: BinaryIO
+    schemas: dict[int, Any]
+    channels: dict[int, Any]
+    counts: Counter[int]
+
+    @classmethod
+    def of(cls, file: BinaryIO, path: Path) -> _Recording:
+        from mcap.records import Channel, Message, Schema
+
+        recording = cls(file, {}, {}, Counter())
+        for number, record in enumerate(_records(file, path)):
+            if isinstance(record, Message):
+                recording.counts[record.channel_id] += 1
+            elif isinstance(record, Schema):
+                recording.schemas[record.id] = record
+            elif isinstance(record, Channel):
+                recording.channels[record.id] = record
+            COLUMNS.check(len(recording.channels) + len(recording.schemas), path)
+            _MESSAGES.check(number, path)
+        return recording
+
+    def topics(self) -> list[Topic]:
+        """The topics, by name; the messages of several channels of a topic are counted together."""
+        found: dict[tuple[str, str], int] = {}
+        for number, channel in self.channels.items():
+            schema = self.schemas.get(channel.schema_id)
+            name = (channel.topic, schema.name if schema else channel.message_encoding)
+            found[name] = found.get(name, 0) + self.counts[number]
+        return [Topic(name, kind, count) for (name, kind), count in sorted(found.items())]
+
+    def decoded(self, topic: Topic, path: Path) -> Iterator[Any]:
+        """The messages of a topic in the order of the file."""
+        from mcap.records import Message
+
+        decoders = {
+            number: _decoder(channel, self.schemas.get(channel.schema_id), path)
+            for number, channel in self.channels.items()
+            if channel.topic == topic.name
+        }
+        for record in _records(self.file, path):
+            if isinstance(record, Message) and record.channel_id in decoders:
+                yield decoders[record.channel_id](record.data)
+
+
+def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
+    if channel.message_encoding == "json":
+        return _from_json
+    with needed("mcap-ros2-support", "ROS 2 messages in MCAP", _EXTRA, path):
+        from mcap_ros2.decoder import DecoderFactory
+    # It prints a definition that it cannot read before it raises.
+    with redirect_stderr(StringIO()):
+        decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
+    if decode is None:
+        got = f"{channel.message_encoding or 'no encoding'} with schemas in {schema.encoding or 'none'}"
+        place = f"{path}, topic {cut(channel.topic)}"
+        raise Refused([f"expected ROS 2 messages (cdr, ros2msg) or JSON, got {cut(got)} @ {place}"])
+    decoded: Callable[[bytes], Any] = decode
+    return decoded
+
+
+def _from_json(data: bytes) -> Any:
+    """A message with its numbers as text, so that none is rounded."""
+    return json.loads(
+        data, parse_float=str, parse_int=str, object_hook=lambda pairs: SimpleNamespace(**pairs)
+    )
+
+
+# Records and chunks.
+
+
+class _Bounded:
+    """A file of which no call reads more than a trajectory file has, whatever a record claims."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+
+    def read(self, size: int) -> bytes:
+        return self._file.read(min(size, BYTES.most))
+
+
+def _records(file: BinaryIO, path: Path) -> Iterator[Any]:
+    """The records of the file from its beginning, those in chunks among them."""
+    from mcap.records import Chunk
+    from mcap.stream_reader import StreamReader
+
+    file.seek(0)
+    unpacked = 0
+    stream: Any = _Bounded(file)
+    for record in StreamReader(stream, emit_chunks=True, record_size_limit=BYTES.most).records:
+        if isinstance(record, Chunk):
+            data = _unpacked(record, BYTES.most - unpacked + 1)
+            unpacked += len(data)
+            BYTES.check(unpacked, path)
+            yield from _in_chunk(data)
+        else:
+            yield record
+
+
+def _unpacked(chunk: Any, most: int) -> bytes:
+    """The content of a chunk, of at most so many bytes."""
+    if chunk.compression == "zstd":
+        import zstandard
+
+        reader = zstandard.ZstdDecompressor().stream_reader(chunk.data)
+        return bytes(reader.read(most))
+    if chunk.compression == "lz4":
+        from lz4.frame import LZ4FrameDecompressor
+
+        return bytes(LZ4FrameDecompressor().decompress(chunk.data, most))
+    if chunk.compression:
+        raise ValueError(f"the compression {cut(chunk.compression)}")
+    return bytes(chunk.data)
+
+
+def _in_chunk(data: bytes) -> Iterator[Any]:
+    from mcap.data_stream import ReadDataStream
+    from mcap.opcode import Opcode
+    from mcap.records import Channel, Message, Schema
+
+    stream = ReadDataStream(BytesIO(data))
+    while stream.count < len(data):
+        opcode, length = stream.read1(), stream.read8()
+        if opcode == Opcode.MESSAGE:
+            yield Message.read(stream, length)
+        elif opcode in (Opcode.CHANNEL, Opcode.SCHEMA):
+            yield (Channel if opcode == Opcode.CHANNEL else Schema).read(stream)
+        else:
+            stream.read(length)

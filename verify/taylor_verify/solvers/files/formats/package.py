@@ -1,0 +1,40 @@
+"""Refusals for what a library makes of a file: that it is not installed, or that the file is broken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from taylor_verify.scenes.reading.faults import Refused, cut
+
+
+@contextmanager
+def needed(package: str, what: str, extra: str, place: object) -> Iterator[None]:
+    """Refuse the file at ``place`` if an import in the block lacks the package.
+
+    ``what`` names the format, ``extra`` the optional dependency that installs the package.
+    """
+    try:
+        yield
+    except ModuleNotFoundError:
+        raise Refused(
+            [
+                f"expected the package {package} to read {what}, got none @ {place} "
+                f"(install it with `pip install 'taylor-verify[{extra}]'`, or write CSV)"
+            ]
+        ) from None
+
+
+@contextmanager
+def unbroken(what: str, place: object) -> Iterator[None]:
+    """Refuse the file at ``place`` if a library raises anything in the block.
+
+    Which exceptions a broken file becomes is written down by none of them.
+    """
+    try:
+        yield
+    except Refused:
+        raise
+    except Exception as error:
+        reason = cut((str(error).splitlines() or [type(error).__name__])[0])
+        raise Refused([f"expected {what}, got a fault in it: {reason} @ {place}"]) from None

@@ -1,0 +1,215 @@
+"""The numbers of a trajectory file, packed, and formed exactly when somebody looks at their rows.
+
+A million rows of eight numbers take 5 GB as rationals, and 0.2 GB as the text that they were read from.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any, Final, final, overload
+
+import gmpy2
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.scenes.mpfr import to_mpf
+from taylor_verify.scenes.reading.faults import Faults
+from taylor_verify.solvers.files.formats.column import (
+    CHUNK,
+    MOST_ALIKE,
+    Column,
+    Texts,
+    add_more_alike,
+    shown,
+)
+from taylor_verify.solvers.values import Value, exact, held
+
+Array = np.ndarray[Any, Any]
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+Raw = Sequence[Any]
+
+# Errors are told as doubles, and so is whatever is as large as the answer itself.
+_LARGEST: Final = 2**1000
+# A short decimal is a finite number far below that; whatever else is a number is read one by one.
+_SHORT: Final = r"[+-]?[0-9]{1,40}(?:\.[0-9]{0,40})?(?:[eE][+-]?[0-9]{1,2})?"
+_SHORT_TEXTS: Final = re.compile(rf"(?: *{_SHORT} *\n)*")
+_DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
+_NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
+
+
+@final
+class Rows(Sequence[tuple[Value, ...]]):
+    """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
+
+    ``finite`` tells the rows of which every number is one.
+    """
+
+    def __init__(self, columns: Sequence[Raw], finite: Flags | None = None) -> None:
+        self._columns = tuple(columns)
+        self._count = len(self._columns[0])
+        self.finite: Flags = np.ones(self._count, dtype=bool) if finite is None else finite
+
+    @classmethod
+    def of(cls, rows: Sequence[Sequence[Value]]) -> Rows:
+        """Return rows that are formed already."""
+        if isinstance(rows, Rows):
+            return rows
+        finite = [all(isinstance(value, Fraction) for value in row) for row in rows]
+        return cls(list(zip(*rows, strict=True)), np.array(finite, dtype=bool))
+
+    def __len__(self) -> int:
+        return self._count
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[Value, ...]: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> tuple[tuple[Value, ...], ...]: ...
+
+    def __getitem__(self, place: int | slice) -> Any:
+        if isinstance(place, slice):
+            return tuple(self[k] for k in range(self._count)[place])
+        return tuple(exact(column[place]) for column in self._columns)
+
+    def __iter__(self) -> Iterator[tuple[Value, ...]]:
+        for part in chunks(self._count):
+            values = [[exact(raw) for raw in _some(column, part)] for column in self._columns]
+            yield from zip(*values, strict=True)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
+
+    def __hash__(self) -> int:
+        return hash((self._count, self[:1]))
+
+    def doubles(self, places: Sequence[int] | None = None) -> Floats:
+        """Return some of the rows, or all, as float64, each number rounded once."""
+        count = self._count if places is None else len(places)
+        found = np.empty((count, len(self._columns)))
+        for part in chunks(count):
+            asked = part if places is None else places[part.start : part.stop]
+            for i, column in enumerate(self._columns):
+                found[part.start : part.stop, i] = _doubles(_some(column, asked))
+        return found
+
+    def held(self, places: Sequence[int], bits: int) -> Array:
+        """Return some of the rows as numbers of mpmath, exact where a number has at most so many bits."""
+        columns = [_held(_some(column, places), bits) for column in self._columns]
+        return np.stack(columns, axis=1) if len(places) else np.empty((0, len(columns)), object)
+
+
+def chunks(count: int) -> Iterator[range]:
+    """Yield the places of so many rows, some thousands at once."""
+    for begin in range(0, count, CHUNK):
+        yield range(begin, min(begin + CHUNK, count))
+
+
+def _some(column: Raw, places: Sequence[int]) -> Any:
+    """Return the entries of a column at some places."""
+    if isinstance(places, range) and places and abs(places.step) == 1:
+        low, high = sorted((places[0], places[-1]))
+        found = column[low : high + 1]
+        return found if places.step == 1 else found[::-1]
+    return [column[k] for k in places]
+
+
+def _is_short(texts: Sequence[Any]) -> bool:
+    """Return True if all are texts of short decimals."""
+    if not all(isinstance(text, str) for text in texts):
+        return False
+    return _SHORT_TEXTS.fullmatch("\n".join([*texts, ""])) is not None
+
+
+def _is_double(values: Raw) -> bool:
+    return (
+        isinstance(values, np.ndarray) and values.dtype.kind == "f" and values.dtype.itemsize <= 8
+    )
+
+
+def _doubles(values: Raw) -> Floats:
+    if _is_double(values) or _is_short(values):
+        return np.array(values, dtype=np.float64)
+    return np.array([float(exact(raw)) for raw in values])
+
+
+def _held(values: Raw, bits: int) -> Array:
+    if _is_double(values):
+        found = np.empty(len(values), dtype=object)
+        found[:] = [mp.mpf(value) for value in np.asarray(values, dtype=np.float64).tolist()]
+        return found
+    if _is_short(values):
+        with gmpy2.context(precision=bits):
+            return to_mpf(np.array([gmpy2.mpfr(text) for text in values], dtype=object))
+    return (
+        held([[exact(raw)] for raw in values], bits)[:, 0] if len(values) else np.empty(0, object)
+    )
+
+
+# What is read of a file.
+
+
+def packed(values: Raw) -> Any:
+    """Return the same entries in less memory, if all of them are Python's floats."""
+    if isinstance(values, list) and all(type(value) is float for value in values):
+        return np.array(values)
+    return values
+
+
+def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
+    """Return which entries are finite numbers; what is no number, or too large, is a fault."""
+    finite, wrong = np.ones(len(column.values), dtype=bool), 0
+    for part in chunks(len(column.values)):
+        values = _some(column.values, part)
+        if _is_double(values):
+            sizes = np.abs(np.asarray(values, dtype=np.float64))
+            finite[part.start : part.stop] = np.isfinite(sizes)
+            suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
+        else:
+            suspects = np.full(len(values), not _is_short(values))
+        for k in np.flatnonzero(suspects).tolist():
+            try:
+                finite[part[k]] = _is_finite(values[k])
+            except ValueError as error:
+                wrong += 1
+                if wrong <= MOST_ALIKE:
+                    place = f"{file}, row {part[k] + 1}, column {column.name}"
+                    faults.add(str(error), shown(values[k]), place)
+    add_more_alike(faults, wrong, f"{file}, column {column.name}")
+    return finite
+
+
+def _is_finite(raw: object) -> bool:
+    value = exact(raw)
+    if isinstance(value, Fraction) and abs(value) >= _LARGEST:
+        raise ValueError("a number below 2^1000 in size")
+    return isinstance(value, Fraction)
+
+
+def exact_times(values: Raw) -> list[Value]:
+    """Return the entries of the column of times, each exactly."""
+    return [exact(raw) for part in chunks(len(values)) for raw in _some(values, part)]
+
+
+def written_digits(columns: Iterable[Column]) -> int | None:
+    """Return the most significant digits of any decimal; None where they do not tell."""
+    most = 0
+    for _, values in columns:
+        if not isinstance(values, Texts | list):
+            return None
+        for part in chunks(len(values)):
+            texts = _some(values, part)
+            if not _is_short(texts) and not all(_is_decimal(text) for text in texts):
+                return None
+            digits = _NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
+            most = max(most, *(len(one.lstrip("0")) for one in digits.split("\n")))
+    # Zeros alone are exact however they are written.
+    return most or None
+
+
+def _is_decimal(raw: object) -> bool:
+    return isinstance(raw, str) and _DECIMAL.fullmatch(raw.strip()) is not None

@@ -1,0 +1,123 @@
+"""The step of the integrator that wrote a trajectory file, as the file, its name or its rows state it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from math import isfinite
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.values import exact
+
+# A column of these names that has one value says the step; it is no part of the motion.
+STEP_COLUMNS: Final = ("dt", "h", "step_size", "stepsize", "time_step", "timestep")
+
+# Two digits of exponent: no step needs more, and 1e999999999 would take all memory.
+_NUMBER: Final = (
+    r"(?P<number>(?:[0-9]{1,20}(?:[.p][0-9]{1,40})?|\.[0-9]{1,40})(?:e[+-]?[0-9]{1,2})?)"
+)
+_WORD: Final = r"(?P<word>dt|h|step|step[ _-]?size|time[ _-]?step)"
+# run_h0.01, dt=0.01, rk4-step_0.5; neither ch0.1 nor dt10ms.
+_IN_NAME: Final = re.compile(rf"(?<![A-Za-z]){_WORD}[=_-]?{_NUMBER}(?![0-9A-Za-z])", re.IGNORECASE)
+_IN_COMMENT: Final = re.compile(
+    rf"(?<![A-Za-z]){_WORD}\s*[=:]\s*{_NUMBER}(?![0-9A-Za-z])", re.IGNORECASE
+)
+_IN_JSON: Final = re.compile(rf'"{_WORD}"\s*:\s*"?{_NUMBER}"?\s*[,}}]', re.IGNORECASE)
+_DELIMITED: Final = (".csv", ".tsv", ".txt")
+# Comments that say the step stand at the top.
+_HEAD_BYTES: Final = 2**14
+# Rows are equally spaced if their spacing differs by no more than printed times make it.
+_EVEN: Final = Fraction(1, 10**4)
+_FEWEST_ROWS: Final = 3
+
+
+class Source(StrEnum):
+    """The source of a step."""
+
+    CALL = "the call"
+    FILE = "the files themselves"
+    NAME = "the names of the files"
+    ROWS = "the spacing of the rows"
+
+
+@dataclass(frozen=True)
+class FileStep:
+    """A step in the scene's unit of time, and the source that states it."""
+
+    value: float
+    source: Source
+
+
+def step_inside(path: Path, columns: Iterable[Column]) -> FileStep | None:
+    """Return the step that a file states: a column of one value, a comment, or a key of its JSON object.
+
+    None where it states none, or two that differ.
+    """
+    for name, values in columns:
+        if name.lower() in STEP_COLUMNS and (value := _only_value(values)) is not None:
+            return FileStep(value, Source.FILE)
+    return _only(_stated_in_head(path), Source.FILE)
+
+
+def step_in_name(name: str) -> FileStep | None:
+    """Return the step that the name of a file states, or that of its folder, as in ``run_h0.01.csv``."""
+    path = Path(name)
+    for part in (path.stem, path.parent.name):
+        if found := _only(_IN_NAME.finditer(part), Source.NAME):
+            return found
+    return None
+
+
+def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
+    """Return the spacing of equally spaced rows; None for other rows."""
+    if len(times) < _FEWEST_ROWS:
+        return None
+    mean = (times[-1] - times[0]) / (len(times) - 1)
+    even = all(
+        abs(times[k] - times[0] - k * mean) <= _EVEN * abs(mean) for k in range(1, len(times))
+    )
+    return FileStep(float(abs(mean)), Source.ROWS) if even else None
+
+
+def _stated_in_head(path: Path) -> Iterable[re.Match[str]]:
+    suffix = path.suffix.lower()
+    if suffix not in (*_DELIMITED, ".json"):
+        return
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES).decode("utf-8", errors="replace")
+    if suffix == ".json":
+        yield from _IN_JSON.finditer(head)
+        return
+    for line in head.splitlines():
+        if line.lstrip().startswith("#"):
+            yield from _IN_COMMENT.finditer(line)
+
+
+def _only(stated: Iterable[re.Match[str]], source: Source) -> FileStep | None:
+    """Return the one positive step that is stated; two that differ state none."""
+    values = {value for match in stated if (value := _value(match)) > 0}
+    return FileStep(values.pop(), source) if len(values) == 1 else None
+
+
+def _value(match: re.Match[str]) -> float:
+    number = match["number"].lower().replace("p", ".")
+    # step3 is more likely the third run than a step of 3.
+    if match["word"].lower() == "step" and number.isdigit():
+        return 0.0
+    return float(number)
+
+
+def _only_value(values: Sequence[object]) -> float | None:
+    """Return the positive number that every row of a column repeats; None for any other column."""
+    if not len(values) or any(value != values[0] for value in values[1:]):
+        return None
+    try:
+        value = exact(values[0])
+    except ValueError:
+        return None
+    return float(value) if isfinite(value) and value > 0 else None

@@ -1,0 +1,394 @@
+"""What a program of one's own is asked, and what is made of its answer: JSON in, JSON out.
+
+The question is one JSON document on the program's standard input. Every key but ``text`` and ``hex``
+occurs once in it and has one meaning, whatever its table, so that a reader may search the text for
+``"elapsed":`` and go on from there. None of them is a key of the answer.
+
+    protocol             1; 2 where there is `manufactured`, which a reader of 1 would not look for
+    scene, title         the name of the scene and its title
+    model                "euler" or "kirchhoff"
+    track                what the scene asks besides omega or impulse: "attitude", "centre"
+    rung, bits           the precision of the run, "f64", and its bits of significand, 53
+    columns              the names that the answer needs, in the order t, w1, ...
+    body                 the body, in body axes
+      inertia              I, 3x3                                (euler; its hex is rounded)
+      inverse_inertia      K = I^-1, 3x3                         (euler)
+      moment               M                                     (euler)
+      linear               A, 3x3: T = x.A x/2 + x.B y + y.C y/2 (kirchhoff)
+      coupling             B, 3x3, its row the index of x        (kirchhoff)
+      angular              C, 3x3                                (kirchhoff)
+      force, couple        X and L, 3 each                       (kirchhoff)
+    initial              the state at the start
+      omega                body axes                             (euler; its hex is rounded)
+      angular_momentum     H = I omega, body axes                (euler)
+      linear_impulse       x, body axes                          (kirchhoff)
+      angular_impulse      y, body axes                          (kirchhoff)
+      attitude             quaternion q0..q3, scalar first, body to space, of any length but zero
+      centre               the body's origin, space axes         (kirchhoff)
+    manufactured         only where loads change with time: the motion z* that they are made for
+      frequencies          nu, one for each wave
+      cosines, sines       a row for each wave: of H* (euler), or of x* and y*, six numbers (kirchhoff)
+      constant_part        z* without its waves                  (its hex is rounded)
+    time                 the instants that are asked for, and the time of the initial state
+      start                the time of the initial state         (its hex is rounded)
+      elapsed              the times since then, monotonic: integrate over these, from 0
+      times                start + elapsed: column t of answer   (its hex is rounded)
+
+Every number, vector or matrix is an object of two: ``text``, the exact value (a decimal, or "a/b"
+where no decimal is finite), and ``hex``, the hexadecimal float of the rung, as C's strtod reads it.
+They are equal but where the table says that hex is rounded: K and H are rounded once, and I = K^-1
+and omega = K H follow from them exactly. Whoever integrates H' = H x K H + M has exact data.
+
+Loads that change with time are M = H*' - H* x K H*, or X = x*' - x* x Omega* and
+L = y*' - y* x Omega* - x* x U*, with Omega* and U* made of x* and y* as Omega and U are of x and y:
+
+    z*(s) = constant_part + sum over the waves of cosine cos(nu s) + sine sin(nu s)
+          = z*(0) + sum over the waves of cosine (cos(nu s) - 1) + sine sin(nu s),
+
+s being an elapsed time and z*(0) the initial H, or x and y. The second form has exact data alone.
+
+The answer is one JSON object on standard output, and the exit status 0: a list for every name in
+``columns``, one entry for each instant.
+
+    t                    the times, as given (within four roundings of the rung)
+    w1 w2 w3             omega, body axes                        (euler)
+    x1 x2 x3 y1 y2 y3    the impulses, body axes                 (kirchhoff)
+    q0 q1 q2 q3          attitude, nearly unit, of either sign   (where tracked)
+    c1 c2 c3             centre, space axes                      (where tracked)
+    steps                optional: the steps taken. The judge allows rounding its square root, and
+                         counts no more of them than are plausible (judge/steps.py)
+    evaluations          optional: the evaluations of the derivative
+    seconds              optional: the propagation alone, by the program's own clock. Believed only if
+                         the whole run, as it is measured from outside, took no less
+    compile_seconds      optional, beside seconds: what went before the propagation
+
+An entry in quotes, "0x1.8p-3", "0.1" or "1/3", is taken exactly. A bare JSON number is on f32 and
+f64 the double nearest to it, because that is what the program held and printed, and on wider rungs
+the exact decimal. null, NaN and infinities are not finite. Other keys are not looked at.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.bodies import Body, RigidBody
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.precision import Rung, double_text, hexadecimal, power_of_two
+from taylor_verify.scenes.reading.table import exact_number
+from taylor_verify.scenes.tensors import apply
+from taylor_verify.solvers.solver import columns
+
+VERSION = 1
+# A program that knows constant loads alone has to be able to tell.
+VERSION_WITH_WAVES = 2
+
+# A time is read from a decimal, formed as start + k dt and printed again: three roundings, and one.
+_TIME_ROUNDINGS = 4
+_DOUBLE_BITS = 53
+_PLACES = 30
+# Seconds, of the order of a century: a double holds it, and no program was waited for so long.
+_LONGEST = 10**10
+_LARGEST_BINARY_EXPONENT = 20_000
+_HEXADECIMAL = re.compile(
+    r"([+-]?)0x([0-9a-f]{0,1000})\.?([0-9a-f]{0,1000})(?:p([+-]?[0-9]{1,5}))?", re.IGNORECASE
+)
+_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
+
+
+class Misanswer(Exception):
+    """The answer is not what was asked for; the text says how."""
+
+
+class NotFinite(Exception):
+    """The answer holds a number that is not finite; the text says where."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """States in the order of ``columns``, held exactly, and the work that the program claims.
+
+    ``seconds`` is None where the program did not time itself.
+    """
+
+    states: list[list[Fraction | float]]
+    steps: int
+    evaluations: int
+    seconds: float | None = None
+    compile_seconds: float = 0.0
+
+
+# The question.
+
+
+def question(problem: Problem) -> dict[str, Any]:
+    """The document that a program is asked with."""
+    scene = problem.scene
+    return {
+        "protocol": VERSION if scene.body.manufactured is None else VERSION_WITH_WAVES,
+        "scene": scene.name,
+        "title": scene.title,
+        "model": scene.model,
+        "track": sorted(scene.track),
+        "rung": problem.rung.name,
+        "bits": problem.rung.bits,
+        "columns": column_names(problem),
+        **_data(problem),
+    }
+
+
+def column_names(problem: Problem) -> list[str]:
+    """The columns of an answer: t, and those of everything the scene tracks."""
+    return ["t", *(name for group, _ in columns(problem) for name in COLUMNS[group])]
+
+
+def _data(problem: Problem) -> dict[str, Any]:
+    given, rung = problem.given, problem.rung
+    body, initial, clock = given.body, given.initial, given.clock
+    numbers: dict[str, dict[str, Any]]
+    if isinstance(body, RigidBody):
+        assert isinstance(initial, Spin)
+        numbers = {
+            "body": {
+                "inertia": body.inertia,
+                "inverse_inertia": body.inverse_inertia,
+                "moment": body.moment,
+            },
+            "initial": {
+                "omega": initial.omega,
+                "angular_momentum": apply(body.inertia, initial.omega),
+                "attitude": initial.attitude,
+            },
+        }
+    else:
+        assert isinstance(initial, Impulse)
+        numbers = {
+            "body": {
+                "linear": body.linear,
+                "coupling": body.coupling,
+                "angular": body.angular,
+                "force": body.force,
+                "couple": body.couple,
+            },
+            "initial": {
+                "linear_impulse": initial.linear,
+                "angular_impulse": initial.angular,
+                "attitude": initial.attitude,
+                "centre": initial.centre,
+            },
+        }
+    if body.manufactured is not None:
+        numbers["manufactured"] = _waves(body, body.manufactured)
+    numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
+    return {
+        table: {key: _written(value, rung) for key, value in entries.items()}
+        for table, entries in numbers.items()
+    }
+
+
+def _waves(body: Body, motion: Manufactured) -> dict[str, Any]:
+    """The motion of what a program integrates: of H = I omega, or of x and y as it stands."""
+    if isinstance(body, RigidBody):
+        motion = motion.mapped(body.inertia)
+    return {
+        "frequencies": [wave.frequency for wave in motion.waves],
+        "cosines": [wave.cosine for wave in motion.waves],
+        "sines": [wave.sine for wave in motion.waves],
+        "constant_part": motion.constant,
+    }
+
+
+def _written(value: Any, rung: Rung) -> dict[str, Any]:
+    return {
+        "text": _mapped(exact_text, value),
+        "hex": _mapped(lambda number: hexadecimal(_nearest(number, rung)), value),
+    }
+
+
+def _mapped(write: Any, value: Any) -> Any:
+    if isinstance(value, Fraction):
+        return write(value)
+    return [_mapped(write, entry) for entry in value]
+
+
+def _nearest(value: Fraction, rung: Rung) -> Fraction:
+    """To the rung's bits, whatever the exponent: the scene's own units may be far from one."""
+    return Rung(rung.name, rung.bits).round(value)
+
+
+def exact_text(value: Fraction) -> str:
+    """The decimal that is exactly this number, or "a/b" where there is none."""
+    rest, powers = value.denominator, {2: 0, 5: 0}
+    for prime in powers:
+        while rest % prime == 0:
+            rest //= prime
+            powers[prime] += 1
+    if rest != 1:
+        return f"{_digits(value.numerator)}/{_digits(value.denominator)}"
+    places = max(powers.values())
+    whole = _digits(int(value * 10**places))
+    if places == 0:
+        return whole
+    if places > _PLACES:
+        return f"{whole}e-{places}"
+    sign, figures = ("-", whole[1:]) if value < 0 else ("", whole)
+    figures = figures.rjust(places + 1, "0")
+    return f"{sign}{figures[:-places]}.{figures[-places:]}"
+
+
+def _digits(number: int) -> str:
+    """The integer in decimal, of any length: str(int) stops at 4300 digits."""
+    return str(Decimal(number))
+
+
+# The answer.
+
+
+def longest_answer(problem: Problem) -> int:
+    """The bytes that an answer to this problem may have: room for every number's every bit."""
+    numbers = len(problem.times) * len(column_names(problem))
+    return 2**20 + numbers * (200 + 2 * problem.rung.bits)
+
+
+def read(text: bytes, problem: Problem) -> Answer:
+    """The states in an answer; raises Misanswer or NotFinite, whose text says what and where."""
+    document = _parsed(text)
+    names = column_names(problem)
+    if missing := [name for name in names if name not in document]:
+        raise Misanswer(f"expected the columns {', '.join(names)}, got no {', '.join(missing)}")
+    for name in names:
+        _check_length(document, name, len(problem.times))
+    as_double = problem.rung.bits <= _DOUBLE_BITS
+    found = {
+        name: [_number(value, as_double, f"{name}[{row}]") for row, value in enumerate(entries)]
+        for name, entries in ((name, document[name]) for name in names)
+    }
+    _check_times(found["t"], problem)
+    states = [list(row) for row in zip(*(found[name] for name in names[1:]), strict=True)]
+    work = _count(document, "steps"), _count(document, "evaluations")
+    return Answer(states, *work, *_durations(document))
+
+
+def _parsed(text: bytes) -> Mapping[str, Any]:
+    if not text.strip():
+        raise Misanswer("expected a JSON object on standard output, got nothing")
+    try:
+        document = json.loads(text, parse_float=Decimal, object_pairs_hook=_without_repetition)
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno}, column {error.colno}"
+        cut = " (where the answer ends)" if error.pos >= len(text.rstrip()) - 1 else ""
+        raise Misanswer(
+            f"expected one JSON object, got no JSON at {where}{cut}: {error.msg}"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise Misanswer(f"expected one JSON object, got {error}") from error
+    if not isinstance(document, dict):
+        raise Misanswer(f"expected a JSON object of columns, got a {type(document).__name__}")
+    return document
+
+
+def _without_repetition(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise Misanswer(f"expected every key once, got {twice!r} twice")
+    return found
+
+
+def _check_length(document: Mapping[str, Any], name: str, samples: int) -> None:
+    entries = document[name]
+    if not isinstance(entries, list):
+        raise Misanswer(f"expected a list of {samples} numbers @ {name}")
+    if len(entries) != samples:
+        last = f", the last at t = {document['t'][-1]}" if name == "t" and entries else ""
+        raise Misanswer(f"expected {samples} rows, got {len(entries)}{last} @ {name}")
+
+
+def _check_times(times: Sequence[Fraction | float], problem: Problem) -> None:
+    clock = problem.given.clock
+    size = abs(clock.start) + max(abs(elapsed) for elapsed in clock.elapsed)
+    allowed = _TIME_ROUNDINGS * problem.rung.unit_roundoff * size
+    for row, (asked, got) in enumerate(zip(clock.instants, times, strict=True)):
+        if not abs(Fraction(got) - asked) <= allowed:
+            raise Misanswer(
+                f"expected t = {double_text(asked)} (within {_TIME_ROUNDINGS} roundings of "
+                f"{problem.rung.name}), got {double_text(got)} @ t[{row}]"
+            )
+
+
+def _count(document: Mapping[str, Any], name: str) -> int:
+    count = document.get(name, 0)
+    if not isinstance(count, int) or isinstance(count, bool) or count < 0:
+        raise Misanswer(f"expected a whole number, got {count!s:.40} @ {name}")
+    return count
+
+
+def _durations(document: Mapping[str, Any]) -> tuple[float | None, float]:
+    """The program's own seconds, None where it states none, and those of compiling."""
+    seconds = _duration(document, "seconds")
+    compile_seconds = _duration(document, "compile_seconds")
+    if seconds is None and compile_seconds is not None:
+        raise Misanswer("expected seconds beside compile_seconds, got none @ seconds")
+    return seconds, compile_seconds or 0.0
+
+
+def _duration(document: Mapping[str, Any], name: str) -> float | None:
+    if name not in document:
+        return None
+    value = document[name]
+    is_number = isinstance(value, int | Decimal) and not isinstance(value, bool)
+    if not (is_number and 0 <= value <= _LONGEST):
+        got = json.dumps(value, default=str)
+        raise Misanswer(f"expected a number of seconds, not negative, got {got:.40} @ {name}")
+    return float(value)
+
+
+def _number(value: Any, as_double: bool, place: str) -> Fraction | float:
+    """A number of an answer, held exactly."""
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        raise NotFinite(f"{'null' if value is None else value} @ {place}")
+    if isinstance(value, str):
+        return _from_text(value.strip(), place)
+    if isinstance(value, bool) or not isinstance(value, int | Decimal):
+        raise Misanswer(f"expected a number, got {json.dumps(value, default=str):.40} @ {place}")
+    if as_double:
+        return _nearest_double(value, place)
+    return _exact(value, place)
+
+
+def _nearest_double(value: int | Decimal, place: str) -> float:
+    try:
+        double = float(value)
+    except OverflowError:
+        double = math.inf
+    if not math.isfinite(double):
+        raise NotFinite(f"beyond the range of doubles @ {place}")
+    return double
+
+
+def _from_text(text: str, place: str) -> Fraction:
+    if _NOT_FINITE.fullmatch(text):
+        raise NotFinite(f"{text} @ {place}")
+    if match := _HEXADECIMAL.fullmatch(text):
+        sign, whole, part, exponent = match[1], match[2], match[3], int(match[4] or 0)
+        if (whole or part) and abs(exponent) <= _LARGEST_BINARY_EXPONENT:
+            size = int(whole + part, 16) * power_of_two(exponent - 4 * len(part))
+            return -size if sign == "-" else size
+    return _exact(text, place)
+
+
+def _exact(value: object, place: str) -> Fraction:
+    try:
+        return exact_number(value)
+    except ValueError as error:
+        raise Misanswer(f"expected {error}, got {value!s:.40} @ {place}") from None

@@ -1,0 +1,1 @@
+"""What is published, one folder each: measure, document, page, picture."""

@@ -1,0 +1,170 @@
+"""The front page of a report: what it is, its headline numbers, how to read them, what else is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from statistics import median
+
+from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY, counts
+from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
+from taylor_verify.records.runs import Run, gravest, runs
+from taylor_verify.records.store import versions
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.contents import Page
+
+_WHAT = (
+    "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
+    "fluid? Each *scene* is one such motion, given in exact numbers. The Taylor integrator of "
+    "[heyoka](https://bluescarni.github.io/heyoka.py/) computes it in several number formats, the "
+    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, "
+    "known to more digits than the rung has. What is left is the error of the computation and of "
+    "nothing else: the exact motion starts from the very numbers that the integrator was given."
+)
+_READING = (
+    "*u* is the unit roundoff of the rung, what a single rounding may leave of a number near one. "
+    "An error of 100 u costs the last two decimal digits.",
+    "*Attainable* is the error that would remain if each step were rounded perfectly: such roundings "
+    "add up like a random walk, and the motion itself magnifies them. *Error over attainable* near "
+    "1 says that the solver does all that its arithmetic allows.",
+    f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. Only "
+    "**pass** is good: the [other verdicts](tables/README.md#how-to-read-a-cell) each have a meaning.",
+    "A conserved energy or momentum certifies no motion: a wrong solution may conserve both.",
+)
+_CONTENTS = (
+    ("[tables](tables/README.md)", "every number, and how a cell is read"),
+    ("[tables/accuracy.md](tables/accuracy.md)", "the error of each scene on each rung"),
+    (
+        "[tables/attainable.md](tables/attainable.md)",
+        "what was attainable, beside what was reached",
+    ),
+    ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
+    ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),
+    ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),
+    ("[data/timings.json](data/timings.json)", "seconds and machine, which may differ each time"),
+    ("`data/records`", "of each run the equations and every sample's error (not committed)"),
+)
+
+
+def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
+    """The page of a report, with links to what else there is."""
+    found = runs(verdicts)
+    contents = [*_CONTENTS, *(page.row() for page in others)]
+    blocks = [
+        f"{MADE_BY}\n# How accurate it is",
+        _WHAT,
+        "## In short",
+        _in_short(found, verdicts),
+        counts(verdicts),
+        _by_rung(found),
+        "## How to read it",
+        bullets(_READING),
+        "## The error of every scene",
+        "The largest error of the main quantity, relative to its size: the angular velocity "
+        "(`euler`) or the impulse (`kirchhoff`). A word stands where a run has another verdict than "
+        "pass in any of its quantities.",
+        _by_scene(found),
+        "## What else is here",
+        table([Column("file"), Column("what it has")], contents),
+        _remake(verdicts),
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
+    scenes = {run.scene for run in found}
+    scored = [verdict for verdict in verdicts if verdict.is_compared]
+    kept = sum(verdict.max == 0 for run in found for verdict in run.conserved.values())
+    text = (
+        f"{bold(str(len(scenes)))} scenes, {bold(str(len(found)))} runs, "
+        f"{bold(str(len(verdicts)))} verdicts."
+    )
+    finite = [verdict.ratio for verdict in scored if verdict.ratio is not None]
+    if finite:
+        text += (
+            f" Half of the errors are below {bold(figure(median(finite)))} of what is attainable; "
+            f"{kept} conserved quantities are kept exactly."
+        )
+    return text
+
+
+def _by_rung(found: Sequence[Run]) -> str:
+    """A line a rung: its roundoff, the median and the worst state error, the worst over attainable."""
+    headings = ("u", "runs", "all pass", "median error, u", "largest error, u", "over attainable")
+    columns = [Column("rung"), *(Column(heading, True) for heading in headings), Column("where")]
+    rungs = sorted({run.rung for run in found}, key=place_of_rung)
+    return table(columns, [_rung_row([r for r in found if r.rung == rung]) for rung in rungs])
+
+
+def _rung_row(of_rung: Sequence[Run]) -> list[str]:
+    states = [verdict for run in of_rung for verdict in run.state if verdict.is_compared]
+    sizes = [in_roundoffs(verdict, verdict.max) for verdict in states]
+    finite = [size for size in sizes if size is not None]
+    worst = max(states, key=_ratio, default=None)
+    passed = sum(all(v.verdict.value == "pass" for v in run.verdicts) for run in of_rung)
+    lost = len(finite) < len(sizes)
+    return [
+        of_rung[0].rung,
+        figure(next((verdict.roundoff for verdict in states), None)),
+        str(len(of_rung)),
+        str(passed) if passed == len(of_rung) else bold(str(passed)),
+        figure(median(finite)) if finite else NOTHING,
+        bold("no number") if lost else figure(max(finite, default=None)),
+        ratio(worst) if worst else NOTHING,
+        f"{code(worst.quantity)} of {code(worst.scene)}" if worst else NOTHING,
+    ]
+
+
+def _ratio(verdict: Verdict) -> float:
+    """None at all stands above every number."""
+    return float("inf") if verdict.ratio is None else verdict.ratio
+
+
+def _by_scene(found: Sequence[Run]) -> str:
+    """A line a scene and solver, a column a rung, the main quantity's largest error in the cell."""
+    rungs = sorted({run.rung for run in found}, key=place_of_rung)
+    solvers = {(run.solver, run.setting) for run in found}
+    lines: dict[tuple[str, str, str], dict[str, Run]] = {}
+    for run in found:
+        lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
+    columns = [Column("scene"), *([Column("solver")] if len(solvers) > 1 else [])]
+    rows = [
+        [
+            code(scene),
+            *([prose(f"{solver} {setting}".strip())] if len(solvers) > 1 else []),
+            *(_cell(by_rung.get(rung)) for rung in rungs),
+        ]
+        for (scene, solver, setting), by_rung in lines.items()
+    ]
+    return table([*columns, *(Column(rung, True) for rung in rungs)], rows)
+
+
+def _cell(run: Run | None) -> str:
+    if run is None:
+        return NOTHING
+    status = gravest(run.verdicts)
+    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
+    if main is None or main.max is None:
+        return judged(status)
+    return error(main) if status.value == "pass" else f"{error(main)} {judged(status)}"
+
+
+def _remake(verdicts: Iterable[Verdict]) -> str:
+    packages = (f"{package} {version}" for package, version in versions(verdicts).items())
+    return "\n\n".join(
+        [
+            "## To remake this",
+            "`make verify` runs the standard set and writes a copy of this folder to "
+            "`reports/local/`; `make reports` rewrites the committed one. `make check-reports` runs "
+            "part of it anew and fails if a number has left its *rounding class*: processors fuse "
+            "and order operations in their own ways, so the roundings differ, and with them the "
+            "digits of an error, but neither its verdict nor its size. "
+            "`verify/taylor_verify/judge/rounding_class.py` says what that means in numbers, and why.",
+            "What is *not committed* is large and made from the rest: records, portraits of the "
+            "scenes, `gates`, PDF, LaTeX, HTML, and the JSON of `reference`. `taylor-verify publish "
+            "--missing` makes the data of these in minutes, `taylor-verify publish --paper` the "
+            "renderings, and `make release-data` packs all into one archive.",
+            f"Made with {', '.join(packages) or 'unknown versions'}.",
+        ]
+    )

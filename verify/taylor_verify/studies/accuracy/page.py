@@ -1,0 +1,261 @@
+"""The published tables as Markdown, from verdicts alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from taylor_verify.publish.cells import (
+    NOTHING,
+    error,
+    figure,
+    in_roundoffs,
+    instant,
+    judged,
+    peak,
+    ratio,
+    reason,
+)
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
+from taylor_verify.records.runs import (
+    Run,
+    conserved_quantities,
+    gravest,
+    quantities_of_scene,
+    runs,
+)
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.contents import Page
+
+_MEANINGS = {
+    Status.PASS: "the error of every sample is within its bound",
+    Status.FAIL: "an error exceeds its bound or is no number, or the solver did not finish",
+    Status.UNDECIDED: "the exact solution is not known sharply enough to judge by",
+    Status.VACUOUS: "rounding alone may carry the answer as far as the motion is large: "
+    "the bound forbids nothing",
+    Status.REFUSED: "the numbers of this rung cannot hold the scene",
+    Status.UNAVAILABLE: "this machine does not have the rung",
+}
+_RATIO = (
+    "*Over attainable* is the largest ratio, over all samples, of the error to what perfect "
+    "rounding of every step would leave on this orbit"
+)
+_CONTENTS = (
+    ("[State errors](accuracy.md)", "[csv](accuracy.csv)", "the error of what each scene tracks"),
+    (
+        "[Attainable and reached](attainable.md)",
+        "[csv](attainable.csv)",
+        "the same beside what perfect rounding would leave, a column a rung",
+    ),
+    ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
+    (
+        "Gates",
+        "`gates.csv`",
+        "every verdict, its bound and why that bound: `gates.md`, not committed",
+    ),
+)
+_RENDERED = (
+    "`taylor-verify publish --paper` renders these pages, and the ledger of claims, from their Markdown "
+    "and from nothing else: each as NAME.tex, which pdflatex compiles as it is (three times, for the "
+    "columns to stand right), and as NAME.html, which is one file without a script; all of them "
+    "together as paper.tex. They are not committed, nor are `gates.md` and `gates.csv`: `taylor-verify "
+    "publish --missing` makes the tables of the gates. The gates are left to their CSV: a line for every "
+    "verdict with its reason is for searching and not for reading."
+)
+_RUN = (Column("scene"), Column("rung"))
+
+
+def accuracy(verdicts: Sequence[Verdict]) -> str:
+    """The error of every state quantity of every run."""
+    found = runs(verdicts)
+    shown = [verdict for run in found for verdict in run.state]
+    units = {verdict.quantity: verdict.unit for verdict in shown if verdict.unit}
+    legend = [
+        "*max* and *mean* are over all samples, *at t* is the time of the maximum.",
+        *(f"{code(quantity)} is in {prose(unit)}." for quantity, unit in units.items()),
+        roundoffs(shown),
+        f"{_RATIO}. It decides the verdict; *bound* is the bound at the time of the maximum, and "
+        "`gates.md` has the reason of each.",
+    ]
+    return page(
+        "State errors",
+        verdicts,
+        "Every scene was integrated on every rung and compared, at every sample, with the exact "
+        "solution of the same rounded data: what is left is the error of the solver.",
+        counts(shown),
+        bullets(legend),
+        sections(found, _accuracy_section),
+    )
+
+
+def _accuracy_section(group: Sequence[Run]) -> str:
+    numbers = ("max", "mean", "at t", "max, u", "mean, u", "over attainable", "bound", "steps")
+    columns = [*_RUN, Column("quantity"), *(Column(name, True) for name in numbers)]
+    rows = [_accuracy_row(verdict) for run in group for verdict in run.state]
+    return "\n\n".join(
+        part for part in (table([*columns, Column("verdict")], rows), unscored(group)) if part
+    )
+
+
+def _accuracy_row(verdict: Verdict) -> list[str]:
+    return [
+        code(verdict.scene),
+        verdict.rung,
+        code(verdict.quantity),
+        prose(error(verdict)),
+        figure(verdict.mean),
+        instant(verdict.at),
+        figure(in_roundoffs(verdict, verdict.max)),
+        figure(in_roundoffs(verdict, verdict.mean)),
+        ratio(verdict),
+        figure(verdict.bound),
+        str(verdict.steps or NOTHING),
+        judged(verdict.verdict),
+    ]
+
+
+def conserved(verdicts: Sequence[Verdict]) -> str:
+    """The drift of every conserved quantity, a run a line."""
+    found = runs(verdicts)
+    shown = [verdict for run in found for verdict in run.drifts]
+    legend = [
+        "A cell is *max, mean @ t of the max*, in u, each quantity relative to a scale of its own "
+        f"that does not vanish. A single 0 is a quantity kept exactly; {NOTHING} is one that the "
+        "scene does not have.",
+        roundoffs(shown),
+        f"{_RATIO}; the worst quantity of the line is named.",
+        "Under loads these quantities change. Their cell is then what the work and the impulse of "
+        "the loads leave unexplained.",
+        "A small drift certifies no state: [state errors](accuracy.md) do.",
+    ]
+    return page(
+        "Conserved quantities",
+        verdicts,
+        "How far each run departed from what the exact motion conserves.",
+        counts(shown),
+        bullets(legend),
+        sections(found, _conserved_section),
+    )
+
+
+def _conserved_section(group: Sequence[Run]) -> str:
+    quantities = conserved_quantities(group)
+    cells = [Column(code(name), True) for name in quantities]
+    columns = [*_RUN, *cells, Column("over attainable", True), Column("verdict")]
+    return table(columns, [_conserved_row(run, group, quantities) for run in group])
+
+
+def _conserved_row(run: Run, group: Sequence[Run], quantities: Iterable[str]) -> list[str]:
+    of_scene = quantities_of_scene(run, group)
+    cells = [_drift(run, name, name in of_scene) for name in quantities]
+    verdict = judged(gravest(run.drifts)) if run.drifts else NOTHING
+    return [code(run.scene), run.rung, *cells, _worst_ratio(run.drifts), verdict]
+
+
+def _drift(run: Run, quantity: str, of_scene: bool) -> str:
+    if quantity not in run.conserved:
+        unscored = of_scene and not run.is_scored
+        return judged(gravest(run.verdicts)) if unscored else NOTHING
+    verdict = run.conserved[quantity]
+    text = prose(peak(verdict))
+    if verdict.verdict is Status.PASS:
+        return text
+    return bold(text if verdict.max is None else f"{text} {verdict.verdict.value}")
+
+
+def _worst_ratio(verdicts: Sequence[Verdict]) -> str:
+    """The largest with its quantity; none at all stands above every number."""
+    scored = [verdict for verdict in verdicts if verdict.is_compared]
+    if not scored:
+        return NOTHING
+    worst = max(scored, key=lambda v: math.inf if v.ratio is None else v.ratio)
+    return f"{ratio(worst)} ({code(worst.quantity)})"
+
+
+def gates(verdicts: Sequence[Verdict]) -> str:
+    """Every verdict with its bound and its reason."""
+    legend = [
+        "*max*, *bound* and *attainable* are those of the time *at t* of the largest error.",
+        f"{_RATIO}; a gate asks every sample.",
+        roundoffs(verdicts),
+    ]
+    return page(
+        "Gates",
+        verdicts,
+        "Every quantity that was compared, the bound it was held against, and why that bound.",
+        counts(verdicts),
+        bullets(legend),
+        sections(runs(verdicts), _gates_section),
+    )
+
+
+def _gates_section(group: Sequence[Run]) -> str:
+    numbers = ("max", "at t", "bound", "attainable", "over attainable")
+    columns = [*_RUN, Column("quantity"), *(Column(name, True) for name in numbers)]
+    rows = [_gate_row(verdict) for run in group for verdict in run.verdicts]
+    return table([*columns, Column("verdict"), Column("because")], rows)
+
+
+def _gate_row(verdict: Verdict) -> list[str]:
+    return [
+        code(verdict.scene),
+        verdict.rung,
+        code(verdict.quantity),
+        prose(error(verdict)),
+        instant(verdict.at),
+        figure(verdict.bound),
+        figure(verdict.attainable),
+        ratio(verdict),
+        judged(verdict.verdict),
+        prose(reason(verdict)),
+    ]
+
+
+def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
+    """What the files are and how a cell is read; ``others`` are what else is there."""
+    how = [
+        "A number has three significant digits; the CSV has them all. A time has its own digits.",
+        "Where there is no number stands a word: the verdict, or how a failed run ended. "
+        f"{NOTHING} is a cell that has nothing to say.",
+        "An error is absolute or relative as its unit says, and also given in u, the unit roundoff "
+        "2^-p of a rung of p bits: 1 u is what one rounding may leave.",
+        f"{_RATIO}. Near 1 a solver does all that its arithmetic allows.",
+        "In the CSV the word stands in the column of the maximum, and a cell with nothing to say "
+        "is empty; `max_u` and `mean_u` are in u.",
+    ]
+    meanings = [[judged(status), text] for status, text in _MEANINGS.items()]
+    return page(
+        "Tables",
+        verdicts,
+        table([Column("table"), Column("every digit"), Column("what it has")], _CONTENTS),
+        _besides(others),
+        counts(verdicts),
+        "## How to read a cell",
+        bullets(how),
+        table([Column("verdict"), Column("meaning")], meanings),
+        "## In LaTeX and HTML",
+        _RENDERED,
+        "## Scenes",
+        table([Column("scene"), Column("rungs"), Column("SHA-256")], _scenes(verdicts)),
+    )
+
+
+def _besides(others: Iterable[Page]) -> str:
+    rows = [other.row_with_sheet() for other in others]
+    columns = [Column("besides"), Column("every digit"), Column("what it has")]
+    return table(columns, rows) if rows else ""
+
+
+def _scenes(verdicts: Sequence[Verdict]) -> list[list[str]]:
+    """Every scene with its rungs and the digest of its text."""
+    rungs: dict[str, list[str]] = {}
+    digests: dict[str, str] = {}
+    for run in runs(verdicts):
+        rungs.setdefault(run.scene, []).append(run.rung)
+        digests[run.scene] = str(run.verdicts[0].provenance.get("scene", ""))
+    return [
+        [code(scene), ", ".join(dict.fromkeys(names)), code(digests[scene]) or NOTHING]
+        for scene, names in rungs.items()
+    ]

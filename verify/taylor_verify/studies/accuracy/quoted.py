@@ -1,0 +1,85 @@
+"""Published numbers that the project's own pages quote, between marks, made again with the report.
+
+A page beside the folder `reports` quotes a block by having its marks; a page without marks is nobody's
+but its author's, and other folders are nobody's source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.cells import in_roundoffs
+from taylor_verify.publish.markdown import Column, code, table
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies.controls import page as controls
+from taylor_verify.studies.controls import stored as sights
+
+BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
+END: Final = "<!-- end of accuracy -->"
+
+_FOLDER: Final = "reports"
+_PAGES: Final = ("README.md", "docs/results.md")
+# One of each kind of body and of each quantity that a state has.
+_SHOWN: Final = (
+    *(("euler/generic", "omega"), ("euler/full-tensor", "omega")),
+    *(("euler/tennis-racket", "omega"), ("euler/nesc-brick", "omega")),
+    *(("euler/nesc-brick", "attitude"), ("kirchhoff/screw", "impulse")),
+    *(("kirchhoff/general-body", "impulse"), ("kirchhoff/remus-100", "impulse")),
+    *(("kirchhoff/whole-motion", "impulse"), ("kirchhoff/whole-motion", "attitude")),
+    ("kirchhoff/whole-motion", "centre"),
+)
+
+
+def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
+    """The pages beside ``folder`` that quote it, by their paths from there, with today's blocks.
+
+    Raises ValueError for a page with the first mark of a block and not the second.
+    """
+    place = folder.resolve()
+    if place.name != _FOLDER:
+        return {}
+    blocks: dict[tuple[str, str], Callable[[], str]] = {
+        (BEGIN, END): lambda: accuracy(verdicts),
+    }
+    if (folder / sights.CONTROLS).exists():
+        blocks[controls.BEGIN, controls.END] = lambda: controls.short(sights.load(folder))
+    pages = {name: place.parent / name for name in _PAGES}
+    texts = {n: page.read_text(encoding="utf-8") for n, page in pages.items() if page.is_file()}
+    return {
+        name: _with_blocks(text, blocks)
+        for name, text in texts.items()
+        if any(begin in text for begin, _ in blocks)
+    }
+
+
+def accuracy(verdicts: Iterable[Verdict]) -> str:
+    """Largest errors of chosen scenes by rung, in u and over what is attainable, between the marks."""
+    found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
+    rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
+    columns = [Column("scene"), Column("what is compared"), *(Column(r, True) for r in rungs)]
+    rows = [
+        [code(scene), quantity, *(_cell(found.get((scene, quantity, rung))) for rung in rungs)]
+        for scene, quantity in _SHOWN
+    ]
+    return "\n\n".join([BEGIN, table(columns, rows), END])
+
+
+def _cell(verdict: Verdict | None) -> str:
+    error = in_roundoffs(verdict, verdict.max) if verdict else None
+    if verdict is None or error is None or verdict.ratio is None:
+        return "no number"
+    return f"{error:.3g} u ({verdict.ratio:.2g})"
+
+
+def _with_blocks(text: str, blocks: Mapping[tuple[str, str], Callable[[], str]]) -> str:
+    for (begin, end), block in blocks.items():
+        if begin in text:
+            before, _, rest = text.partition(begin)
+            _, _, after = rest.partition(end)
+            if end not in rest:
+                raise ValueError(f"expected {end} after {begin}, got a page without it")
+            text = before + block() + after
+    return text

@@ -1,0 +1,1 @@
+"""The ledger of both source texts as a page."""

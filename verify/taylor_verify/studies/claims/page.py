@@ -1,0 +1,222 @@
+"""The page of the ledger: first what a reader of the two texts must correct, then every entry.
+
+It is made from the rows of `claims --json` alone, and holds nothing that another machine would change: what
+made the rows stands beside them, in data/claims.json.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.claims.document import ClaimRow, ClaimsStudy, Verdict
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.records import store
+from taylor_verify.records.json_text import read
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies import measured
+
+PAGE: Final = "claims.md"
+SHEET: Final = "tables/claims.csv"
+CLAIMS: Final = f"{store.FOLDER}/claims.json"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --claims; do not edit"}
+
+_INTRODUCTION: Final = (
+    "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
+    "each with a check that can fail: a page of Heinbockel's *Introduction to Tensor Calculus* (Euler's "
+    "equations, page 210) and sections 48 and 49 of the *Encyclopædia Britannica*'s Hydromechanics "
+    "(Kirchhoff's equations). Both were read as transcribed; the printed pages were not seen, so that a "
+    "fault may be the print's or the transcription's."
+)
+_HOW: Final = (
+    "An identity is expanded in exact rationals, with the equations of motion put in: it leaves zero or "
+    "it does not. What is claimed of orbits is held to trajectories of 30 to 60 digits, enclosed "
+    "by Taylor series that share no closed form with the texts. Every entry also has mutations, the "
+    "statement with a sign, a factor or an index changed, that its check rejects."
+)
+_REMAKE: Final = (
+    "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "
+    '`taylor-verify claims "hydromechanics 49 (17)"` shows one in full, and `--json` the same as data. '
+    f"`taylor-verify publish --claims` rewrites this page, its [CSV]({SHEET}) and [claims.json]({CLAIMS}), "
+    "which also names the versions, the processor and the command."
+)
+
+
+def page(study: ClaimsStudy) -> str:
+    """Return the whole page."""
+    rows = study.claims
+    blocks = [
+        f"{MADE_BY}\n# What the two texts claim",
+        _INTRODUCTION,
+        _counts(rows),
+        "## Errata",
+        _errata(rows),
+        "## True on a condition",
+        _on_condition(rows),
+        "## Neither true nor false",
+        _neither(rows),
+        "## Restored",
+        _restored(rows),
+        "## The ledger",
+        _HOW,
+        *_ledger(rows),
+        "## Cited, but not on the page",
+        bullets(f"{code(number)}: {prose(what)}" for number, what in study.cited.items()),
+        "## To remake this",
+        _REMAKE,
+    ]
+    return "\n\n".join(blocks) + "\n"
+
+
+def write(folder: Path, study: ClaimsStudy) -> list[Path]:
+    """Store the ledger below ``folder``, with its page and sheet. Raises OSError."""
+    stored = store.laid_out({**_MADE_BY, **study.document()})
+    return list(replace_files(folder, {CLAIMS: stored, **_pages(study)}))
+
+
+def load(folder: Path) -> ClaimsStudy:
+    """Return the ledger that is stored below ``folder``.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+    """
+    return read(folder / CLAIMS, ClaimsStudy)
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError and ValueError as `load` does.
+    """
+    return _pages(load(folder)) if (folder / CLAIMS).exists() else {}
+
+
+def _pages(study: ClaimsStudy) -> dict[str, str]:
+    return {PAGE: page(study), SHEET: measured.claims(study)}
+
+
+def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
+    return [row for row in rows if row.verdict in verdicts]
+
+
+def _counts(rows: Sequence[ClaimRow]) -> str:
+    verdicts = [row.verdict.value for row in rows]
+    found = list(dict.fromkeys(verdicts))
+    columns = [Column(verdict, to_right=True) for verdict in found]
+    return table(columns, [[str(verdicts.count(verdict)) for verdict in found]])
+
+
+def _errata(rows: Sequence[ClaimRow]) -> str:
+    """For each false entry: as transcribed, correct, and where the first form fails."""
+    return "\n\n".join(
+        _entry(
+            row,
+            [
+                f"as transcribed: {_math(row.statement)}",
+                f"correct: {_math(row.correction)}",
+                f"counterexample: {prose(row.counterexample or '')}",
+                f"residual as transcribed {_short(row.residual.transcribed)}, corrected "
+                f"{_residual(row)}",
+                prose(row.remark or ""),
+            ],
+        )
+        for row in _of(rows, Verdict.FALSE)
+    )
+
+
+def _on_condition(rows: Sequence[ClaimRow]) -> str:
+    return "\n\n".join(
+        _entry(
+            row,
+            [
+                _math(row.statement),
+                f"only if {prose(row.condition or '')}",
+                f"correct: {_math(row.correction)}" if row.correction else "",
+                f"else, for one: {prose(row.counterexample)}" if row.counterexample else "",
+                prose(row.remark or ""),
+            ],
+        )
+        for row in _of(rows, Verdict.ONLY_IF)
+    )
+
+
+def _neither(rows: Sequence[ClaimRow]) -> str:
+    return "\n\n".join(
+        _entry(
+            row,
+            [
+                _math(row.statement),
+                f"{bold(row.verdict.value)}: {prose(row.open or row.void or '')}",
+                f"what is true: {_math(row.correction)}" if row.correction else "",
+                f"checked: {prose(row.method)}",
+            ],
+        )
+        for row in _of(rows, Verdict.UNDECIDED, Verdict.VACUOUS)
+    )
+
+
+def _restored(rows: Sequence[ClaimRow]) -> str:
+    """What the scan lost, where the equation is true once that is put back."""
+    lost = [[code(row.id), prose(row.lost or "")] for row in _of(rows, Verdict.RESTORED)]
+    return table([Column("equation"), Column("what the scan lost")], lost)
+
+
+def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
+    return "\n".join([f"{bold(code(row.id))}\n", bullets(line for line in lines if line)])
+
+
+def _ledger(rows: Sequence[ClaimRow]) -> list[str]:
+    """One table of verdicts for each text, and below it the statements with domain and check."""
+    blocks: list[str] = []
+    columns = [
+        Column(heading) for heading in ("claim", "verdict", "residual", "mutations rejected")
+    ]
+    for text in dict.fromkeys(_text_of(row) for row in rows):
+        own = [row for row in rows if _text_of(row) == text]
+        cells = [
+            [
+                code(row.id),
+                row.verdict.value,
+                _residual(row),
+                prose("; ".join(row.mutations)),
+            ]
+            for row in own
+        ]
+        blocks += [
+            f"### {text}",
+            table(columns, cells),
+            "\n\n".join(_statement(row) for row in own),
+        ]
+    return blocks
+
+
+def _text_of(row: ClaimRow) -> str:
+    author, number, *_ = row.id.split()
+    return "Heinbockel" if author == "heinbockel" else f"Hydromechanics {number}"
+
+
+def _statement(row: ClaimRow) -> str:
+    lines = [
+        _math(row.statement),
+        f"domain: {prose(row.domain)}",
+        f"checked by: {prose(row.method)}",
+        f"remark: {prose(row.remark)}" if row.remark else "",
+    ]
+    return _entry(row, lines)
+
+
+def _math(latex: str | None) -> str:
+    """Mathematics as GitHub renders it inside a line, safe from Markdown's own signs."""
+    return f"$`{latex}`$" if latex else ""
+
+
+def _residual(row: ClaimRow) -> str:
+    """Zero where the check is exact; else the bound that holds, which no machine's rounding moves."""
+    return "0, exactly" if row.bound == 0 else f"within {_short(row.bound)}"
+
+
+def _short(size: float | None) -> str:
+    return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"

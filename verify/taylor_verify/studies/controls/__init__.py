@@ -1,0 +1,1 @@
+"""The gates beside solvers that were broken on purpose."""

@@ -1,0 +1,79 @@
+"""Runs of every defect and of its sound twin, as the study that the published table is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from taylor_verify.controls.defect import Defect
+from taylor_verify.controls.defects import DEFECTS
+from taylor_verify.judge.provenance import machine, packages
+from taylor_verify.records.quantities import GATE_FACTOR
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.run import run
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Sight
+
+RUNG: Final = "f64"
+
+
+Verdicts = dict[str, Verdict]
+Twins = dict[tuple[str, str, str], Verdicts]
+
+
+def sights(
+    defects: Iterable[Defect] = DEFECTS,
+    finished: Callable[[str], None] | None = None,
+    twins: Twins | None = None,
+) -> list[Sight]:
+    """Run every defect and, once for all that share it, every sound twin.
+
+    ``finished`` is called with the name of each defect as it ends. ``twins`` has the verdicts of those
+    that have run before, by scene, solver and setting, and is added to.
+    """
+    twins = {} if twins is None else twins
+    seen = []
+    for defect in defects:
+        key = (defect.scene, defect.twin.name, defect.twin.setting)
+        if key not in twins:
+            twins[key] = _verdicts(defect.scene, defect.twin)
+        verdicts = _verdicts(defect.scene, defect)
+        seen.append(Sight(_row(defect), verdicts, twins[key], GATE_FACTOR))
+        if finished is not None:
+            finished(defect.name)
+    return seen
+
+
+def study(seen: Iterable[Sight]) -> ControlsStudy:
+    """Return the rows that the published table is made from: each defect, each verdict once."""
+    rows = list(seen)
+    verdicts = {
+        (v.scene, v.solver, v.setting, v.quantity): v
+        for sight in rows
+        for v in (*sight.sound.values(), *sight.verdicts.values())
+    }
+    return ControlsStudy(
+        versions=packages(),
+        machine=machine(),
+        factor=GATE_FACTOR,
+        defects=tuple(sight.defect for sight in rows),
+        verdicts=tuple(verdicts.values()),
+    )
+
+
+def _row(defect: Defect) -> DefectRow:
+    return DefectRow(
+        name=defect.name,
+        setting=defect.setting,
+        scene=defect.scene,
+        gate=defect.gate,
+        what=defect.what,
+        why=defect.why,
+        told=defect.told,
+        twin=defect.twin.name,
+        twin_setting=defect.twin.setting,
+    )
+
+
+def _verdicts(scene: str, solver: Solver) -> Verdicts:
+    return {verdict.quantity: verdict for verdict in run(scene, solver, RUNG).verdicts}

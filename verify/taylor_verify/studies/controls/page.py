@@ -1,0 +1,281 @@
+"""The table of what each gate sees, and the sentences that it proves, from stored rows alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, Final
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.records.json_text import plain
+from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
+from taylor_verify.records.status import Status
+from taylor_verify.studies.accuracy import sheet as sheets
+from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Sight
+from taylor_verify.studies.controls.proof import (
+    MAIN,
+    constant_shift,
+    or_infinite,
+    proven,
+    times_bound,
+    title,
+)
+from taylor_verify.studies.controls.stored import CONTROLS
+
+# Where the short table stands in a page that is otherwise written by hand.
+BEGIN: Final = "<!-- controls: made by taylor-verify publish --controls; do not edit -->"
+END: Final = "<!-- end of controls -->"
+
+_NOT_SEEN: Final = NOTHING
+# A heading and the quantities under it: of a body, one of them at most.
+_COLUMNS: Final = (
+    ("start", (INITIAL,)),
+    ("state", MAIN),
+    ("attitude", ("attitude",)),
+    ("centre", ("centre",)),
+    ("T", ("T",)),
+    ("H²", ("H2",)),
+    ("F²", ("F2",)),
+    ("F·G", ("FG",)),
+    ("y3", ("y3",)),
+    ("momentum in space", ("H_space",)),
+    ("impulse in space", ("x_space",)),
+    ("moment in space", ("y_space",)),
+)
+_MODELS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
+
+_WHAT: Final = (
+    "A suite that has never failed anything has shown nothing. So these solvers were broken on "
+    "purpose, one thing in each, and judged like any other. Which of the usual checks would have "
+    "noticed?"
+)
+_HOW: Final = (
+    f"A {bold('bold')} number is a gate that *sees* the defect: the largest error over the bound of "
+    f"that gate. {_NOT_SEEN} is a gate that does not: the defect passes. A gate sees no defect where "
+    "its sound twin fails too.",
+    "*start* is the first sample alone, which every solver was given. "
+    "*state* is omega, or the impulse, in body axes, and with *attitude* and *centre* it is what a "
+    "comparison with the exact motion asks. All columns after these are conserved quantities: T the "
+    "energy; H² and F² the squares of momentum and impulse, F·G and y3 the other two in body axes; "
+    "then the vectors in space.",
+    "*time shift* is filled where a constant shift of time explains most of the error of the state: "
+    "the shift, in the scene's unit, positive for an answer that is late. *outcome* is what the "
+    "solver says of itself.",
+    "Defects that fewer conserved quantities see come first.",
+)
+
+
+def page(study: ControlsStudy) -> str:
+    """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
+    sights = study.sights
+    blocks = [
+        f"{MADE_BY}\n# What each gate sees",
+        _WHAT,
+        "## What it proves",
+        bullets(proven(sights)),
+        "## How to read the tables",
+        bullets(_HOW),
+        *(_section(sights, quantity, heading) for quantity, heading in _MODELS.items()),
+        "## What each gate sees and misses",
+        _by_gate(sights),
+        "## The defects, and why",
+        _in_words(sights),
+        "## The sound twins",
+        "Each defect stands beside a sound solver that differs from it by the defect alone, the "
+        "step included: what fails here is not a step that is too long.",
+        _twins(sights),
+        "## To remake this",
+        f"`taylor-verify publish --controls` runs every defect and its twin, and writes "
+        f"[controls.json](../{CONTROLS}); this page, its [CSV](controls.csv) and the table in the "
+        f"README of the project are made from that alone. "
+        f"{traced({'versions': study.versions, **plain(study.machine)})}",
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+# The tables.
+
+
+def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
+    found = [sight for sight in sights if quantity in sight.quantities]
+    if not found:
+        return ""
+    shown = [
+        (name_of, names)
+        for name_of, names in _COLUMNS
+        if any(name in sight.quantities for sight in found for name in names)
+    ]
+    columns = [
+        Column("defect"),
+        *(Column(name, True) for name, _ in shown),
+        Column("time shift", True),
+        Column("outcome"),
+    ]
+    rows = [
+        [
+            title(sight),
+            *(_cell(sight, names) for _, names in shown),
+            _shift_cell(sight),
+            _NOT_SEEN if sight.is_finished else bold("stopped"),
+        ]
+        for sight in _blindest_first(found)
+    ]
+    return f"## {heading}\n\n{table(columns, rows)}"
+
+
+def _cell(sight: Sight, names: Iterable[str]) -> str:
+    """Of the quantities, the one that the scene has; empty where it has none, or was not compared."""
+    here = [name for name in names if name in sight.quantities]
+    if not here or not sight.is_finished:
+        return ""
+    (name,) = here
+    if sight.is_seen_by(name):
+        return bold(times_bound(sight, name))
+    return _NOT_SEEN if sight.is_missed_by(name) else sight.verdicts[name].verdict.value
+
+
+def _shift_cell(sight: Sight) -> str:
+    shift = constant_shift(sight)
+    return _NOT_SEEN if shift is None else bold(figure(shift))
+
+
+def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
+    """Those that fewer conserved quantities see first; what was not compared last."""
+
+    def key(sight: Sight) -> tuple[bool, int, int]:
+        conserved = sum(name in sight.seen_by for name in sight.conserved)
+        return not sight.is_finished, conserved, -len(sight.seen_by)
+
+    return sorted(sights, key=key)
+
+
+def _by_gate(sights: Sequence[Sight]) -> str:
+    """For each gate how many defects it sees of those that it was asked about, and which it misses."""
+    rows = []
+    for heading, names in _COLUMNS:
+        for name in names:
+            asked = [s for s in sights if s.is_finished and name in s.quantities]
+            seen = [sight for sight in asked if sight.is_seen_by(name)]
+            missed = [title(sight) for sight in asked if not sight.is_seen_by(name)]
+            if asked:
+                heading_of = f"{heading} ({code(name)})"
+                count = f"{len(seen)} of {len(asked)}"
+                rows.append([heading_of, count, "; ".join(missed) or "none"])
+    finished = [sight for sight in sights if sight.is_finished]
+    stopped = len(sights) - len(finished)
+    rows.append(["outcome", f"{stopped} of {len(sights)}", "every defect that claims success"])
+    return table([Column("gate"), Column("sees", True), Column("misses")], rows)
+
+
+def _in_words(sights: Sequence[Sight]) -> str:
+    columns = [
+        Column("defect"),
+        Column("scene"),
+        Column("what is wrong"),
+        Column("why it shows so"),
+    ]
+    return table(columns, [[title(sight), *_words(sight.defect)] for sight in sights])
+
+
+def _words(defect: DefectRow) -> list[str]:
+    return [code(defect.scene), prose(defect.what), prose(defect.why)]
+
+
+def _twins(sights: Sequence[Sight]) -> str:
+    """Each twin once, with the gate that it comes closest to failing."""
+    columns = [
+        Column("sound solver"),
+        Column("scene"),
+        Column("passes", True),
+        Column("largest error over bound", True),
+    ]
+    rows = {}
+    for sight in sights:
+        judged = list(sight.sound.values())
+        passed = sum(verdict.verdict is Status.PASS for verdict in judged)
+        worst = max((v.ratio for v in judged if v.ratio is not None), default=math.inf)
+        twin, scene = sight.defect.sound_solver, sight.defect.scene
+        rows[twin, scene] = [
+            *(code(twin), code(scene)),
+            f"{passed} of {len(judged)}",
+            figure(worst / sight.factor),
+        ]
+    return table(columns, rows.values())
+
+
+# The short table.
+
+
+def short(study: ControlsStudy) -> str:
+    """Return some fifteen rows and four columns, between the marks BEGIN and END."""
+    shown = [s for s in _blindest_first(study.sights) if s.defect.told and s.is_finished]
+    columns = [
+        Column("what was broken"),
+        Column("energy", True),
+        Column("other conserved quantities", True),
+        Column("compared with the exact motion", True),
+    ]
+    rows = [
+        [
+            prose(sight.defect.what),
+            _summed(sight, lambda name: name == "T"),
+            _summed(sight, lambda name: name != "T" and is_conserved(name)),
+            _summed(sight, lambda name: name in STATES),
+        ]
+        for sight in shown
+    ]
+    legend = (
+        "A number is the largest error over its bound: that check sees the defect. *not seen* is a "
+        "check that passes it."
+    )
+    return "\n\n".join([BEGIN, table(columns, rows), legend, END])
+
+
+def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
+    """The largest over its bound among these quantities."""
+    names = [name for name in sight.quantities if wanted(name)]
+    seen = [name for name in names if sight.is_seen_by(name)]
+    if not seen:
+        return "not seen" if all(sight.is_missed_by(name) for name in names) else "undecided"
+    finite = {name: sight.over_bound(name) for name in seen}
+    worst = max(seen, key=lambda name: or_infinite(finite[name]))
+    return bold(times_bound(sight, worst))
+
+
+# The sheet.
+
+
+_FIELDS: Final = (
+    *("defect", "scene", "quantity", "seen", "error_over_bound", "max", "bound", "unit"),
+    *(
+        "verdict",
+        "outcome",
+        "time_shift",
+        "residual",
+        "shift",
+        "twin",
+        "twin_verdict",
+        "twin_ratio",
+    ),
+)
+
+
+def sheet(study: ControlsStudy) -> str:
+    """Return a row for every defect and gate, with every digit."""
+    return sheets.sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
+
+
+def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
+    for name, verdict in sight.verdicts.items():
+        # A sound quaternion is a unit one, and has no row that says so.
+        twin = sight.sound.get(name)
+        yield verdict.row() | {
+            "defect": sight.defect.name,
+            "seen": "yes" if sight.is_seen_by(name) else "no",
+            "error_over_bound": sight.over_bound(name),
+            "twin": sight.defect.sound_solver,
+            "twin_verdict": None if twin is None else twin.verdict.value,
+            "twin_ratio": None if twin is None else twin.ratio,
+        }

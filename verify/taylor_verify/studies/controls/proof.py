@@ -1,0 +1,190 @@
+"""What the rows of a controls run prove, in sentences: every name and number is counted from them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+from taylor_verify.publish.cells import INFINITE, figure
+from taylor_verify.publish.markdown import bold, code, prose
+from taylor_verify.records.status import Status
+from taylor_verify.studies.controls.document import Sight
+
+MAIN: Final = ("omega", "impulse")
+
+# A shift of time that leaves no more of the error than this is all of it, in words.
+_WHOLLY: Final = 0.01
+# Two draws of the same roundings differ by less than this factor.
+_ALIKE: Final = 2
+_SPELT: Final = {"nan": "NaN", "munk": "Munk"}
+
+
+def proven(sights: Sequence[Sight]) -> list[str]:
+    """Sentences, each true of these rows; one that is true of none is not said."""
+    finished = [sight for sight in sights if sight.is_finished]
+    told = [
+        _energy_alone(finished),
+        _conservation_together(finished),
+        _body_axes(finished),
+        _together(finished),
+        _shifted(finished),
+        _said(sights),
+        _all_caught(sights),
+    ]
+    return [sentence for sentence in told if sentence]
+
+
+def _energy_alone(sights: Sequence[Sight]) -> str:
+    blind = [sight for sight in sights if sight.is_missed_by("T")]
+    if not blind:
+        return ""
+    worse = [sight for sight in blind if not _keeps_energy_like_its_twin(sight)]
+    kept = f"All but {_names(worse)}" if worse else "All of them"
+    return (
+        f"{bold(f'{len(blind)} of {len(sights)} defects pass the gate of the energy')}: "
+        f"{_names(blind)}. {kept} conserve it to the last digit, as well as the sound solver beside "
+        "them."
+    )
+
+
+def _keeps_energy_like_its_twin(sight: Sight) -> bool:
+    drift, sound = sight.verdicts["T"].max, sight.sound["T"].max
+    return drift is not None and sound is not None and drift <= _ALIKE * sound
+
+
+def _conservation_together(sights: Sequence[Sight]) -> str:
+    blind = conserving(sights)
+    if not blind:
+        return "Every defect shows in some conserved quantity."
+    listed = [f"{title(sight)} ({_short(_worst_state(sight))})" for sight in blind]
+    return (
+        f"{bold(f'{len(blind)} pass every gate on a conserved quantity')} that their scene has, "
+        "vectors in space included where there are any, and are wrong all the same, by so many "
+        f"times what a gate of the state allows: {_listed(listed)}. "
+        f"{bold('No gate on conserved quantities certifies a state, nor do all of them together.')}"
+    )
+
+
+def conserving(sights: Iterable[Sight]) -> list[Sight]:
+    """The defects that every gate on a conserved quantity passes, and a gate of the state sees."""
+    return [
+        sight
+        for sight in sights
+        if all(sight.is_missed_by(name) for name in sight.conserved)
+        and any(sight.is_seen_by(name) for name in sight.state)
+    ]
+
+
+def _worst_state(sight: Sight) -> float:
+    found = [sight.over_bound(name) for name in sight.state if sight.is_seen_by(name)]
+    return max(or_infinite(over) for over in found)
+
+
+def _body_axes(sights: Sequence[Sight]) -> str:
+    blind = [sight for sight in sights if any(sight.is_missed_by(name) for name in MAIN)]
+    if not blind:
+        return ""
+    seeing = dict.fromkeys(name for sight in blind for name in sight.seen_by)
+    return (
+        f"{len(blind)} pass the gate of omega or of the impulse in body axes: {_names(blind)}. Only "
+        f"{_listed([code(name) for name in seeing])} see them."
+    )
+
+
+def _together(sights: Sequence[Sight]) -> str:
+    """What the gates of the state see together, and what those of the conserved quantities do."""
+    state = sum(any(sight.is_seen_by(name) for name in sight.state) for sight in sights)
+    conserved = sum(any(sight.is_seen_by(name) for name in sight.conserved) for sight in sights)
+    return (
+        f"Omega or impulse, attitude and centre together see {state} of {len(sights)}; all "
+        f"conserved quantities together see {conserved}."
+    )
+
+
+def _shifted(sights: Sequence[Sight]) -> str:
+    told = []
+    for sight in sights:
+        shift = constant_shift(sight)
+        if shift is None or not all(sight.is_missed_by(name) for name in sight.conserved):
+            continue
+        verdict = next(sight.verdicts[name] for name in MAIN if name in sight.verdicts)
+        if verdict.residual is None or not verdict.max:
+            continue
+        left = verdict.residual / verdict.max
+        if left <= _WHOLLY:
+            told.append(f"{title(sight)} ({figure(shift)}; {_short(left)} of the error is left)")
+    if not told:
+        return ""
+    return (
+        "What no conserved quantity can see, a comparison in time names: the error of "
+        f"{_listed(told)} is {'a' if len(told) == 1 else 'in each case a'} constant shift of time."
+    )
+
+
+def _said(sights: Sequence[Sight]) -> str:
+    stopped = [sight for sight in sights if not sight.is_finished]
+    number = len(sights) - len(stopped)
+    return (
+        f"{number} of {len(sights)} report success: a solver's own word is no gate."
+        if number
+        else ""
+    )
+
+
+def _all_caught(sights: Sequence[Sight]) -> str:
+    lost = [s for s in sights if s.is_finished and not s.seen_by]
+    unsound = [s for s in sights if any(v.verdict is not Status.PASS for v in s.sound.values())]
+    faulty = {sight.defect.sound_solver for sight in unsound}
+    if lost:
+        return f"{bold('Not seen by any gate')}: {_names(lost)}."
+    if faulty:
+        return f"{bold('A sound twin fails')}: {_listed(sorted(faulty))}."
+    return (
+        "Every defect is caught by at least one gate, and every sound twin passes all of its gates."
+    )
+
+
+def _names(sights: Iterable[Sight]) -> str:
+    return _listed([title(sight) for sight in sights])
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+# What is said of one defect.
+
+
+def title(sight: Sight) -> str:
+    """The name in words."""
+    return prose(" ".join(_SPELT.get(word, word) for word in sight.defect.name.split("-")))
+
+
+def times_bound(sight: Sight, quantity: str) -> str:
+    """The error over the bound in two digits; NaN, and infinity where the bound is zero."""
+    over = sight.over_bound(quantity)
+    if over is None:
+        return "NaN" if sight.verdicts[quantity].max is None else INFINITE
+    return _short(over)
+
+
+def _short(value: float) -> str:
+    """Two digits: 1.0, 42, 2.1e9."""
+    if 0.1 <= abs(value) < 100:
+        return f"{value:.2g}" if abs(value) >= 10 else f"{value:.1f}"
+    mantissa, _, exponent = f"{value:.1e}".partition("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def constant_shift(sight: Sight) -> float | None:
+    """The shift of time that explains the error of the state; None where none does."""
+    for name in MAIN:
+        verdict = sight.verdicts.get(name)
+        if verdict is not None and sight.is_seen_by(name) and verdict.shift == "constant":
+            return verdict.time_shift
+    return None
+
+
+def or_infinite(value: float | None) -> float:
+    return math.inf if value is None else value

@@ -1,0 +1,1 @@
+"""The proven width of an enclosure beside its true error."""

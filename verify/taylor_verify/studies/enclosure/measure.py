@@ -1,0 +1,68 @@
+"""The width of an enclosure over time, beside the true error of its middle.
+
+The truth is an enclosure with twice the bits, whose own width is counted as error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import Final
+
+from flint import arb, ctx
+
+from taylor_verify.exact.enclosure.placing import norm
+from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.tube import BOUND_BITS
+from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.enclosure.document import EnclosureStudy, WidthRow
+
+# A regular motion of a general body, and an irregular one, whose errors grow like an exponential.
+SCENES: Final = ("kirchhoff/general-body", "kirchhoff/swimmer-vehicle")
+# Those with which 30 digits are tried first.
+BITS: Final = 140
+_END: Final = 100
+_SAMPLES: Final = 200
+_MOST_BITS: Final = 10_000
+
+
+def study() -> EnclosureStudy:
+    """Return width and error of the published motions."""
+    times = [Fraction(_END * (k + 1), _SAMPLES) for k in range(_SAMPLES)]
+    rows = (row for name in SCENES for row in widths(load(name), times, BITS))
+    return EnclosureStudy(BITS, tuple(rows))
+
+
+def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]:
+    """Return a row for each time, all after the start: the state alone, at one precision.
+
+    ``width`` and ``error`` are relative to the vector, of the vector for which they are largest. Raises
+    exact.enclosure.course.Coarse where so many bits do not lead to the last time.
+    """
+    bare = replace(scene, track=frozenset())
+    spans = posed(bare).spans
+    coarse, sharp = (_states(bare, times, used) for used in (bits, 2 * bits))
+    rows = []
+    with ctx.workprec(BOUND_BITS):
+        for time, state, truth in zip(times, coarse, sharp, strict=True):
+            radii = [arb(z.rad()) for z in state]
+            errors = [(z.mid() - true) for z, true in zip(state, truth, strict=True)]
+            width = max(_relative(radii, truth, span) for span in spans)
+            error = max(_relative(errors, truth, span) for span in spans)
+            rows.append(WidthRow(scene.name, float(time), width, error))
+    return rows
+
+
+def _states(scene: Scene, times: Sequence[Fraction], bits: int) -> list[list[arb]]:
+    with ctx.workprec(bits):
+        rows = dict(TaylorSolution(scene).rows(dict(enumerate(times)), bits, _MOST_BITS))
+        return [rows[k].state for k in range(len(times))]
+
+
+def _relative(deviations: Sequence[arb], truth: Sequence[arb], span: range) -> float:
+    """An upper bound to three digits of a vector beside the true one."""
+    size = norm([truth[i] for i in span])
+    return float(f"{float(norm([deviations[i] for i in span]) / size):.2e}")

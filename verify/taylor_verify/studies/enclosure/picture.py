@@ -1,0 +1,80 @@
+"""The proven width of an enclosure over time, and its true error below it: a panel for each motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.publish.pictures.diagram import add_axes, frames_of, widened
+from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.publish.pictures.wording import plain, power_of_ten
+from taylor_verify.studies.enclosure.document import EnclosureStudy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Points = list[tuple[float, float]]
+Motions = Mapping[str, Mapping[str, Points]]
+
+STEM: Final = "enclosure-width"
+_WIDTH: Final[Mapping[str, Any]] = {"color": "#A83C00", "linewidth": 1.6}
+# Room for half of the last number.
+_BEYOND: Final = 1.04
+_ERROR: Final[Mapping[str, Any]] = {
+    "color": "#0072B2",
+    "linewidth": 0.9,
+    "linestyle": (0, (5, 1.6)),
+}
+
+
+def series(study: EnclosureStudy) -> dict[str, dict[str, Points]]:
+    """Return the points of ``width`` and of ``error`` for each scene; a zero is left out."""
+    found: dict[str, dict[str, Points]] = {}
+    for row in study.rows:
+        lines = found.setdefault(row.scene, {"width": [], "error": []})
+        for name, value in (("width", row.width), ("error", row.error)):
+            if value > 0:
+                lines[name].append((row.t, value))
+    return found
+
+
+def picture(study: EnclosureStudy) -> Picture:
+    """Return the picture of a study. Raises ValueError for one without rows."""
+    motions = series(study)
+    if not all(lines["width"] and lines["error"] for lines in motions.values()) or not motions:
+        raise ValueError("expected widths and errors above zero, got none @ enclosure")
+    ends = "; ".join(
+        f"{scene}: width {plain(lines['width'][-1][1])}, error {plain(lines['error'][-1][1])} at "
+        f"t = {lines['width'][-1][0]:g}"
+        for scene, lines in motions.items()
+    )
+    alt = (
+        f"Proven width of the enclosure with {study.bits} bits and true error of its middle against "
+        f"time, errors logarithmic. The error is always below the width. {ends}."
+    )
+    return Picture(STEM, "Width and true error of an enclosure", alt, partial(_figure, motions))
+
+
+def _figure(motions: Motions) -> Figure:
+    from matplotlib.figure import Figure
+
+    entries: list[Entry] = [(dict(_WIDTH), "proven width"), (dict(_ERROR), "true error")]
+    frames, height = frames_of([0] * len(motions), foot_of(entries, ""))
+    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    # One scale for all: a motion that is regular is told from one that is not.
+    points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
+    limits = widened([e for _, e in points], 0.04, 0.04)
+    for frame, (scene, lines) in zip(frames, motions.items(), strict=True):
+        axes = add_axes(figure, frame)
+        axes.set(yscale="log", ylim=limits, xlim=(0, _BEYOND * max(t for t, _ in points)))
+        axes.set(xlabel="time since the start", ylabel="relative to the vector")
+        axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
+        axes.grid(True, which="major")
+        axes.set_title(scene, pad=4)
+        for name, look in (("error", _ERROR), ("width", _WIDTH)):
+            axes.plot(*zip(*lines[name], strict=True), gid=name, **look)
+    draw_legend(figure, entries, "", None)
+    return figure

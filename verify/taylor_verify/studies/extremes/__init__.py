@@ -1,0 +1,1 @@
+"""The hardest scenes, and what was expected of each."""

@@ -1,0 +1,28 @@
+"""The extremes of a run beside what was expected of each, as the document that is published."""
+
+from __future__ import annotations
+
+from taylor_verify.batch.judgements import Judgements
+from taylor_verify.records import store
+from taylor_verify.records.provenance import Machine
+from taylor_verify.records.status import Status
+from taylor_verify.studies.extremes.document import Expected, ExtremesStudy, ExtremeVerdict, Titled
+
+
+def extremes_study(results: Judgements) -> ExtremesStudy:
+    """Return the document that the page of the extremes is made from.
+
+    Raises ValueError for verdicts of unlike versions.
+    """
+    agreement, verdicts = results.agreement, results.verdicts
+    expected = {row: Expected(Status(e.verdict), e.why) for row, e in agreement.expected.items()}
+    return ExtremesStudy(
+        versions=store.versions(verdicts),
+        machine=Machine(**store.machine(verdicts[0])) if verdicts else Machine(),
+        scenes=tuple(Titled(scene.name, scene.title) for scene in results.selection.scenes_run),
+        left_out=results.left_out,
+        mismatches=tuple(str(mismatch) for mismatch in agreement.mismatches),
+        verdicts=tuple(
+            ExtremeVerdict.of(v, expected.get((v.scene, v.rung, v.quantity))) for v in verdicts
+        ),
+    )

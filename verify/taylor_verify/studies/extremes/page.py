@@ -1,0 +1,210 @@
+"""What becomes of the extremes: the stored verdicts of one run of them, and the page made of those.
+
+    extremes.json   every verdict, beside it what was expected; the scenes with their titles; the runs that
+                    were left out; what made the rows
+
+Every extreme is there to be hard. An answer of theirs that is no `pass` is foreseen, with the reason, or it
+is a mismatch: the page tells the two apart and shows both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
+from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.runs import Run, gravest, runs
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, read_study
+from taylor_verify.studies.accuracy import sheet as sheets
+from taylor_verify.studies.extremes.document import ExtremesStudy
+
+EXTREMES: Final = f"{store.FOLDER}/extremes.json"
+PAGE: Final = "tables/extremes.md"
+SHEET: Final = "tables/extremes.csv"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --extremes; do not edit"}
+_FOLDER: Final = "extremes/"
+
+_WHAT: Final = (
+    "Scenes at the edge of what can be asked: beside a separatrix and on it, moments nearly equal or "
+    "far apart, sizes near the ends of the number range, many periods, and the worst that a search has "
+    "found. The right answer is not always *pass*: where rounding alone may carry a motion as far as it "
+    "is large, the only honest word is *vacuous*. What is right for each is written down beforehand, "
+    "with the reason, and a mismatch either way is a fail."
+)
+_LEGEND: Final = (
+    "*state* is the main quantity, the angular velocity or the impulse: *max, mean @ t of the max*, in u, "
+    "or the word for why there is no number.",
+    "*over attainable* is the largest of all quantities of the scene, which is named; a gate stands at "
+    "ten.",
+    "*verdict* is the gravest of all quantities. *as expected* counts the quantities whose verdict is "
+    "the one foreseen; a mismatch stands out.",
+)
+
+
+# The files.
+
+
+def write(folder: Path | str, study: ExtremesStudy) -> list[Path]:
+    """Store a run below ``folder``, without its seconds, and make its page. Raises OSError."""
+    place = Path(folder)
+    rows = {
+        "machine": plain(study.machine),
+        "verdicts": [store.row(verdict) for verdict in study.verdicts],
+    }
+    text = store.laid_out({**_MADE_BY, **complete(study), **rows})
+    stored = replace_files(place, {EXTREMES: text})
+    return [*stored, *replace_files(place, pages(place))]
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+    """
+    if not (folder / EXTREMES).exists():
+        return {}
+    found = load(folder)
+    return {PAGE: page(found), SHEET: sheet(found)}
+
+
+def load(folder: Path) -> ExtremesStudy:
+    """Return what is stored below ``folder``. Raises OSError and ValueError as `pages` does."""
+    return read_study(folder / EXTREMES, ExtremesStudy)
+
+
+# The page.
+
+
+def page(found: ExtremesStudy) -> str:
+    """The counts, a line a scene, and every answer that is no pass with its reason."""
+    own = runs(found.verdicts)
+    blocks = [
+        f"{MADE_BY}\n# The extremes",
+        _WHAT,
+        counts(found.verdicts),
+        _held(found),
+        bullets([*_LEGEND, roundoffs(found.verdicts)]),
+        *(_section(found, [run for run in own if run.model == m], m) for m in _models(own)),
+        "## No pass, and why",
+        _not_passed(found),
+        _left_out(found),
+        "## To remake this",
+        f"`taylor-verify publish --extremes` runs all of them on float64 and writes "
+        f"[extremes.json](../{EXTREMES}), this page and its [CSV](extremes.csv), which has every quantity. "
+        "`taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it runs them "
+        "on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
+        traced({"versions": found.versions, **plain(found.machine)}),
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+def _models(own: Iterable[Run]) -> list[str]:
+    return list(dict.fromkeys(run.model for run in own))
+
+
+def _held(found: ExtremesStudy) -> str:
+    """How many were foreseen, and whatever was not, in full."""
+    met = sum(found.is_met(v) for v in found.verdicts if v.verdict is not Status.PASS)
+    others = sum(v.verdict is not Status.PASS for v in found.verdicts)
+    told = f"{met} of {others} answers other than pass came as expected."
+    if not found.mismatches:
+        return told
+    faults = bullets(prose(one) for one in found.mismatches)
+    return f"{told} {bold(f'{len(found.mismatches)} mismatches')}:\n\n{faults}"
+
+
+def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
+    columns = [
+        *(Column("scene"), Column("rung"), Column("what it is")),
+        *(Column("state", True), Column("over attainable", True)),
+        *(Column("verdict"), Column("as expected", True)),
+    ]
+    rows = [_cells(found, run) for run in own]
+    return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
+
+
+def _cells(found: ExtremesStudy, run: Run) -> list[str]:
+    main = run.state[0] if run.state else run.verdicts[0]
+    met = sum(found.is_met(verdict) for verdict in run.verdicts)
+    told = f"{met} of {len(run.verdicts)}"
+    return [
+        code(run.scene.removeprefix(_FOLDER)),
+        run.rung,
+        prose(found.titles.get(run.scene, "")),
+        _state(main),
+        _worst(run),
+        judged(gravest(run.verdicts)),
+        told if met == len(run.verdicts) else bold(told),
+    ]
+
+
+def _state(verdict: Verdict) -> str:
+    """The error, and the word of the verdict where it is no pass."""
+    if verdict.max is None:
+        return bold(prose(word(verdict)))
+    text = prose(peak(verdict))
+    return text if verdict.verdict is Status.PASS else f"{text} {judged(verdict.verdict)}"
+
+
+def _worst(run: Run) -> str:
+    """The largest among the quantities that a gate asked; none at all stands above every number."""
+    asked = [v for v in run.verdicts if v.is_compared and v.verdict in (Status.PASS, Status.FAIL)]
+    if not asked:
+        return NOTHING
+    worst = max(asked, key=lambda v: float("inf") if v.ratio is None else v.ratio)
+    return f"{ratio(worst)} ({code(worst.quantity)})"
+
+
+def _not_passed(found: ExtremesStudy) -> str:
+    """A line for every answer that is no pass, as the solver's run has it and as it was foreseen."""
+    columns = [
+        *(Column("scene"), Column("quantity"), Column("verdict"), Column("expected")),
+        *(Column("bound", True), Column("why")),
+    ]
+    rows = [_told(found, verdict) for verdict in found.verdicts if _is_told(found, verdict)]
+    return table(columns, rows) if rows else "Every answer is a pass."
+
+
+def _is_told(found: ExtremesStudy, verdict: Verdict) -> bool:
+    return verdict.verdict is not Status.PASS or not found.is_met(verdict)
+
+
+def _told(found: ExtremesStudy, verdict: Verdict) -> list[str]:
+    wanted = found.expected(verdict)
+    expected = wanted.verdict.value if wanted else NOTHING
+    return [
+        code(verdict.scene.removeprefix(_FOLDER)),
+        code(verdict.quantity),
+        judged(verdict.verdict),
+        expected if found.is_met(verdict) else bold(expected),
+        figure(verdict.bound),
+        prose((wanted.why if wanted else "") or reason(verdict)),
+    ]
+
+
+def _left_out(found: ExtremesStudy) -> str:
+    told = [f"{code(run.scene)}, {run.rung}: {prose(run.why)}" for run in found.left_out]
+    return f"Not run:\n\n{bullets(told)}" if told else ""
+
+
+def sheet(found: ExtremesStudy) -> str:
+    """A row for every quantity of every scene."""
+
+    def expected(verdict: Verdict) -> dict[str, Any]:
+        wanted = found.expected(verdict)
+        return {
+            "title": found.titles.get(verdict.scene),
+            "expected": wanted.verdict.value if wanted else None,
+            "why_expected": wanted.why if wanted else None,
+            "as_expected": "yes" if found.is_met(verdict) else "no",
+        }
+
+    return sheets.gates(found.verdicts, expected)

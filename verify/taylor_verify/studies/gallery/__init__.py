@@ -1,0 +1,1 @@
+"""Pictures of some motions, and of their errors."""

@@ -1,0 +1,266 @@
+"""The gallery: pictures of some motions and of their errors, made of stored data alone.
+
+What is drawn comes from data/portraits (the motion), data/records (the errors of a run), reference/NAME.csv
+(the exact motion at its samples) and data/controls.json (broken solvers); figures/README.md shows it.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.publish.markdown import code, prose
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.quantities import COLUMNS, place_of_rung
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies import figures
+from taylor_verify.studies.controls import picture as shifts
+from taylor_verify.studies.controls import stored as sights
+from taylor_verify.studies.gallery.pictures import (
+    axis_path,
+    centre_path,
+    errors_over_time,
+    polhode,
+    potential,
+)
+from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.reference import page as reference_files
+
+PAGE: Final = f"{figures.FOLDER}/README.md"
+
+_MAKER: Final = "<!-- made by taylor-verify publish --gallery; do not edit -->"
+_SOLVER: Final = "taylor"
+# The rung whose samples are marked on a polhode.
+_RUNG: Final = "f64"
+
+_WHAT: Final = (
+    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`, as "
+    "SVG and as PDF. Portraits, records and the PDF are made and not committed: `taylor-verify publish "
+    "--missing` makes the data, `--paper` the PDF. Lengths, times and impulses are in the scene's own "
+    "units. The motions are exact, to more digits than any picture shows; an error is that of the Taylor "
+    "driver of this suite, against the exact motion of the same rounded data."
+)
+_ELSEWHERE: Final = (
+    "Other pictures of this folder stand beside their numbers: speed against accuracy in "
+    "[tradeoff](../tables/tradeoff.md), the digits that each precision leaves in "
+    "[reach](../tables/reach.md), drift over decades of time in [growth](../tables/growth.md), what each "
+    "thing costs in [prices](../tables/prices.md)."
+)
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A picture under its heading, what it shows in words, and the files it was made of."""
+
+    heading: str
+    picture: Picture
+    caption: str
+    sources: tuple[str, ...]
+
+    def block(self) -> str:
+        sources = ", ".join(map(_named, self.sources))
+        stem, alt = self.picture.stem, prose(self.picture.alt)
+        return f"![{alt}]({stem}.svg)\n\n{self.caption} Data: {sources}."
+
+
+def _named(source: str) -> str:
+    """A link to a file of data, or its name where the repository does not hold it."""
+    is_made = source.startswith((portraits.FOLDER, f"{store.FOLDER}/{store.RECORDS}"))
+    return code(source) if is_made else f"[{Path(source).name}](../{source})"
+
+
+@dataclass(frozen=True)
+class Stored:
+    """The data of a report folder as the pictures ask for them.
+
+    Raises FileNotFoundError for what is not there, and ValueError for files that hold something else.
+    """
+
+    folder: Path
+
+    def portrait(self, scene: str) -> Document:
+        return store.read_document(self.folder / self.portrait_name(scene))
+
+    def record(self, scene: str, rung: str) -> Document:
+        return store.read_document(self.folder / self.record_name(scene, rung))
+
+    def rungs(self, scene: str) -> list[str]:
+        """Those on which the scene was run, in the order of the ladder."""
+        stem = f"{of_scene(scene)}.{_SOLVER}"
+        files = (self.folder / store.FOLDER / store.RECORDS).glob(f"{stem}.*.json")
+        names = [file.name.removeprefix(f"{stem}.").removesuffix(".json") for file in files]
+        return sorted(names, key=place_of_rung)
+
+    def samples(self, scene: str, columns: Sequence[str]) -> list[list[float]]:
+        """The exact motion at the scene's instants, a row each."""
+        file = self.folder / self.reference_name(scene)
+        with file.open(encoding="utf-8", newline="") as lines:
+            return [[float(row[column]) for column in columns] for row in csv.DictReader(lines)]
+
+    def controls(self) -> tuple[Verdict, ...]:
+        """The verdicts on solvers that were broken on purpose, and on their sound twins."""
+        return sights.load(self.folder).verdicts
+
+    @staticmethod
+    def portrait_name(scene: str) -> str:
+        return f"{portraits.FOLDER}/{of_scene(scene)}.json"
+
+    @staticmethod
+    def record_name(scene: str, rung: str) -> str:
+        return f"{store.FOLDER}/{store.record_name(scene, _SOLVER, rung)}"
+
+    @staticmethod
+    def reference_name(scene: str) -> str:
+        return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
+
+
+def write(folder: Path | str) -> list[Path]:
+    """Draw the gallery into ``folder``/figures, and its page; return the files written.
+
+    Raises ImportError without matplotlib, FileNotFoundError and ValueError as `Stored` does, and OSError.
+    """
+    place = Path(folder)
+    with store.expecting("data of the gallery", place / store.FOLDER):
+        found = list(shown(Stored(place)))
+    drawn = figures.draw(place, [one.picture for one in found])
+    return [*drawn, *replace_files(place, {PAGE: page(found)})]
+
+
+def shown(stored: Stored) -> Iterator[Shown]:
+    """Every picture of the gallery, scene by scene."""
+    for scene, kinds in _SCENES:
+        for kind in kinds:
+            yield kind(stored, scene)
+    yield _quartics(stored)
+    yield _shifts(stored)
+
+
+def page(found: Sequence[Shown]) -> str:
+    """All of them below their headings."""
+    blocks = [f"{_MAKER}\n# Pictures of motions and of their errors", _WHAT]
+    last = ""
+    for one in found:
+        if one.heading != last:
+            blocks.append(f"## {one.heading}")
+            last = one.heading
+        blocks.append(one.block())
+    return "\n\n".join([*blocks, "## Elsewhere", _ELSEWHERE]) + "\n"
+
+
+# One kind of picture each.
+
+
+def _heading(portrait: Document) -> str:
+    return f"{portrait['scene']}: {prose(portrait['title'])}"
+
+
+def _polhode(stored: Stored, scene: str) -> Shown:
+    portrait, record = stored.portrait(scene), stored.record(scene, _RUNG)
+    caption = (
+        f"{code(scene)}: the angular velocity on its ellipsoid of inertia. The line is the exact course, "
+        f"the marks are the samples of {_SOLVER} on {_RUNG}, coloured by their error in units of u; dashed "
+        "the separatrices. Repeated turns lie on each other: later marks are above earlier ones."
+    )
+    sources = (
+        *(stored.portrait_name(scene), stored.record_name(scene, _RUNG)),
+        stored.reference_name(scene),
+    )
+    drawn = polhode.picture(portrait, stored.samples(scene, COLUMNS["omega"]), record)
+    return Shown(_heading(portrait), drawn, caption, sources)
+
+
+def _axis(stored: Stored, scene: str) -> Shown:
+    portrait = stored.portrait(scene)
+    found = axis_path.series(portrait)
+    still = "" if found.fixed is None else f"; the cross is the direction of its {found.fixed_name}"
+    caption = (
+        f"{code(scene)}: where body axis {found.axis} points in space, from light to dark with time, on "
+        f"the unit sphere{still}."
+    )
+    return Shown(
+        _heading(portrait), axis_path.picture(portrait), caption, (stored.portrait_name(scene),)
+    )
+
+
+def _path(stored: Stored, scene: str) -> Shown:
+    portrait = stored.portrait(scene)
+    found = centre_path.series(portrait)
+    caption = (
+        f"{code(scene)}: the path of the body's origin through the fluid, with its projections on three "
+        f"walls; the short lines are body axis {found.axis} at equal intervals of time."
+    )
+    return Shown(
+        _heading(portrait), centre_path.picture(portrait), caption, (stored.portrait_name(scene),)
+    )
+
+
+def _errors(stored: Stored, scene: str) -> Shown:
+    portrait, rungs = stored.portrait(scene), stored.rungs(scene)
+    if not rungs:
+        raise FileNotFoundError(2, "no such file", stored.folder / stored.record_name(scene, _RUNG))
+    caption = (
+        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(rungs)}, in units of "
+        "the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
+        "roundings leave on regular orbits, 1/2 for a conserved quantity, 3/2 for state and attitude. Near "
+        "an unstable motion the state's error grows faster for a while, whatever the rung."
+    )
+    records = [stored.record(scene, rung) for rung in rungs]
+    drawn = errors_over_time.picture(scene, records, portrait["course"]["t"][0])
+    sources = tuple(stored.record_name(scene, rung) for rung in rungs)
+    return Shown(_heading(portrait), drawn, caption, sources)
+
+
+def _quartics(stored: Stored) -> Shown:
+    caption = (
+        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). The "
+        "body swings between two simple roots; a double root it only approaches, like an exponential, and "
+        "a triple one like 1/t^2. With two real roots the other two are a complex pair."
+    )
+    found = [stored.portrait(scene) for scene in QUARTICS]
+    drawn = potential.picture(found, "kirchhoff")
+    sources = tuple(stored.portrait_name(scene) for scene in QUARTICS)
+    return Shown("Clebsch's body: where the axial impulse may go", drawn, caption, sources)
+
+
+def _shifts(stored: Stored) -> Shown:
+    caption = (
+        "Solvers that were broken on purpose: the largest error of each, and what the best shift of time "
+        "leaves of it. Of a sound run the shift is as random as its roundings, and is not stored. A body "
+        "read half a millisecond early has a large error and almost none left: every conserved quantity "
+        "is right. Where the second mark lies on the first, the motion is another one, or only some of its "
+        "samples are late."
+    )
+    drawn = shifts.picture(stored.controls(), "controls")
+    return Shown("Errors split in lateness and the rest", drawn, caption, (sights.CONTROLS,))
+
+
+Kind = Callable[[Stored, str], Shown]
+
+_SCENES: Final[tuple[tuple[str, tuple[Kind, ...]], ...]] = (
+    ("euler/generic", (_polhode, _errors)),
+    ("euler/with-attitude", (_polhode, _axis, _errors)),
+    ("euler/separatrix", (_polhode, _errors)),
+    ("euler/tennis-racket", (_polhode, _errors)),
+    ("kirchhoff/whole-motion", (_axis, _path, _errors)),
+    ("kirchhoff/through-the-pole", (_axis, _path, _errors)),
+    ("kirchhoff/falling-away", (_axis, _path, _errors)),
+    ("manufactured/kirchhoff-path", (_path,)),
+    ("manufactured/euler-resonance", (_errors,)),
+)
+QUARTICS: Final = (
+    *("kirchhoff/whole-motion", "kirchhoff/two-real-roots", "kirchhoff/falling-away"),
+    *("kirchhoff/half-turn", "kirchhoff/algebraic", "kirchhoff/ellipsoid-disc"),
+)
+
+
+def scenes() -> tuple[str, ...]:
+    """Those that a gallery shows by themselves."""
+    return tuple(scene for scene, _ in _SCENES)

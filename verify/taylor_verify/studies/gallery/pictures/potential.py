@@ -1,0 +1,195 @@
+"""The quartic that rules the axial impulse of Clebsch's body, with its roots and the orbit's interval.
+
+x3'^2 = r^2 X3(x3) (Hydromechanics 49): the motion is where X3 >= 0, it turns back at a simple root, and
+takes for ever to reach a repeated one. -X3 is a potential in which x3 moves like a particle of no energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from taylor_verify.publish.pictures import panels as at
+from taylor_verify.publish.pictures.diagram import add_axes
+from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
+from taylor_verify.publish.pictures.panels import Frame, width_of
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
+from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.studies.gallery.pictures.view import Numbers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Document = Mapping[str, Any]
+
+_CURVE: Final = "#0072B2"
+_ORBIT: Final = "#A83C00"
+_POINTS: Final = 101
+# Beyond the roots that are shown, in parts of the interval's length.
+_BESIDE: Final = 0.45
+_LEAST: Final = 0.25
+# Above the hump of the orbit and below the axis, in parts of that hump.
+_ABOVE: Final = 1.35
+_BELOW: Final = 0.75
+_HEIGHT: Final = 1.75
+_ABREAST: Final = 2
+
+
+@dataclass(frozen=True)
+class Series:
+    """The curve (n, 2), the interval of the motion, and the real roots with how often each is one."""
+
+    scene: str
+    variable: str
+    regime: str
+    curve: Numbers
+    interval: tuple[float, float]
+    roots: tuple[tuple[float, int], ...]
+    pair: tuple[float, float] | None
+
+
+def series(portrait: Document) -> Series:
+    """Raises ValueError for a scene without such a quartic."""
+    found = portrait["potential"]
+    if found is None:
+        raise ValueError(f"expected a quartic of the axial impulse, got none @ {portrait['scene']}")
+    real = [float(re) for re, im in found["roots"] if im == 0]
+    pair = next(((float(re), float(im)) for re, im in found["roots"] if im > 0), None)
+    roots = tuple((root, real.count(root)) for root in dict.fromkeys(real))
+    low, high = map(float, found["interval"])
+    left, right = _shown(low, high, [root for root, _ in roots])
+    # Half of the corners inside the interval: the hump is what is looked at.
+    z = np.union1d(np.linspace(left, right, _POINTS), np.linspace(low, high, _POINTS))
+    curve = np.stack([z, np.polyval(found["coefficients"], z)], axis=1)
+    variable, regime = found["variable"], portrait["regime"]
+    return Series(portrait["scene"], variable, regime, curve, (low, high), roots, pair)
+
+
+def _shown(low: float, high: float, roots: Sequence[float]) -> tuple[float, float]:
+    """The interval with what is near it: a root within its own length on either side is shown too."""
+    length = max(high - low, _LEAST * max(abs(low), abs(high), *map(abs, roots)))
+    near = [root for root in roots if low - length <= root <= high + length]
+    ends = [low, high, *near]
+    return min(ends) - _BESIDE * length / 2, max(ends) + _BESIDE * length / 2
+
+
+def picture(portraits: Sequence[Document], stem: str = "") -> Picture:
+    """A panel for each scene. Raises ValueError for one that has no quartic, and for none at all."""
+    found = [series(portrait) for portrait in portraits]
+    if not found:
+        raise ValueError("expected a scene with a quartic, got none @ potential")
+    said = " ".join(_said(one) for one in found)
+    document = {"scene": stem or found[0].scene}
+    title = "The quartic of the axial impulse"
+    alt = f"The polynomial X3 against the axial impulse, with the interval of the motion. {said}"
+    return Picture(stem_of(document, "potential"), title, alt, partial(_figure, found))
+
+
+def _said(found: Series) -> str:
+    low, high = found.interval
+    roots = ", ".join(f"{root:.3g}{_MULTIPLE.get(count, '')}" for root, count in found.roots)
+    complex_pair = " and a complex pair" if found.pair else ""
+    return (
+        f"{found.scene}: real roots {roots}{complex_pair}; {found.variable} moves from {low:.3g} to "
+        f"{high:.3g}."
+    )
+
+
+_MULTIPLE: Final = {2: " (double)", 3: " (triple)", 4: " (fourfold)"}
+
+
+def _figure(found: Sequence[Series]) -> Figure:
+    from matplotlib.figure import Figure
+
+    entries = _entries(found)
+    across = min(_ABREAST, len(found))
+    rows = -(-len(found) // across)
+    foot, width = foot_of(entries, ""), width_of(len(found))
+    step = at.HEADING + _HEIGHT + at.BELOW
+    figure = Figure(figsize=(PAGE_WIDTH, foot + rows * step), dpi=72)
+    for i, one in enumerate(found):
+        row, column = divmod(i, across)
+        left = at.LEFT + column * (width + at.LEFT + at.RIGHT)
+        low = foot + (rows - 1 - row) * step + at.BELOW
+        axes = add_axes(figure, Frame(left, low, width, _HEIGHT))
+        _draw(axes, one)
+    draw_legend(figure, entries, "", None)
+    return figure
+
+
+def _draw(axes: Axes, found: Series) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    z, X = found.curve.T  # noqa: N806 (as in 49)
+    low, high = found.interval
+    inside = (z >= low) & (z <= high)
+    top = float(X[inside].max())
+    # A steady motion has no hump: the scale is what the curve does beside it.
+    scale = top if high > low and top > 0 else float(np.abs(X).max()) / 3 or 1.0
+    axes.set(xlim=(z[0], z[-1]), ylim=(-_BELOW * scale, _ABOVE * scale))
+    # Few numbers, of few digits: beside them there is room for no more.
+    axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    axes.axhline(0, color=QUIET, linewidth=0.6, zorder=1)
+    axes.plot(z, X, color=_CURVE, linewidth=1.3, zorder=3, gid="curve")
+    if high > low:
+        axes.fill_between(z[inside], 0, X[inside], color=_CURVE, alpha=0.14, linewidth=0, zorder=2)
+    axes.plot([low, high], [0, 0], color=_ORBIT, linewidth=3, zorder=4, gid="interval")
+    for root, count in found.roots:
+        if z[0] <= root <= z[-1]:
+            _draw_root(axes, root, count)
+    subscript = found.variable.translate(_SUBSCRIPTS)
+    axes.set_xlabel(f"{subscript} (impulse)", labelpad=2)
+    axes.set_ylabel(
+        f"X\N{SUBSCRIPT THREE} = ({subscript}\N{PRIME}/r)\N{SUPERSCRIPT TWO}", labelpad=2
+    )
+    axes.set_title(_heading(found), pad=4, fontsize=SMALL + 0.5)
+
+
+_SUBSCRIPTS: Final = str.maketrans("123", "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}")
+
+
+def _heading(found: Series) -> str:
+    name = found.scene.partition("/")[2]
+    return name if name == found.regime else f"{name} ({found.regime})"
+
+
+def _draw_root(axes: Axes, root: float, count: int) -> None:
+    marker, face = _ROOTS.get(count, _ROOTS[3])
+    axes.plot(
+        [root],
+        [0],
+        marker=marker,
+        markersize=5.5,
+        markerfacecolor=face,
+        markeredgecolor=INK,
+        markeredgewidth=0.9,
+        linestyle="none",
+        zorder=5,
+        gid="root",
+    )
+
+
+_ROOTS: Final = {1: ("o", PAPER), 2: ("D", INK), 3: ("^", INK)}
+
+
+def _entries(found: Sequence[Series]) -> list[Entry]:
+    """Those marks that occur."""
+    counts = {min(count, 3) for one in found for _, count in one.roots}
+    mark = {"linestyle": "none", "markersize": 5.5, "markeredgecolor": INK, "markeredgewidth": 0.9}
+    names = {1: "simple root", 2: "double root", 3: "triple root"}
+    return [
+        ({"color": _CURVE, "linewidth": 1.3}, "X\N{SUBSCRIPT THREE}"),
+        ({"color": _ORBIT, "linewidth": 3}, "the orbit's interval"),
+        *(
+            ({**mark, "marker": _ROOTS[count][0], "markerfacecolor": _ROOTS[count][1]}, name)
+            for count, name in names.items()
+            if count in counts
+        ),
+    ]

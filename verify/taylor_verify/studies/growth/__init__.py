@@ -1,0 +1,1 @@
+"""How drift and phase grow over decades of time."""

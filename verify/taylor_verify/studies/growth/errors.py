@@ -1,0 +1,182 @@
+"""The errors of one lane at its instants: signed drifts, the shift of its phase, and that of its state.
+
+c       shift of time, answer(t) = exact(t - c) but for a remainder; the phase is 2 pi c over the period
+e, v    answer(t) - exact(t - c), and the velocity of exact(t - c), each component in its own unit
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf, nan, pi
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.exact.rates import rates
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
+from taylor_verify.judge.errors.state import state_errors
+from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
+from taylor_verify.studies.growth.fit import Law
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+PHASE: Final = "phase"
+# What tells the time; attitude and centre follow it.
+_STATES: Final = ("omega", "linear_impulse", "angular_impulse")
+
+# Errors are wanted to so many digits below the rung's own, and far beyond what their sums lose.
+_MORE_DIGITS: Final = 12
+_MORE_BITS: Final = 64
+# Gauss-Newton from a shift that is small beside a period: convergence is quadratic.
+_EVALUATIONS: Final = 12
+_SETTLED: Final = 1e-6
+# A shift can be told from one by a whole period more if it was so small at the instant before that no
+# law lets it grow beyond a quarter of a period since.
+_QUARTER: Final = 0.25
+_FASTEST_GROWTH: Final = 2
+# Where the motion is slower than this part of its fastest it tells no time.
+_AT_REST: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One quantity's errors at the instants, NaN where there are none, and the law they are held to.
+
+    Drifts are relative to the quantity's scale, the phase is in radians, the state is relative to its
+    largest size. ``signed`` tells the first two from the last, which is a norm.
+    """
+
+    quantity: str
+    law: Law
+    values: Floats
+    signed: bool = True
+
+
+def lane_errors(
+    problem: Problem, states: Sequence[tuple[Fraction, ...] | None], period: float
+) -> list[Measured]:
+    """The errors of one lane, whose states are in the problem's own form and units.
+
+    What comes after a state that is missing is missing too. Without a closed form there is nothing
+    so long to compare with, and the drifts alone are told.
+    """
+    reached = [state for state in states if state is not None]
+    rows = [problem.initial_momenta, *reached]
+    trajectory = Trajectory(Outcome.FINISHED, from_scaled(problem, rows))
+    # Products of two numbers of the rung are exact in this, and sums of them nearly so.
+    with mp.workprec(2 * problem.rung.bits + _MORE_BITS):
+        motion = trajectory.motion(mp.prec)
+        found = _drifts(problem.given, motion)
+        exact = solution(problem.given)
+        if exact.regime != NO_CLOSED_FORM and reached:
+            found += _state_and_phase(problem, exact, _without_start(motion), period)
+    missing = len(states) - len(reached)
+    return [replace(one, values=np.append(one.values, [nan] * missing)) for one in found]
+
+
+def _without_start(motion: Motion) -> Motion:
+    return Motion({name: rows[1:] for name, rows in motion.quantities.items()}, motion.radius[1:])
+
+
+# Drifts.
+
+
+def _drifts(scene: Scene, motion: Motion) -> list[Measured]:
+    """Since the start, which is the first row; of a vector in space every component by itself."""
+    found: list[Measured] = []
+    for invariant in invariants(scene):
+        values, scale = invariant.value(motion), invariant.scale(motion)
+        drift = (values[1:] - values[0]) / scale
+        if drift.ndim == 1:
+            found.append(Measured(invariant.name, Law.WALK, drift.astype(float)))
+            continue
+        for i, column in enumerate(drift.T, start=1):
+            name = f"{invariant.name}.{i}"
+            found.append(Measured(name, Law.WALK, column.astype(float)))
+    return found
+
+
+# State and phase.
+
+
+def _state_and_phase(
+    problem: Problem, exact: Solution, answer: Motion, period: float
+) -> list[Measured]:
+    digits = truth_digits(problem.rung.bits, _MORE_DIGITS)
+    elapsed = problem.given.clock.elapsed[: len(answer.radius)]
+    clock = Clock(problem.given.clock.start, problem.given.clock.instants[: len(elapsed)])
+    given = replace(problem.given, clock=clock, track=frozenset())
+    truth = exact.motion(elapsed, digits)
+    (state,) = state_errors(given, truth, answer)
+    found = [Measured(state.quantity, Law.INTEGRATED, state.values.astype(float), signed=False)]
+    shifts = _shifts(problem.given, exact, answer, elapsed, digits)
+    if shifts is not None:
+        phases = 2 * pi * told(elapsed, shifts, period) / period
+        found.append(Measured(PHASE, Law.INTEGRATED, phases))
+    return found
+
+
+def _shifts(
+    scene: Scene, exact: Solution, answer: Motion, elapsed: Sequence[Fraction], digits: int
+) -> Floats | None:
+    """The c of every instant by itself that leaves least of e, NaN where none is found.
+
+    None for a motion that rests, or slows down so much that it tells no time.
+    """
+    names = [name for name in _STATES if name in answer.quantities]
+    shifts = [Fraction(0)] * len(elapsed)
+    for _ in range(_EVALUATIONS):
+        there = exact.motion([t - c for t, c in zip(elapsed, shifts, strict=True)], digits)
+        flow = rates(scene, there)
+        e = _joined({n: _scaled(answer[n] - there[n], flow.units[n]) for n in names})
+        v = _joined({n: flow.velocity[n] for n in names})
+        speeds = np.linalg.norm(v, axis=1)
+        if not np.all(speeds > _AT_REST * np.max(speeds)):
+            return None
+        steps = -np.sum(e * v, axis=1) / speeds**2
+        unit = power_of_two(flow.time)
+        shifts = [c + Fraction(s) * unit for c, s in zip(shifts, steps.tolist(), strict=True)]
+        found = np.array([float(c) for c in shifts])
+        # Written so that a NaN has not settled.
+        settled = np.abs(steps) * float(unit) <= _SETTLED * np.abs(found)
+        if np.all(settled):
+            break
+    return np.where(settled, found, nan)
+
+
+def _scaled(rows: np.ndarray[Any, Any], exponent: int) -> Floats:
+    """Numbers of mpmath in units of 2^exponent, as float64."""
+    each = np.frompyfunc(lambda value: float(mp.ldexp(value, -exponent)), 1, 1)
+    scaled: Floats = each(rows).astype(float)
+    return scaled
+
+
+def _joined(blocks: Mapping[str, Floats]) -> Floats:
+    return np.concatenate(list(blocks.values()), axis=1)
+
+
+def told(elapsed: Sequence[Fraction], shifts: Floats, period: float) -> Floats:
+    """The shifts as far as they are sure, NaN from the first that may be off by a whole period.
+
+    Each is found next to zero. It is the right one if the one before, growing as t^2 at most, could
+    not have come further than a quarter of a period.
+    """
+    found = np.full(len(shifts), nan)
+    reach = 0.0
+    before = inf
+    for k, (t, c) in enumerate(zip(map(float, elapsed), shifts.tolist(), strict=True)):
+        growth = (abs(t) / before) ** _FASTEST_GROWTH if k else 0.0
+        if not (reach * growth <= _QUARTER * period and abs(c) <= _QUARTER * period):
+            break
+        found[k], reach, before = c, abs(c), abs(t)
+    return found

@@ -1,0 +1,165 @@
+"""The growth of errors over decades of time: a line for each ensemble, beside Brouwer's powers.
+
+Left the drift of a conserved quantity, right the phase, over periods. The thin lines rise as the powers
+of time that they are named for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import log10
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures import panels as at
+from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
+from taylor_verify.publish.pictures.legend import draw_legend, foot_of
+from taylor_verify.publish.pictures.log_axes import number_axes
+from taylor_verify.publish.pictures.palette import QUIET
+from taylor_verify.publish.pictures.panels import Frame, width_of
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_line
+from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.studies.growth.document import Ensemble
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Points = list[tuple[float, float]]
+
+# Of each panel: its quantity, its heading, and the powers drawn in it with their names.
+PANELS: Final = (
+    ("T", "energy, relative", ((0.5, "1/2"), (1.0, "1"))),
+    ("phase", "phase (rad)", ((1.5, "3/2"), (2.0, "2"))),
+)
+# The lines have no scene in common.
+_TITLE: Final = "ensembles of starts"
+# In decades, between two beginnings that each have their powers drawn.
+_APART: Final = 1.0
+_NOTE: Final = (
+    "Root mean square over the starts; thin lines: powers of time, 1/2 and 3/2 for roundings."
+)
+
+
+def picture(runs: Sequence[Ensemble]) -> Picture:
+    """Return the picture of all runs. Raises ValueError where none has points to draw."""
+    by_label = dict(zip(labels_of(runs), runs, strict=True))
+    lines = {
+        quantity: {label: points_of(run, quantity) for label, run in by_label.items()}
+        for quantity, _, _ in PANELS
+    }
+    if not any(points for by_run in lines.values() for points in by_run.values()):
+        raise ValueError("expected a run with errors above zero, got none @ runs")
+    said = "; ".join(_said(label, run) for label, run in by_label.items())
+    alt = (
+        f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
+        f"phase on the right. {said}."
+    )
+    title = f"Growth of errors: {_TITLE}"
+    return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
+
+
+def points_of(run: Ensemble, quantity: str) -> Points:
+    """Return the root mean squares that a logarithmic axis can show."""
+    row = next((one for one in run.quantities if one.quantity == quantity), None)
+    if row is None:
+        return []
+    return [(n, e) for n, e in zip(run.counts, row.rms, strict=True) if e is not None and e > 0]
+
+
+def _said(label: str, run: Ensemble) -> str:
+    ends = []
+    for quantity, _, _ in PANELS:
+        points = points_of(run, quantity)
+        if points:
+            (n0, e0), (n1, e1) = points[0], points[-1]
+            ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
+    return f"{label}: {', '.join(ends) or 'nothing above zero'}"
+
+
+def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
+    from matplotlib.figure import Figure
+
+    labels = list(next(iter(lines.values())))
+    looks = {label: look_of_line(i) for i, label in enumerate(labels)}
+    entries = [(line_of(looks[label]), label) for label in labels]
+    foot = foot_of(entries, _NOTE)
+    width, low = width_of(len(PANELS)), foot + at.BELOW
+    height = low + at.HEIGHT + at.HEADING
+    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    for i, (quantity, heading, powers) in enumerate(PANELS):
+        left = at.LEFT + i * (width + at.LEFT + at.RIGHT)
+        axes = add_axes(figure, Frame(left, low, width, at.HEIGHT))
+        drawn = {label: points for label, points in lines[quantity].items() if points}
+        axes.set(xscale="log", yscale="log", xlabel="periods", ylabel=heading)
+        axes.set_title("conserved quantity" if quantity != "phase" else "phase", pad=4)
+        everything = [point for points in drawn.values() for point in points]
+        if not everything:
+            continue
+        axes.set(xlim=widened([n for n, _ in everything], 0.05, 0.12))
+        axes.set(ylim=widened([e for _, e in everything], 0.07, 0.1))
+        number_axes(axes)
+        for points in apart(list(drawn.values())):
+            for power, name in powers:
+                _draw_power(axes, points, power, name)
+        for label, points in drawn.items():
+            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **line_of(looks[label]))
+    draw_legend(figure, entries, _NOTE, None)
+    return figure
+
+
+def apart(lines: Sequence[Points]) -> list[Points]:
+    """Those that begin far from each other: of several beginnings in one place one has the powers."""
+    found: list[Points] = []
+    for points in lines:
+        if all(abs(log10(points[0][1] / other[0][1])) > _APART for other in found):
+            found.append(points)
+    return found
+
+
+def _draw_power(axes: Axes, points: Points, power: float, name: str) -> None:
+    """From the first point of a line to the border of the panel that it meets first."""
+    (n0, e0), top, right = points[0], axes.get_ylim()[1], axes.get_xlim()[1]
+    end = min(right, n0 * (top / e0) ** (1 / power))
+    axes.plot(
+        [n0, end],
+        [e0, e0 * (end / n0) ** power],
+        color=QUIET,
+        linewidth=0.5,
+        zorder=1,
+        gid=f"power {power:g}",
+        scalex=False,
+        scaley=False,
+    )
+    # Named where it ends inside the panel, so that the names of neighbours stay apart: one that comes up
+    # steeply to the right border stands above its end, where a flat one has its name below.
+    is_steep_at_the_right = end == right and power >= 1
+    axes.annotate(
+        name,
+        (end, e0 * (end / n0) ** power),
+        textcoords="offset points",
+        xytext=(-3, 1 if is_steep_at_the_right else -7),
+        ha="right",
+        size=SMALL,
+        color=QUIET,
+        gid="power",
+        annotation_clip=True,
+    )
+
+
+def labels_of(runs: Sequence[Ensemble]) -> list[str]:
+    """Return the names of the lines: scene, rung, and the setting of the solver where it has one.
+
+    A scene goes by the last part of its name where no other has the same; of two ensembles with one name
+    the longer one says how far it goes.
+    """
+    tails = {run.scene: run.scene.rpartition("/")[2] for run in runs}
+    found: list[str] = []
+    for run in runs:
+        is_alone = list(tails.values()).count(tails[run.scene]) == 1
+        scene = tails[run.scene] if is_alone else run.scene
+        setting = run.solver.removeprefix("taylor").lstrip("?")
+        label = " ".join([scene, run.rung, setting]).strip()
+        found.append(f"{label}, to {run.periods:.0e}" if label in found else label)
+    return found

@@ -1,0 +1,107 @@
+"""The ensembles that are published, and the long one: followed one after the other, each resumable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.provenance import Provenance
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.taylor.name import TAYLOR
+from taylor_verify.solvers.taylor.numbers import unavailable
+from taylor_verify.studies.growth.document import Ensemble, GrowthStudy
+from taylor_verify.studies.growth.experiment import experiment
+from taylor_verify.studies.growth.question import LEAST_PERIODS, Question
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One ensemble by names; ``why`` it is there."""
+
+    scene: str
+    rung: str
+    periods: float
+    lanes: int
+    why: str
+    solver: str = TAYLOR
+
+    def question(self, most: float | None = None) -> Question:
+        """Followed as long as it is published, or for at most so many periods."""
+        periods = self.periods if most is None else min(self.periods, most)
+        return Question(load(self.scene), rung(self.rung), periods, self.lanes, self.solver)
+
+    @property
+    def label(self) -> str:
+        return f"{self.scene} {self.solver} {self.rung}"
+
+    @property
+    def file(self) -> str:
+        """The name of its checkpoint."""
+        plain = "".join(c if c.isalnum() or c in ".-" else "-" for c in self.label)
+        return f"growth-{plain}-{self.periods:.0e}.json"
+
+
+PUBLISHED: Final = (
+    Entry("euler/about-max-axis", "f64", 1e6, 16, "Brouwer's law over four decades"),
+    # x87 has no batch: a lane takes a minute or two, and six are enough for an interval.
+    Entry("euler/about-max-axis", "f80", 1e6, 6, "the same with eleven bits more"),
+    Entry(
+        "euler/generic",
+        "f64",
+        1e6,
+        16,
+        "moments 1, 2, 3, whose coefficients are rounded small fractions",
+    ),
+    Entry(
+        "euler/about-max-axis",
+        "f64",
+        1e5,
+        16,
+        "a bias that is known: truncation at a coarse tolerance",
+        f"{TAYLOR}?tol=1e-12",
+    ),
+    Entry("kirchhoff/two-real-roots", "f64", 1e5, 16, "a solid in a fluid"),
+)
+LONG: Final = (Entry("euler/about-max-axis", "f64", 1e8, 8, "a hundred million periods"),)
+
+# Told after each piece: the ensemble, and how much of it is done.
+Finished = Callable[[str, int, int], None]
+
+
+def followed(
+    entries: Sequence[Entry],
+    checkpoints: Path | None,
+    finished: Finished,
+    most: float | None = None,
+) -> GrowthStudy:
+    """Return the ensembles of the entries, in their order; a rung that is not here is left out and named.
+
+    ``checkpoints`` is the folder in which those of ensembles that are under way are kept. Raises
+    ValueError for too few periods, and for a checkpoint of something else.
+    """
+    if most is not None and not most >= LEAST_PERIODS:
+        raise ValueError(f"expected at least {LEAST_PERIODS:.0f} periods, got {most:g}")
+    runs: list[Ensemble] = []
+    left_out: list[str] = []
+    for entry in entries:
+        if missing := unavailable(rung(entry.rung)):
+            left_out.append(f"{entry.label}: {missing}")
+            continue
+        file = checkpoints / entry.file if checkpoints else None
+
+        def told(done: int, of: int, label: str = entry.label) -> None:
+            finished(label, done, of)
+
+        found = experiment(entry.question(most), file, told)
+        runs.append(found.ensemble(entry.why))
+    return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))
+
+
+def forget(entries: Sequence[Entry], checkpoints: Path) -> None:
+    """Remove the checkpoints of ensembles that have been stored."""
+    for entry in entries:
+        (checkpoints / entry.file).unlink(missing_ok=True)

@@ -1,0 +1,142 @@
+"""What is followed: a scene and starts near it, on one rung, at a few instants in each decade of time."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from math import ceil, floor, isfinite, log10, pi
+from typing import Any, Final
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.rates import Linearised
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.name import TAYLOR, tolerance
+from taylor_verify.studies.tradeoff.starts import nearby
+
+# A hundred periods are thousands of steps: their roundings have made a walk by then, and what swings
+# within a period is small beside it.
+FIRST_PERIODS: Final = 100
+INSTANTS_PER_DECADE: Final = 2
+# Half a decade less than the gate can judge would leave it nothing early.
+LEAST_PERIODS: Final = 10**3.5
+MOST_PERIODS: Final = 1e9
+# Between two checkpoints. It is part of the question: a step ends at every one of them.
+PIECE_PERIODS: Final = 100_000
+
+_LEAST_LANES: Final = 2
+# Half-decades are met by a number of periods that was rounded.
+_SLACK: Final = 1e-6
+
+
+@dataclass(frozen=True)
+class Question:
+    """A scene and ``lanes`` - 1 starts drawn near it from ``seed``, followed for ``periods``.
+
+    ``solver`` is a name of heyoka's integrator. Raises ValueError for what cannot be followed.
+    """
+
+    scene: Scene
+    rung: Rung
+    periods: float
+    lanes: int = 16
+    solver: str = TAYLOR
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        if not self.scene.body.is_free:
+            raise ValueError(
+                f"expected a free body, whose conserved quantities are conserved, got loads "
+                f"@ {self.scene.name}"
+            )
+        if not (isfinite(self.periods) and self.periods >= LEAST_PERIODS * (1 - _SLACK)):
+            raise ValueError(
+                f"expected at least {LEAST_PERIODS:.0f} periods, got {self.periods:g} @ periods"
+            )
+        if not self.periods <= MOST_PERIODS:
+            raise ValueError(
+                f"expected at most {MOST_PERIODS:g} periods, got {self.periods:g} @ periods"
+            )
+        if not self.lanes >= _LEAST_LANES:
+            raise ValueError(f"expected at least {_LEAST_LANES} lanes, got {self.lanes} @ lanes")
+        tolerance(self.solver)
+
+    @property
+    def tolerance(self) -> Fraction | None:
+        return tolerance(self.solver)
+
+    @cached_property
+    def period(self) -> float:
+        """Of the scene's own orbit; where that has none, of its fastest linear rate at the start."""
+        found = elements(self.scene).get("period")
+        if found is not None:
+            return float(found.value)
+        problem = pose(self.scene, self.rung)
+        rate = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
+        return 2 * pi / rate * float(problem.units.time)
+
+    @cached_property
+    def counts(self) -> tuple[float, ...]:
+        """The instants, in periods."""
+        first = round(INSTANTS_PER_DECADE * log10(FIRST_PERIODS))
+        last = floor(INSTANTS_PER_DECADE * log10(self.periods * (1 + _SLACK)))
+        return tuple(10 ** (k / INSTANTS_PER_DECADE) for k in range(first, last + 1))
+
+    @cached_property
+    def problems(self) -> tuple[Problem, ...]:
+        """A problem for every lane, asked at the instants; the scene's own start is the first."""
+        start = self.scene.clock.start
+        clock = Clock(start, tuple(start + Fraction(n * self.period) for n in self.counts))
+        scenes = [self.scene, *nearby(self.scene, self.seed, self.lanes - 1)]
+        return tuple(pose(replace(scene, clock=clock), self.rung) for scene in scenes)
+
+    @cached_property
+    def pieces(self) -> tuple[tuple[tuple[Fraction, ...], bool], ...]:
+        """Where every lane stops, in its own units: at the instants (True) and on the way to them."""
+        stops: list[tuple[tuple[Fraction, ...], bool]] = []
+        for k, (before, after) in enumerate(pairwise((0.0, *self.counts))):
+            parts = ceil((after - before) / PIECE_PERIODS)
+            for part in range(1, parts):
+                stops.append((self._between(k, Fraction(part, parts)), False))
+            stops.append((tuple(problem.times[k] for problem in self.problems), True))
+        return tuple(stops)
+
+    def _between(self, k: int, part: Fraction) -> tuple[Fraction, ...]:
+        """A part of the way from the instant before the k-th, as numbers of the rung."""
+        return tuple(
+            self.rung.round(before + part * (times[k] - before))
+            for times in (problem.times for problem in self.problems)
+            for before in (times[k - 1] if k else Fraction(0),)
+        )
+
+    def document(self) -> dict[str, Any]:
+        """What is asked, and a fingerprint of every exact number that the answer depends on."""
+        return {
+            "scene": self.scene.name,
+            "digest": self.scene.digest,
+            "solver": self.solver,
+            "rung": self.rung.name,
+            "periods": self.counts[-1],
+            "lanes": self.lanes,
+            "seed": self.seed,
+            "fingerprint": self._fingerprint(),
+        }
+
+    def _fingerprint(self) -> str:
+        found = hashlib.sha256()
+        for problem in self.problems:
+            numbers = (*problem.parameters, *problem.initial_momenta, *problem.times)
+            found.update(" ".join([*problem.form.text(), *map(hexadecimal, numbers)]).encode())
+        for stops, _ in self.pieces:
+            found.update(_line(stops).encode())
+        return found.hexdigest()
+
+
+def _line(numbers: Sequence[Fraction]) -> str:
+    return " ".join(map(hexadecimal, numbers))

@@ -1,0 +1,85 @@
+"""The renderings of a report folder, beside its tables: NAME.tex, NAME.html, and paper.tex of them all.
+
+They are made of the pages that are there and of nothing else: whoever changes a page makes these anew. The
+pictures of the pages are drawn as PDF, which LaTeX takes.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.paper import html, latex
+from taylor_verify.publish.paper.parsed import FOLDER, Page
+from taylor_verify.publish.pictures.picture import save
+from taylor_verify.records.replacement import first_line, replace_files
+from taylor_verify.studies import drawings, figures
+
+PAPER: Final = f"paper{latex.SUFFIX}"
+_TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's equations"
+
+# In the order in which a reader of the whole wants them. The gates are left out: a line for each of some
+# thousands of verdicts, with its reason in words, is for searching, and gates.csv is for that.
+PAGES: Final = (
+    "tables/README.md",
+    "tables/accuracy.md",
+    "tables/attainable.md",
+    "tables/conserved.md",
+    "tables/growth.md",
+    "tables/reach.md",
+    "tables/tradeoff.md",
+    "tables/prices.md",
+    "tables/extremes.md",
+    "tables/worst.md",
+    "tables/controls.md",
+    "tables/traps.md",
+    "claims.md",
+)
+
+
+def write(folder: Path | str) -> list[Path]:
+    """Render every page of ``folder`` that is there, and draw the pictures that are there as PDF.
+
+    Renderings of pages that are gone are removed.
+
+    Raises OSError for files that cannot be read or written, ValueError for a page that is none, and
+    ImportError without markdown-it-py, latex2mathml or, where there are pictures, matplotlib.
+    """
+    place = Path(folder)
+    texts = renderings(place)
+    drawn = _drawn(place)
+    return [*replace_files(place, texts, stale=_own(place / FOLDER)), *drawn]
+
+
+def _drawn(place: Path) -> list[Path]:
+    """The PDF of every picture that is there as SVG."""
+    target = place / figures.FOLDER
+    there = {file.stem for file in target.glob("*.svg")}
+    pictures = (
+        [picture for picture in drawings.pictures(place) if picture.stem in there] if there else []
+    )
+    return save(pictures, target, ("pdf",)) if pictures else []
+
+
+def renderings(folder: Path) -> dict[str, str]:
+    """Every file by its path below ``folder``; nothing for a folder without pages."""
+    pages = [Page(path, _text(folder / path)) for path in PAGES if (folder / path).exists()]
+    paths = [page.path for page in pages]
+    texts: dict[str, str] = {}
+    for page in pages:
+        texts[f"{FOLDER}/{page.stem}{latex.SUFFIX}"] = latex.document(page)
+        texts[f"{FOLDER}/{page.stem}{html.SUFFIX}"] = html.html(page, paths)
+    if pages:
+        texts[f"{FOLDER}/{PAPER}"] = latex.paper(_TITLE, [page.stem for page in pages])
+    return texts
+
+
+def _text(file: Path) -> str:
+    return file.read_text(encoding="utf-8")
+
+
+def _own(target: Path) -> list[Path]:
+    """The files that name us as their maker."""
+    makers = {latex.SUFFIX: latex.MAKER, html.SUFFIX: html.MAKER}
+    found = [file for suffix in makers for file in target.glob(f"*{suffix}")]
+    return [file for file in found if first_line(file) == makers[file.suffix]]

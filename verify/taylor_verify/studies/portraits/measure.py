@@ -1,0 +1,352 @@
+"""The portrait of a shipped scene: all that a page shows of it, as one plain document.
+
+    document["course"]["omega"]      the motion at dense times, in plain floats, to be drawn
+    document["values"]["rows"]       the motion at ten times, in 30 digits, to be compared with
+    document["potential"]            the quartic X3 of Clebsch's body, x3'^2 = r^2 X3(x3)
+
+All but ``explain``, a run on f64, belongs to the scene's own rational numbers. Nothing here depends on
+the machine or the hour: two portraits of one scene are the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import lcm
+from typing import Any, Final
+
+from flint import acb, ctx, fmpz_poly
+from mpmath import mp, mpf
+
+from taylor_verify.batch.documents import documents
+from taylor_verify.exact.elements import Elements, elements
+from taylor_verify.exact.ellipsoid import formed_to
+from taylor_verify.exact.kirchhoff.displaced import centred
+from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.turned import upright
+from taylor_verify.exact.printed import decimal_text, document
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.explain.explanation import explanation
+from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.library import find
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
+
+DIGITS: Final = 30
+# Times at which the values are given: these parts of the span.
+TIMES: Final = 10
+# Intervals of the dense course; over more periods than these a curve covers itself.
+INTERVALS: Final = 360
+PERIODS: Final = 3
+# Of a number in the course; the motion behind it is known to one digit more, and what is smaller
+# beside its vector than that is a zero which was not found to be one.
+FIGURES: Final = 9
+_RUNG: Final = "f64"
+_ROOT_BITS: Final = 160
+
+Document = dict[str, Any]
+
+
+def portrait(scene: Scene) -> Document:
+    """The whole document of one shipped scene. Raises Unsettled where a number does not settle."""
+    text = find(scene.name).read_text(encoding="utf-8")
+    formed = formed_to(scene, DIGITS)
+    exact, orbit = solution(formed), _orbit(scene)
+    values = document(formed, exact, _times(scene), DIGITS)
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "model": scene.model,
+        "source": scene.source or None,
+        "why": _comment(text),
+        "toml": text,
+        "track": _tracked(scene),
+        "regime": values["regime"],
+        "route": values["route"],
+        "warnings": list(scene.warnings),
+        "tex": equations(scene),
+        "analytic": _analytic(orbit),
+        "explain": _without_times(explanation(scene, _RUNG)),
+        "values": values,
+        "course": _course(scene, exact, _length(scene, orbit)),
+        "body": _ellipsoid_of_inertia(scene),
+        "potential": _potential(scene, orbit),
+        "sha256": scene.digest,
+    }
+
+
+def portraits(names: Sequence[str], finished: Callable[[str], None]) -> list[Document]:
+    """The documents of many scenes on all cores, in the order given.
+
+    ``finished`` is told the name of each scene as it ends. Raises Failed for one that came to
+    nothing.
+    """
+    return documents(portrait, names, _expense, finished)
+
+
+def _expense(name: str) -> tuple[bool, int]:
+    """The longest first: bodies in a fluid, and of these what is tracked."""
+    scene = load(name)
+    return scene.model != "kirchhoff", -len(scene.track)
+
+
+def _comment(text: str) -> list[str]:
+    """The lines of the file that are comments, without their marks: they say why the scene exists."""
+    return [line.lstrip("# ").rstrip() for line in text.splitlines() if line.startswith("#")]
+
+
+def _tracked(scene: Scene) -> list[str]:
+    return [MAIN[scene.model], *(name for name in TRACKED[scene.model] if name in scene.track)]
+
+
+# The equations of motion in general form, in LaTeX.
+
+
+_EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
+_MOMENTUM: Final = r"\mathbf H = \mathsf I \boldsymbol\omega"
+_WAVES: Final = r"\mathbf a_0 + \sum_n (\mathbf a_n \cos \nu_n t + \mathbf b_n \sin \nu_n t)"
+_MADE_OMEGA: Final = (
+    rf"\boldsymbol\omega^*(t) = {_WAVES}",
+    r"\mathbf M(t) = \mathsf I \dot{\boldsymbol\omega}^* + \boldsymbol\omega^* \times "
+    r"\mathsf I \boldsymbol\omega^*",
+)
+_LINEAR: Final = r"\dot{\mathbf x} = \mathbf x \times \boldsymbol\Omega"
+_ANGULAR: Final = (
+    r"\dot{\mathbf y} = \mathbf y \times \boldsymbol\Omega + \mathbf x \times \mathbf U"
+)
+_VELOCITIES: Final = (
+    r"\mathbf U = \frac{\partial T}{\partial \mathbf x}, \quad "
+    r"\boldsymbol\Omega = \frac{\partial T}{\partial \mathbf y}"
+)
+_ENERGY: Final = (
+    r"T = \frac{1}{2} \mathbf x \cdot \mathsf A \mathbf x + \mathbf x \cdot \mathsf B \mathbf y "
+    r"+ \frac{1}{2} \mathbf y \cdot \mathsf C \mathbf y"
+)
+_MADE_IMPULSE: Final = (
+    rf"(\mathbf x^*, \mathbf y^*)(t) = {_WAVES}",
+    r"\mathbf X(t) = \dot{\mathbf x}^* - \mathbf x^* \times \boldsymbol\Omega^*",
+    r"\mathbf L(t) = \dot{\mathbf y}^* - \mathbf y^* \times \boldsymbol\Omega^* "
+    r"- \mathbf x^* \times \mathbf U^*",
+)
+_CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
+
+
+def equations(scene: Scene) -> list[str]:
+    """A line for each equation that applies to the scene: its loads, and what it tracks.
+
+    H, x, y and their rates are in body axes, as are the loads; the attitude R takes body components
+    to space components, and c is the body's origin in space.
+    """
+    body = scene.body
+    if isinstance(body, RigidBody):
+        return [
+            *_euler_equations(body),
+            *_attitude(r"\boldsymbol\omega", "attitude" in scene.track),
+        ]
+    centre = [_CENTRE] if "centre" in scene.track else []
+    return [
+        *_kirchhoff_equations(body),
+        *_attitude(r"\boldsymbol\Omega", bool(scene.track)),
+        *centre,
+    ]
+
+
+def _euler_equations(body: RigidBody) -> list[str]:
+    loaded = "" if body.is_free else r" + \mathbf M"
+    if body.manufactured is not None:
+        return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
+    return [f"{_EULER}{loaded}", _MOMENTUM]
+
+
+def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
+    made: tuple[str, ...] = ()
+    if body.manufactured is not None:
+        loads, made = (r" + \mathbf X(t)", r" + \mathbf L(t)"), _MADE_IMPULSE
+    else:
+        loads = (
+            r" + \mathbf X" if any(body.force) else "",
+            r" + \mathbf L" if any(body.couple) else "",
+        )
+    return [f"{_LINEAR}{loads[0]}", f"{_ANGULAR}{loads[1]}", _VELOCITIES, _ENERGY, *made]
+
+
+def _attitude(rate: str, is_tracked: bool) -> list[str]:
+    return [rf"\dot{{\mathsf R}} = \mathsf R [{rate}]_\times"] if is_tracked else []
+
+
+# The numbers of the orbit.
+
+
+def _orbit(scene: Scene) -> Elements:
+    """The orbit's own numbers; none where the digits cannot be had."""
+    try:
+        return elements(scene, DIGITS)
+    except Unsettled as doubt:
+        return Elements("", (), (str(doubt),))
+
+
+def _analytic(orbit: Elements) -> list[Document]:
+    with mp.workdps(DIGITS):
+        return [
+            {
+                "name": element.name,
+                "value": str(mp.nstr(element.value, DIGITS)),
+                "meaning": element.meaning,
+                "unit": element.unit,
+                "source": element.source,
+            }
+            for element in orbit.numbers
+        ]
+
+
+def _without_times(explained: Document) -> Document:
+    """A run takes another time each time."""
+    return {**explained, "cost": {**explained["cost"], "seconds": None}}
+
+
+# The motion.
+
+
+def _span(scene: Scene) -> Fraction:
+    """From the start to the farthest instant asked for; below zero where time runs backward."""
+    start = scene.clock.start
+    return max((instant - start for instant in scene.clock.instants), key=abs)
+
+
+def _length(scene: Scene, orbit: Elements) -> Fraction:
+    """A few periods, if the span is longer than that."""
+    span = _span(scene)
+    if "period" not in orbit:
+        return span
+    few = PERIODS * Fraction(mp.nstr(orbit["period"].value, FIGURES))
+    return span if abs(span) <= few else (few if span > 0 else -few)
+
+
+def _times(scene: Scene) -> list[tuple[str, Fraction]]:
+    """Parts of the span with their texts, which are decimals and exact."""
+    spread = [scene.clock.start + _span(scene) * k / TIMES for k in range(1, TIMES + 1)]
+    texts = [_shortest(t, DIGITS) for t in spread]
+    return [(text, Fraction(text)) for text in texts]
+
+
+def _course(scene: Scene, exact: Solution, length: Fraction) -> Document:
+    """Times and the motion at them, each number rounded to the figures of a picture.
+
+    A row is the motion at exactly the time printed. A vector is a list; an attitude has nine numbers,
+    row by row.
+    """
+    start = scene.clock.start
+    texts = [_shortest(start + length * k / INTERVALS, FIGURES) for k in range(INTERVALS + 1)]
+    motion = exact.motion([Fraction(text) - start for text in texts], FIGURES + 1)
+    course: Document = {"t": [float(text) for text in texts]}
+    for name, rows in motion.quantities.items():
+        course[name] = [_rounded(list(row.flat)) for row in rows]
+    return course
+
+
+def _shortest(value: Fraction, digits: int) -> str:
+    """The number to so many digits, without its last zeros."""
+    mantissa, e, exponent = decimal_text(value, digits).partition("e")
+    if "." in mantissa:
+        mantissa = mantissa.rstrip("0").rstrip(".")
+    return f"{mantissa}{e}{exponent}"
+
+
+def _rounded(entries: Sequence[mpf]) -> list[float]:
+    """The entries to ``FIGURES`` digits; 0 for what is below the last of the largest one's."""
+    least = max(map(abs, entries)) / mpf(10) ** (FIGURES + 1)
+    return [float(mp.nstr(v, FIGURES)) if abs(v) > least else 0.0 for v in entries]
+
+
+# What is drawn besides the motion.
+
+
+def _ellipsoid_of_inertia(scene: Scene) -> Document | None:
+    """The principal moments, and for each its axis in body components; None for a body in a fluid."""
+    if not isinstance(scene.body, RigidBody):
+        return None
+    moments, axes = principal_frame(scene.body.inertia)
+    return {
+        "principal_moments": _plain(moments),
+        "axes": [_rounded(axis) for axis in axes],
+    }
+
+
+def principal_frame(inertia: Matrix) -> tuple[list[mpf], list[list[mpf]]]:
+    """The principal moments, and to each a unit vector; the three vectors are right-handed.
+
+    A body whose axes are its principal axes keeps their order and signs, any other has its moments
+    in ascending order and the largest component of its first two axes positive.
+    """
+    with mp.workdps(DIGITS):
+        if tensors.is_diagonal(inertia):
+            unit = [[mpf(int(i == k)) for k in range(3)] for i in range(3)]
+            return [mp.convert(inertia[i][i]) for i in range(3)], unit
+        found, vectors = mp.eigsy(mp.matrix([[mp.convert(v) for v in row] for row in inertia]))
+        first, second = (_upward([vectors[i, k] for i in range(3)]) for k in (0, 1))
+        third = [first[i] * second[k] - first[k] * second[i] for i, k in ((1, 2), (2, 0), (0, 1))]
+        return list(found), [first, second, third]
+
+
+def _upward(axis: list[mpf]) -> list[mpf]:
+    return axis if max(axis, key=abs) > 0 else [-component for component in axis]
+
+
+def _plain(numbers: Sequence[mpf]) -> list[float]:
+    return [float(mp.nstr(number, FIGURES)) for number in numbers]
+
+
+def _potential(scene: Scene, orbit: Elements) -> Document | None:
+    """X3 of Hydromechanics 49 with its roots, and the interval that the axial impulse moves in.
+
+    None unless the body is free, of revolution, and has a linear impulse: x3 is constant without
+    one. ``variable`` names the component along the axis of symmetry, x3 but for a body turned round.
+    """
+    body = scene.body
+    if not isinstance(body, ImmersedBody) or not body.is_free:
+        return None
+    named_anew, axis = upright(scene)
+    moved, _ = centred(named_anew)
+    solid, start = moved.body, moved.initial
+    assert isinstance(solid, ImmersedBody)
+    assert isinstance(start, Impulse)
+    if solid.clebsch is None:
+        return None
+    nutation = Nutation.of(solid.clebsch, start)
+    X3 = [coefficient / nutation.body.r**2 for coefficient in nutation.f]  # noqa: N806 (as in 49)
+    if nutation.F2 == 0 or len(X3) < 2:
+        return None
+    variable = f"x{axis}"
+    ends = [orbit[name].value for name in (f"{variable}_low", f"{variable}_high") if name in orbit]
+    with mp.workdps(DIGITS):
+        interval = ends or [mp.convert(nutation.z)] * 2
+        return {
+            "variable": variable,
+            "coefficients": _plain([mp.convert(coefficient) for coefficient in X3]),
+            "roots": roots(X3),
+            "interval": _plain(interval),
+        }
+
+
+def roots(polynomial: Sequence[Fraction]) -> list[list[float]]:
+    """[real, imaginary] of every root as often as it is one: the real ones first, upwards.
+
+    The polynomial has its highest power first. Its roots are isolated from exact integers, so that
+    repeated ones are known as such, and a real one has no imaginary part.
+    """
+    scale = lcm(*(coefficient.denominator for coefficient in polynomial))
+    integers = [int(coefficient * scale) for coefficient in reversed(polynomial)]
+    with ctx.workprec(_ROOT_BITS):
+        # With multiplicities, which flint's type stubs leave out.
+        isolated: list[Any] = list(fmpz_poly(integers).complex_roots())
+        found = [_parts(acb(root)) for root, times in isolated for _ in range(times)]
+    return sorted(found, key=lambda root: (root[1] != 0, root))
+
+
+def _parts(root: acb) -> list[float]:
+    return [float(f"{float(part.mid()):.{FIGURES}g}") + 0.0 for part in (root.real, root.imag)]

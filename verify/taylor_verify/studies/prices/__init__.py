@@ -1,0 +1,1 @@
+"""The price of each thing that a scene may ask for."""

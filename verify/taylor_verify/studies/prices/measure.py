@@ -1,0 +1,193 @@
+"""The price of each thing that a scene may ask for: measured in turns, in multiples of the barest form.
+
+A price is the processor time of a step, and that of a unit of the scene's time, over the same of the
+barest form of the model in the same round: an integrator steps from the start to the end of a stretch,
+again and again, unsampled. Compiling is not in it.
+"""
+
+from __future__ import annotations
+
+import gc
+import random
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, exp, log
+from statistics import median
+from time import process_time
+from typing import Final
+
+from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.json_text import finite
+from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.taylor.name import named_at
+from taylor_verify.solvers.taylor.pace import Pace
+from taylor_verify.studies.prices.document import (
+    Interval,
+    PriceAtEqualError,
+    PriceMethod,
+    PriceRow,
+    PricesStudy,
+)
+from taylor_verify.studies.prices.variants import Variant, variants
+from taylor_verify.studies.tradeoff.accuracy import Truth
+from taylor_verify.studies.tradeoff.order_statistics import Estimate, estimate
+
+# Each rung with its rounds: the interval of the median asks for six, and a wide rung takes its time.
+RUNGS: Final = {"f64": 31, "f80": 31, "f128": 9, "mp237": 7}
+# On the wide rungs only what the three questions are about: omega, attitude, the whole state.
+_ON_WIDE_RUNGS: Final = ("omega", "attitude", "impulse", "whole")
+_WIDE: Final = ("f128", "mp237")
+_SEED: Final = 1
+# One measurement is many times the resolution of the clock, about a microsecond, and an interrupt.
+_LEAST_SECONDS: Final = 4e-3
+# The stretch, in the problem's units of time: some hundreds of steps.
+_SPAN: Final = Fraction(128)
+_SPAN_ON_WIDE_RUNGS: Final = Fraction(8)
+# Costs at one and the same achieved error are read between tolerances, on f64.
+_EQUAL_ERROR: Final = 1e-11
+_TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
+
+
+@dataclass
+class _Bench:
+    """One variant on one rung, ready to run; ``count`` runs make one measurement."""
+
+    variant: Variant
+    pace: Pace
+    unit: float
+    span: Fraction
+    steps: int = 0
+    count: int = 1
+
+    @classmethod
+    def of(cls, variant: Variant, rung: Rung, tolerance: Fraction | None = None) -> _Bench:
+        problem = variant.posed(rung)
+        span = _SPAN_ON_WIDE_RUNGS if rung.name in _WIDE else _SPAN
+        pace = Pace(problem, span, tolerance, variant.literals)
+        made = cls(variant, pace, float(span * problem.units.time), span)
+        # The first run is not timed: what it touches is there afterwards.
+        made.steps = pace.run()
+        made.count = max(1, ceil(_LEAST_SECONDS / max(made.seconds(), 1e-6)))
+        return made
+
+    def seconds(self) -> float:
+        """The processor time of one run."""
+        began = process_time()
+        for _ in range(self.count):
+            self.pace.run()
+        return (process_time() - began) / self.count
+
+
+def study(finished: Callable[[str], None] | None = None) -> PricesStudy:
+    """Return every row of the published table; ``finished`` is called with each rung as it ends."""
+    rows: list[PriceRow] = []
+    for name, rounds in RUNGS.items():
+        rows += _rows(rung_named(name), rounds)
+        if finished is not None:
+            finished(name)
+    return PricesStudy(
+        rows=tuple(rows),
+        equal=_at_equal_error(rung_named("f64")),
+        method=PriceMethod(dict(RUNGS), _SEED, _LEAST_SECONDS, _EQUAL_ERROR),
+        provenance=SceneProvenance(versions(), processor(), command()),
+    )
+
+
+def _rows(rung: Rung, rounds: int) -> list[PriceRow]:
+    asked = [v for v in variants() if rung.name not in _WIDE or v.name in _ON_WIDE_RUNGS]
+    if Taylor().unavailable(rung):
+        return []
+    benches = [_Bench.of(variant, rung) for variant in asked]
+    taken = _in_rounds(benches, rounds)
+    by_name = {bench.variant.name: i for i, bench in enumerate(benches)}
+    return [
+        _row(rung, benches[i], benches[base], taken[i], taken[base])
+        for i, base in enumerate(by_name[bench.variant.against] for bench in benches)
+    ]
+
+
+def _in_rounds(benches: Sequence[_Bench], rounds: int) -> list[list[float]]:
+    """Seconds of a run by bench and round: each round has every bench once, in an order drawn anew."""
+    found: list[list[float]] = [[0.0] * rounds for _ in benches]
+    order, draw = list(range(len(benches))), random.Random(_SEED)
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        for k in range(rounds):
+            draw.shuffle(order)
+            for i in order:
+                found[i][k] = benches[i].seconds()
+    finally:
+        if enabled:
+            gc.enable()
+    return found
+
+
+def _row(
+    rung: Rung, bench: _Bench, base: _Bench, taken: Iterable[float], unit: Iterable[float]
+) -> PriceRow:
+    problem = bench.variant.posed(rung)
+    rounds = list(zip(taken, unit, strict=True))
+    per_step = estimate(a / bench.steps / (b / base.steps) for a, b in rounds)
+    per_time = estimate(a / bench.unit / (b / base.unit) for a, b in rounds)
+    return PriceRow(
+        rung=rung.name,
+        variant=bench.variant.name,
+        against=bench.variant.against,
+        what=bench.variant.what,
+        states=len(problem.form.states),
+        parameters=len(problem.form.parameters),
+        **problem.form.operations(),
+        order=bench.pace.order,
+        steps_per_time=bench.steps / bench.unit,
+        step_ratio=_interval(per_step),
+        time_ratio=_interval(per_time),
+        microseconds=1e6 * median(a for a, _ in rounds) / bench.steps,
+        error=finite(_error(bench.variant, rung, Taylor())),
+    )
+
+
+def _interval(found: Estimate) -> Interval:
+    return found.median, found.low, found.high
+
+
+def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
+    """The largest error over the scene's samples, relative: of omega or the impulses alone."""
+    problem = variant.posed(rung)
+    found = Truth(problem).accuracy(solver.solve(problem))
+    return max(found.max[name] for name in ("omega", "impulse") if name in found.max)
+
+
+def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
+    """Return the time over that of the barest form at one error, from a row of tolerances."""
+    asked = [v for v in variants() if not v.literals]
+    solvers = [Taylor(named_at(text), tolerance=Fraction(text)) for text in _TOLERANCES]
+    benches = [_Bench.of(v, rung, solver.tolerance) for v in asked for solver in solvers]
+    taken = [median(seconds) for seconds in _in_rounds(benches, 9)]
+    costs = {}
+    for k, variant in enumerate(asked):
+        place = slice(k * len(solvers), (k + 1) * len(solvers))
+        paces = [s / b.unit for s, b in zip(taken[place], benches[place], strict=True)]
+        errors = [_error(variant, rung, solver) for solver in solvers]
+        costs[variant.name] = _between(errors, paces)
+    rows = []
+    for variant in asked:
+        own, base = costs[variant.name], costs[variant.against]
+        ratio = None if own is None or base is None else own / base
+        rows.append(PriceAtEqualError(variant.name, variant.against, ratio))
+    return tuple(rows)
+
+
+def _between(errors: Sequence[float], costs: Sequence[float]) -> float | None:
+    """The cost at the error asked for, on straight lines in logarithms; None outside the row."""
+    points = sorted(zip(errors, costs, strict=True), reverse=True)
+    for (e, c), (f, d) in pairwise(points):
+        if e >= _EQUAL_ERROR >= f > 0 and e > f:
+            share = (log(e) - log(_EQUAL_ERROR)) / (log(e) - log(f))
+            return exp(log(c) + share * (log(d) - log(c)))
+    return None

@@ -1,0 +1,175 @@
+"""The price of each thing that a scene may ask for: the stored measurement, and the page made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import Column, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies import figures, measured
+from taylor_verify.studies.prices.document import Interval, PriceRow, PricesStudy
+
+PRICES: Final = f"{store.FOLDER}/prices.json"
+PAGE: Final = "tables/prices.md"
+SHEET: Final = "tables/prices.csv"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --prices; do not edit"}
+_ROOTS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
+# The three questions: the barest form, its attitude, and all of a solid in a fluid.
+_ASKED: Final = (
+    ("omega", "omega"),
+    ("attitude", "omega and attitude"),
+    ("impulse", "impulse"),
+    ("whole", "impulse, attitude and centre"),
+)
+
+_WHAT: Final = (
+    "The suite integrates what a scene requires and nothing else. These are the prices of the things "
+    "that a scene may require, and of the forms that the same equations may be given. A price is a "
+    "multiple of that of the barest form of its model, *omega* or *impulse*, measured in the same "
+    "round on the same machine."
+)
+
+
+def write(folder: Path | str, study: PricesStudy) -> list[Path]:
+    """Store a measurement below ``folder``, draw it and make its page.
+
+    Raises ImportError without matplotlib, and OSError.
+    """
+    place = Path(folder)
+    drawn = figures.draw(place, figures.of_prices(study))
+    text = store.laid_out({**_MADE_BY, **complete(study)})
+    stored = replace_files(place, {PRICES: text})
+    return [*stored, *drawn, *replace_files(place, pages(place))]
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """Return the page of the measurement stored below ``folder``; nothing where there is none.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+    """
+    file = folder / PRICES
+    if not file.exists():
+        return {}
+    study = load(folder)
+    with store.expecting("measured prices", file):
+        return {PAGE: page(study, folder), SHEET: measured.prices(study)}
+
+
+def load(folder: Path) -> PricesStudy:
+    """Return the measurement that is stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / PRICES, PricesStudy)
+
+
+def page(study: PricesStudy, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    blocks = [
+        f"{MADE_BY}\n# What each thing costs",
+        _WHAT,
+        "## Three questions",
+        "Processor time of one step of the Taylor integrator at the rung's own tolerance, in "
+        "microseconds; in brackets, as a multiple of a step of *omega* on the same rung.",
+        _three_questions(study.rows),
+        bullets(_legend()),
+        figures.shown(folder, figures.of_prices(study)),
+        *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
+        "## How it was measured",
+        bullets(_method(study)),
+        "## To remake this",
+        f"`taylor-verify publish --prices` measures anew, writes [prices.json](../{PRICES}) and this "
+        "page; nothing is ever compared with these times.",
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+def _three_questions(rows: Iterable[PriceRow]) -> str:
+    by_place = {(row.variant, row.rung): row for row in rows}
+    rungs = list(dict.fromkeys(rung for _, rung in by_place))
+    columns = [Column("what is followed"), *(Column(rung, True) for rung in rungs)]
+    lines = []
+    for name, words in _ASKED:
+        cells = []
+        for rung in rungs:
+            row, unit = by_place.get((name, rung)), by_place.get(("omega", rung))
+            cells.append(_microseconds(row, unit) if row and unit else NOTHING)
+        lines.append([words, *cells])
+    return table(columns, lines)
+
+
+def _microseconds(row: PriceRow, unit: PriceRow) -> str:
+    return f"{figure(row.microseconds)} ({figure(row.microseconds / unit.microseconds)})"
+
+
+def _legend() -> list[str]:
+    return [
+        "*operations* are the distinct sums, products and quotients of one evaluation of the equations; "
+        "the integrator forms each of them once for every order of a step.",
+        "*a step* and *a unit of time* are medians of the ratios to the barest form, in the brackets the "
+        "interval that holds the median of their distribution with at least 95 %. A unit of time is "
+        "one of the scene's: it has more steps in it where the motion is faster.",
+        "*error* is that of omega or of the impulses at the rung's own tolerance, the largest of all "
+        "samples, relative; *at equal error* is the price of a unit of time where tolerances are "
+        "set so that both forms achieve 1e-11, on f64.",
+        "Up to five states are compiled as straight-line code, more as loops over tables, which "
+        "compile in a fraction of the time and run slower: part of the price of a sixth state.",
+    ]
+
+
+def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> list[str]:
+    blocks = []
+    for root, heading in _ROOTS.items():
+        blocks.append(f"## {heading}")
+        found = [row for row in rows if row.against == root]
+        for rung in dict.fromkeys(row.rung for row in found):
+            of_rung = [row for row in found if row.rung == rung]
+            blocks += [f"On {rung}, order {of_rung[0].order}:", _prices(of_rung, equal)]
+    return blocks
+
+
+def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
+    on_f64 = rows[0].rung == "f64"
+    columns = [
+        Column("variant"),
+        *(Column(heading, True) for heading in ("states", "operations", "a step")),
+        *(Column(heading, True) for heading in ("a unit of time", "error")),
+        *([Column("at equal error", True)] if on_f64 else []),
+        Column("what it is"),
+    ]
+    return table(columns, [_cells(row, equal, on_f64) for row in rows])
+
+
+def _cells(row: PriceRow, equal: Mapping[str, float | None], on_f64: bool) -> list[str]:
+    return [
+        prose(row.variant),
+        str(row.states),
+        str(row.sums + row.products + row.quotients),
+        *(_ratio(interval) for interval in (row.step_ratio, row.time_ratio)),
+        figure(row.error),
+        *([figure(equal.get(row.variant))] if on_f64 else []),
+        prose(row.what),
+    ]
+
+
+def _ratio(interval: Interval) -> str:
+    median, low, high = interval
+    return f"{figure(median)} [{figure(low)}, {figure(high)}]" if low != high else figure(median)
+
+
+def _method(study: PricesStudy) -> list[str]:
+    method, given = study.method, study.provenance
+    rounds = ", ".join(f"{rung} {count}" for rung, count in method.rounds.items())
+    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
+    return [
+        f"One process, processor time, rounds in which every variant has its turn in an order drawn "
+        f"anew (seed {method.seed}): {rounds}. Each turn lasts at least "
+        f"{figure(method.least_seconds)} s and is as many runs of the same stretch as that takes.",
+        "Compiling, sampling and the exact solution are not in a price. The errors are those of runs "
+        "of the suite's own driver, compared with the exact motion.",
+        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+    ]

@@ -1,0 +1,115 @@
+"""What is priced: one motion in several forms, and one body with more and more asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.models.form import euler_equations
+from taylor_verify.models.general import in_general_form
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+_PRINCIPAL: Final = "euler/generic"
+_TENSOR: Final = "euler/full-tensor"
+_CLEBSCH: Final = "kirchhoff/whole-motion"
+_LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One form of one scene. ``against`` names the variant that its price is a multiple of."""
+
+    name: str
+    against: str
+    what: str
+    posed: Callable[[Rung], Problem]
+    literals: bool = False
+
+
+def variants() -> tuple[Variant, ...]:
+    """In reading order; a variant comes after the one that it is held against."""
+    omega, impulse = "omega", "impulse"
+    return (
+        Variant(omega, omega, "three moments, free, omega alone", _of(_PRINCIPAL)),
+        Variant("literals", omega, "the coefficients written into the code", _of(_PRINCIPAL), True),
+        Variant(
+            "differences",
+            omega,
+            "differences of K's diagonal formed by the integrator",
+            lambda rung: pose(load(_PRINCIPAL), rung).with_equations(euler_equations),
+        ),
+        Variant(
+            "zeros",
+            omega,
+            "products of inertia and moment carried along, all of them zero",
+            lambda rung: in_general_form(pose(load(_PRINCIPAL), rung), zeros=True),
+        ),
+        Variant("moment", omega, "a constant moment about all axes", _of(_PRINCIPAL, loaded=True)),
+        Variant("attitude", omega, "and the attitude", _of(_PRINCIPAL, "attitude")),
+        Variant("tensor", omega, "a tensor with products of inertia", _of(_TENSOR)),
+        Variant("tensor, attitude", omega, "and the attitude", _of(_TENSOR, "attitude")),
+        Variant(impulse, impulse, "Clebsch's body, free, x and y alone", _of(_CLEBSCH)),
+        Variant("impulse, literals", impulse, "as above, in the code", _of(_CLEBSCH), True),
+        Variant("y3 a state", impulse, "the constant y3 integrated", _with_y3),
+        Variant(
+            "21 coefficients",
+            impulse,
+            "the same body by the general equations, zeros left out",
+            lambda rung: in_general_form(_of(_CLEBSCH)(rung)),
+        ),
+        Variant(
+            "21, zeros carried",
+            impulse,
+            "and with 15 coefficients and 6 loads that are zero",
+            lambda rung: in_general_form(_of(_CLEBSCH)(rung), zeros=True),
+        ),
+        Variant("loads", impulse, "a constant force and couple", _of(_CLEBSCH, loaded=True)),
+        Variant("impulse, attitude", impulse, "and the attitude", _of(_CLEBSCH, "attitude")),
+        Variant("whole", impulse, "attitude and centre", _of(_CLEBSCH, "attitude", "centre")),
+        Variant(
+            "whole, 21",
+            impulse,
+            "attitude and centre by the general equations, zeros left out",
+            lambda rung: in_general_form(_of(_CLEBSCH, "attitude", "centre")(rung)),
+        ),
+    )
+
+
+def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Problem]:
+    def posed(rung: Rung) -> Problem:
+        scene = replace(load(name), track=frozenset(track))
+        return pose(_pushed(scene) if loaded else scene, rung)
+
+    return posed
+
+
+def _pushed(scene: Scene) -> Scene:
+    """The same under loads that change its motion little in the time of the scene."""
+    body = scene.body
+    if isinstance(body, RigidBody):
+        return replace(scene, body=replace(body, moment=_LOAD))
+    return replace(
+        scene, body=replace(body, force=_LOAD, couple=tensors.scaled(Fraction(-1), _LOAD))
+    )
+
+
+def _with_y3(rung: Rung) -> Problem:
+    """Clebsch's equations with all six impulses among the states."""
+    problem = _of(_CLEBSCH)(rung)
+    assert isinstance(problem.given.body, ImmersedBody)
+    states = (*problem.form.states, "y3")
+    parameters = tuple(name for name in problem.form.parameters if name != "y3")
+    known = problem.parameter
+    return replace(
+        problem,
+        form=replace(problem.form, states=states, parameters=parameters),
+        parameters=tuple(known[name] for name in parameters),
+        initial_momenta=(*problem.initial_momenta, known["y3"]),
+    )

@@ -1,0 +1,1 @@
+"""How far each precision carries, and where it ends."""

@@ -1,0 +1,221 @@
+"""The reach of each precision: digits left of families of extremes, over their number and periods.
+
+Every member of a family is solved once on a rung, at the quarters of its 1st, 3rd, 10th ... period. The
+digits left after N periods are -log10 of the largest error at any instant up to then, against the
+exact motion of the data that the solver was given; the attainable error beside it is the judge's own, of
+the same orbit, instants and steps. An error of 1 is the size of the motion: from there on none are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import inf, isfinite
+from typing import Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.batch.runs import run_all
+from taylor_verify.exact.elements import elements
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.errors.state import largest, state_errors
+from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
+from taylor_verify.judge.floor.attainable import floor
+from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.records.provenance import SceneProvenance
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor.driver import Taylor
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
+from taylor_verify.studies.reach.families import (
+    QUARTERS,
+    Family,
+    at_quarters,
+    families,
+    family,
+    period_of,
+)
+
+# As the judge has them.
+# Of a truth that says only how large the motion is.
+_DIGITS_OF_SCALES: Final = 15
+# From here on nothing is left, and a longer run would tell nothing new.
+_LOST: Final = 1.0
+# Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
+_SAME_PERIOD: Final = Fraction(1, 10)
+
+
+def study(finished: Callable[[str], None] | None = None) -> ReachStudy:
+    """Return every row of what is published; ``finished`` is called with each member as it ends."""
+    found = families()
+    asked = [Member(one.name, value) for one in found for value in one.values]
+
+    def tell(member: Member, _: object) -> None:
+        if finished is not None:
+            finished(str(member))
+
+    measured = run_all(_measured, asked, expense=_expense, ended=tell)
+    return ReachStudy(
+        families=tuple(map(_described, found)),
+        rows=tuple(stored(row) for rows in measured for row in rows),
+        lost=_LOST,
+        provenance=SceneProvenance(versions(), processor(), command()),
+    )
+
+
+@dataclass(frozen=True)
+class Member:
+    """One value of one family, by name: small enough to be sent to a process."""
+
+    family: str
+    value: str
+
+    def __str__(self) -> str:
+        return family(self.family).label(self.value)
+
+
+def members() -> int:
+    """How many members all families have together."""
+    return sum(len(one.values) for one in families())
+
+
+def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
+    """Return what is left of one member on each of the rungs, with all digits."""
+    scene = one.scene(value)
+    found = [
+        _followed(
+            ReachRow(one.name, value, rung.name, one.periods(rung.name), (), (), 0, ""), scene, rung
+        )
+        for rung in rungs
+    ]
+    return _with_floors(found, scene)
+
+
+def stored(row: ReachRow) -> ReachRow:
+    """Return the row as it is stored: four digits, and None for an error that is not finite."""
+    errors, floors = (tuple(map(_rounded, each)) for each in (row.errors, row.floors))
+    return replace(row, errors=errors, floors=floors)
+
+
+class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
+    """Rounding the data makes another orbit of them; the text says which."""
+
+
+def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
+    """Return the row with the errors of as many periods as were run, or the reason why there are none."""
+    if reason := Taylor().unavailable(rung):
+        return replace(nothing, why=reason)
+    try:
+        # A member that is lost within its first period is not followed for a thousand.
+        first = _solved(nothing, nothing.periods[:1], scene, rung)
+        if _is_lost(first.errors[-1]):
+            return first
+        return _solved(nothing, nothing.periods, scene, rung)
+    except (NotRepresentable, Unsettled, _Another) as fault:
+        return replace(nothing, why=str(fault))
+
+
+def _is_lost(error: float | None) -> bool:
+    return error is None or not error < _LOST
+
+
+def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
+    """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
+    problem = pose(at_quarters(scene, periods), rung)
+    _check_orbit(scene, problem)
+    trajectory = Taylor().solve(problem)
+    errors = _up_to(_errors(problem, trajectory))
+    return replace(nothing, errors=errors, steps=trajectory.steps, why=_unfinished(trajectory))
+
+
+def _unfinished(trajectory: Trajectory) -> str:
+    finished = trajectory.outcome is Outcome.FINISHED
+    return "" if finished else f"the run {trajectory.outcome.value}"
+
+
+def _check_orbit(scene: Scene, problem: Problem) -> None:
+    asked, found = period_of(scene), elements(problem.given)
+    if "period" not in found:
+        raise _Another(f"rounded to {problem.rung.name}, the orbit is a {found.regime} one")
+    period = found["period"].value
+    if not abs(period - mp.convert(asked)) <= mp.convert(_SAME_PERIOD * asked):
+        ratio = float(period / mp.convert(asked))
+        raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
+
+
+def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
+    """At every instant the largest of all tracked quantities; NaN where an answer is no number."""
+    rung, given = problem.rung, problem.given
+    if trajectory.outcome is not Outcome.FINISHED:
+        return [inf] * len(given.clock.instants)
+    truth = _truth(problem)
+    with mp.workprec(working_bits(rung.bits)):
+        states = state_errors(given, truth, trajectory.motion(working_bits(rung.bits)))
+        bounds = [one.values + one.truth_radius for one in states]
+        return [float(largest(row)) for row in zip(*bounds, strict=True)]
+
+
+def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
+    """Return the rows with their floors, and to the end of their periods.
+
+    One orbit serves them all: on each rung it is that of the number asked for, or nothing was run.
+    Raises Unsettled where its condition cannot be had.
+    """
+    followed = max((one.periods[: len(one.errors)] for one in found), key=len)
+    if not followed:
+        return list(found)
+    asked = at_quarters(scene, followed)
+    truth = solution(asked).motion(asked.clock.elapsed, _DIGITS_OF_SCALES)
+    return [_with_floor(one, asked, truth) if one.errors else one for one in found]
+
+
+def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
+    elapsed, count = asked.clock.elapsed, len(one.errors)
+    # On another rung the orbit may be followed further: this one takes steps in proportion.
+    steps = round(one.steps * elapsed[-1] / elapsed[count * QUARTERS - 1])
+    base = floor(asked, asked, rung_named(one.rung).unit_roundoff, steps)
+    # Only the parts and their scales are asked for: the truth is compared with itself.
+    states = state_errors(asked, truth, truth)
+    worst = np.max([base.of_state(errors) for errors in states], axis=0)
+    floors = _up_to([float(value) for value in worst])[: len(one.periods)]
+    lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
+    beyond = (inf,) * (len(one.periods) - count)
+    return replace(one, errors=one.errors + beyond, floors=floors + lost)
+
+
+def _truth(problem: Problem) -> Motion:
+    digits = truth_digits(problem.rung.bits)
+    return solution(problem.given).motion(problem.given.clock.elapsed, digits)
+
+
+def _up_to(values: Sequence[float]) -> tuple[float, ...]:
+    """The largest up to the end of each group of quarters."""
+    return tuple(
+        float(largest(values[: end + QUARTERS])) for end in range(0, len(values), QUARTERS)
+    )
+
+
+def _measured(member: Member) -> list[ReachRow]:
+    one = family(member.family)
+    return reaches(one, member.value, [rung_named(name) for name in one.far])
+
+
+def _expense(member: Member) -> float:
+    """The longest first: the wide rungs of a family, whose periods are long where it is extreme."""
+    far = family(member.family).far
+    return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
+
+
+def _described(one: Family) -> ReachFamily:
+    return ReachFamily(one.name, one.title, one.symbol, one.extreme, one.values, dict(one.far))
+
+
+def _rounded(value: float | None) -> float | None:
+    return float(f"{value:.4g}") if value is not None and isfinite(value) else None

@@ -1,0 +1,263 @@
+"""The reach of each precision: the stored measurement, and the page made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import takewhile
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.cells import NOTHING, figure
+from taylor_verify.publish.markdown import Column, bullets, code, prose, table
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies import figures, measured
+from taylor_verify.studies.reach import picture as digits_map
+from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
+from taylor_verify.studies.reach.picture import ACHIEVED, ATTAINABLE, numbers_of
+
+REACH: Final = f"{store.FOLDER}/reach.json"
+PAGE: Final = "tables/reach.md"
+SHEET: Final = "tables/reach.csv"
+DIGITS: Final = (3, 6, 12)
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --reach; do not edit"}
+# Of the numbers of periods, those that have a line of their own.
+_AFTER: Final = (1, 10, 100, 1000)
+# Behind the last that was tried, where it may go on.
+_LAST: Final = " \N{RIGHTWARDS ARROW}"
+_NOT_HELD, _NOT_RUN = "not held", "not run"
+_ROUNDED: Final = "rounded"
+
+_WHAT: Final = (
+    "How long a motion, how near a separatrix, how unlike the moments: where each precision still has "
+    "3, 6 or 12 digits. The Taylor integrator runs at the rung's own tolerance; the digits left after "
+    "N periods are those of the largest error up to then, against the exact motion of the very data "
+    "that it was given. Beside them stands what perfect rounding would leave on the same orbit."
+)
+_LEGEND: Final = (
+    f"*3, 6, 12 digits* tell the last value at which so many are left, and at all easier ones too; "
+    f"{_LAST.strip()} stands behind the last that was tried: the reach goes on. {NOTHING} is none.",
+    "*attainable* tells the same of the judge's floor: one rounding of every component in every step, "
+    "carried on by the orbit. It is a model of random roundings, and no bound.",
+    f"*{_NOT_HELD}*: rounded to the rung, the numbers are those of another orbit, its period off by "
+    "more than a tenth or none at all. However exactly that one is followed, it is not the one asked for. "
+    f"*{_NOT_RUN}*: there is no such rung on the machine, or its numbers do not hold the scene at all.",
+    "Periods are those of omega or of the impulses, instants their quarters. Only omega or the "
+    "impulses are compared, but where the attitude is named.",
+)
+
+
+def write(folder: Path | str, study: ReachStudy) -> list[Path]:
+    """Store a measurement below ``folder``, draw it and make its page.
+
+    Raises ImportError without matplotlib, and OSError.
+    """
+    place = Path(folder)
+    drawn = figures.draw(place, pictures(study))
+    text = store.laid_out({**_MADE_BY, **complete(study)})
+    stored = replace_files(place, {REACH: text})
+    return [*stored, *drawn, *replace_files(place, pages(place))]
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """Return the page of the measurement stored below ``folder``; nothing where there is none.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+    """
+    file = folder / REACH
+    if not file.exists():
+        return {}
+    study = load(folder)
+    with store.expecting("a measured reach", file):
+        return {PAGE: page(study, folder), SHEET: measured.reach(study.rows)}
+
+
+def load(folder: Path) -> ReachStudy:
+    """Return the measurement that is stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / REACH, ReachStudy)
+
+
+def pictures(study: ReachStudy) -> list[Picture]:
+    """Return a map of digits for every family that leads to a separatrix."""
+    return [
+        digits_map.picture(one, _rows_of(study, one)) for one in study.families if one.symbol == "d"
+    ]
+
+
+def page(study: ReachStudy, folder: Path) -> str:
+    """Return the whole page, with the pictures that are in ``folder``/figures."""
+    blocks = [
+        f"{MADE_BY}\n# How far each precision carries",
+        _WHAT,
+        bullets(_LEGEND),
+        *(block for one in study.families for block in _section(study, one, folder)),
+        "## How it was measured",
+        bullets(_method(study)),
+        "## To remake this",
+        f"`taylor-verify publish --reach` measures anew, in some minutes, and writes "
+        f"[reach.json](../{REACH}), this page and its pictures.",
+    ]
+    return "\n\n".join(block for block in blocks if block) + "\n"
+
+
+def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
+    rows = _rows_of(study, one)
+    blocks = [f"## {one.name}", f"{prose(_heading(one))}"]
+    if len(one.values) > 1:
+        maps = [p for p in pictures(study) if p.stem == digits_map.stem_of(one)]
+        blocks += [
+            figures.shown(folder, maps),
+            _by_value(one, rows),
+            "Periods at which so many digits are left:",
+        ]
+    return [*blocks, _by_periods(one, rows)]
+
+
+def _heading(one: ReachFamily) -> str:
+    towards = f"; {one.symbol} leads to {one.extreme}" if one.symbol else ""
+    return f"{one.title[0].upper()}{one.title[1:]}{towards}."
+
+
+def _rows_of(study: ReachStudy, family: ReachFamily) -> list[ReachRow]:
+    return [row for row in study.rows if row.family == family.name]
+
+
+# The two questions.
+
+
+def last_value(
+    rows: Sequence[ReachRow], after: int, digits: int, key: str = ACHIEVED
+) -> str | None:
+    """Return the last value up to which so many digits are left after so many periods; None at none.
+
+    ``rows`` are those of one rung, the easiest value first.
+    """
+    kept = list(takewhile(lambda row: _keeps(row, after, digits, key), rows))
+    return kept[-1].value if kept else None
+
+
+def most_periods(row: ReachRow, digits: int, key: str = ACHIEVED) -> int | None:
+    """Return the most periods after which so many digits are left; None where the first leaves fewer."""
+    kept = list(takewhile(lambda count: _keeps(row, count, digits, key), row.periods))
+    return kept[-1] if kept else None
+
+
+def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
+    """Return True if the largest error until then is small enough; None, or no number, is not."""
+    errors = dict(zip(row.periods, numbers_of(row, key), strict=False))
+    error = errors.get(after)
+    return error is not None and error <= 10.0**-digits
+
+
+def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
+    columns = [
+        Column("rung"),
+        Column("periods", True),
+        *(Column(f"{one.symbol}, {n} digits", True) for n in DIGITS),
+        *(Column(f"attainable, {n}", True) for n in DIGITS),
+    ]
+    lines = []
+    for rung in one.rungs:
+        own = [row for row in rows if row.rung == rung]
+        for after in _AFTER:
+            if any(after in row.periods for row in own):
+                cells = [
+                    _value_cell(last_value(own, after, n, key), one.values[-1])
+                    for key in (ACHIEVED, ATTAINABLE)
+                    for n in DIGITS
+                ]
+                lines.append([rung, str(after), *cells])
+    return table(columns, lines)
+
+
+def _value_cell(value: str | None, last: str) -> str:
+    if value is None:
+        return NOTHING
+    return f"{value}{_LAST}" if value == last else value
+
+
+def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
+    """Return a line for each value with three numbers for every rung; a single value is turned round."""
+    by_place = {(row.value, row.rung): row for row in rows}
+    if len(one.values) == 1:
+        heads = (*(f"{n} digits" for n in DIGITS), *(f"attainable, {n}" for n in DIGITS))
+        columns = [Column("rung"), *(Column(head, True) for head in heads)]
+        (value,) = one.values
+        found = [(rung, by_place[value, rung]) for rung in one.rungs]
+        return table(columns, [[rung, *_turned(row)] for rung, row in found])
+    columns = [Column(one.symbol, True), *(Column(f"{r}: 3, 6, 12", True) for r in one.rungs)]
+    return table(
+        columns,
+        [[value, *(_three(by_place[value, rung]) for rung in one.rungs)] for value in one.values],
+    )
+
+
+def _turned(row: ReachRow) -> list[str]:
+    return [_periods_cell(row, n, key) for key in (ACHIEVED, ATTAINABLE) for n in DIGITS]
+
+
+def _three(row: ReachRow) -> str:
+    if not row.errors:
+        return _nothing(row)
+    return ", ".join(_periods_cell(row, n, ACHIEVED) for n in DIGITS)
+
+
+def _periods_cell(row: ReachRow, digits: int, key: str) -> str:
+    if not numbers_of(row, key):
+        return _nothing(row)
+    found = most_periods(row, digits, key)
+    if found is None:
+        return NOTHING
+    return f"{found}{_LAST}" if found == row.periods[-1] else str(found)
+
+
+def _nothing(row: ReachRow) -> str:
+    """Return the reason why there is no number."""
+    return _NOT_HELD if row.why.startswith(_ROUNDED) else _NOT_RUN
+
+
+def _over_attainable(rows: Sequence[ReachRow]) -> str:
+    """Return the errors over the floors, where these leave a digit."""
+    found = sorted(
+        error / least
+        for row in rows
+        for error, least in zip(row.errors, row.floors, strict=False)
+        if error is not None and least and least <= 0.1
+    )
+    if not found:
+        return "No error was compared with a floor."
+    return (
+        f"Error over attainable, where that leaves a digit: {figure(found[-1])} at most, "
+        f"{figure(found[len(found) // 2])} in the middle of {len(found)}."
+    )
+
+
+def _stopped(rows: Sequence[ReachRow]) -> list[str]:
+    """Return the runs that ended on their own, which no number tells from those that were lost."""
+    found = [row for row in rows if row.errors and row.why]
+    return [
+        f"{row.family} {row.value}, {row.rung}: {prose(row.why)}. It counts as lost."
+        for row in found
+    ]
+
+
+def _method(study: ReachStudy) -> list[str]:
+    given, rows = study.provenance, study.rows
+    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
+    lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
+    blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
+    return [
+        f"{len(rows)} runs: a family's value on a rung each. An error of {study.lost:g} is the size "
+        "of the motion: a run that reaches it within its first period is followed no further, and its "
+        f"floor is that of as many steps in proportion. There were {lost}; in {blurred} the "
+        "rung could not hold the value.",
+        "The wider a rung, the fewer periods are run: a period takes hundreds of times as long on f128 "
+        "as on f64.",
+        _over_attainable(rows),
+        *_stopped(rows),
+        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+    ]

@@ -1,0 +1,240 @@
+"""Digits left, over the distance to a separatrix and the periods: achieved, and attainable beside it.
+
+A line of two maps for each rung. A cell is a run up to so many periods; its number is of whole decimal
+digits, its lightness the class that the legend explains, so that the map reads the same in grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import floor, log10
+from typing import TYPE_CHECKING, Any, Final
+
+from taylor_verify.publish.pictures.diagram import add_axes
+from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET, contrast
+from taylor_verify.publish.pictures.panels import Frame
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
+from taylor_verify.publish.pictures.wording import power_of_ten
+from taylor_verify.studies.reach.document import ReachFamily, ReachRow
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# From so many digits on, and the colour: one hue, darker by equal steps.
+CLASSES: Final = (
+    (0, "#FFFFFF"),
+    (1, "#DCE9F5"),
+    (3, "#A9CCE8"),
+    (6, "#6CA6D4"),
+    (12, "#2F78B4"),
+    (24, "#0B3F73"),
+)
+ACHIEVED, ATTAINABLE = "errors", "floors"
+_HEADINGS: Final = {ACHIEVED: "achieved", ATTAINABLE: "attainable"}
+
+# In inches.
+_LEFT: Final = 0.78
+_NAMES: Final = -0.34
+_BETWEEN: Final = 0.12
+_RIGHT: Final = 0.06
+_CELL: Final = 0.135
+_TOP: Final = 0.3
+_GAP: Final = 0.14
+_BELOW: Final = 0.42
+_LEGEND: Final = 0.34
+_NUMBER: Final = 5.5
+_MOST_NAMES: Final = 7
+_HATCHED: Final[Mapping[str, Any]] = {
+    "facecolor": PAPER,
+    "edgecolor": FAINT,
+    "hatch": "////",
+    "linewidth": 0.0,
+}
+
+
+def stem_of(family: ReachFamily) -> str:
+    """Return the file's name without its ending."""
+    return f"reach-{family.name}"
+
+
+def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
+    """Return the errors that were achieved, or those that were attainable."""
+    return row.errors if key == ACHIEVED else row.floors
+
+
+def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
+    """Return the map of a family from its own rows. Raises ValueError for none."""
+    maps = [_Map.of(family, rung, rows) for rung in family.rungs]
+    maps = [one for one in maps if one.periods]
+    if not maps:
+        raise ValueError(f"expected runs of the family, got none @ {family.name}")
+    alt = (
+        f"Decimal digits left of {family.title}, over {family.symbol} from "
+        f"{family.values[0]} to {family.values[-1]} and the periods, for each rung: achieved "
+        f"by taylor, and attainable beside it. {' '.join(one.sentence for one in maps)}"
+    )
+    title = f"Digits left: {family.name}"
+    return Picture(stem_of(family), title, alt, partial(_figure, family, maps))
+
+
+@dataclass(frozen=True)
+class _Map:
+    """One rung: of each value and number of periods the digits achieved and attainable.
+
+    A cell that is missing was not run.
+    """
+
+    rung: str
+    values: tuple[str, ...]
+    periods: tuple[int, ...]
+    cells: Mapping[tuple[str, int, str], int]
+
+    @classmethod
+    def of(cls, family: ReachFamily, rung: str, rows: Sequence[ReachRow]) -> _Map:
+        own = [row for row in rows if row.rung == rung and row.errors]
+        cells = {
+            (row.value, count, key): digits_of(error)
+            for row in own
+            for key in (ACHIEVED, ATTAINABLE)
+            for count, error in zip(row.periods, numbers_of(row, key), strict=False)
+        }
+        periods = tuple(sorted({count for row in own for count in row.periods}))
+        return cls(rung, family.values, periods, cells)
+
+    @property
+    def sentence(self) -> str:
+        """How far six digits go."""
+        first, last = self.periods[0], self.periods[-1]
+        said = [f"after {_periods(n)} up to {self._far(n)}" for n in sorted({first, last})]
+        return f"On {self.rung} six digits are left {' and '.join(said)}."
+
+    def _far(self, count: int) -> str:
+        """The last value up to which there are six digits."""
+        found = "none of these"
+        for value in self.values:
+            if not self.cells.get((value, count, ACHIEVED), 0) >= 6:
+                break
+            found = value
+        return found
+
+
+def digits_of(error: float | None) -> int:
+    """Whole digits; 0 of what is lost, which is stored as null, or no number."""
+    if error is None or not error < 1:
+        return 0
+    # An error of zero leaves all digits that a double can tell.
+    return floor(-log10(error)) if error > 0 else 307
+
+
+def colour_of(digits: int) -> str:
+    """Of the class that so many digits belong to."""
+    return next(colour for least, colour in reversed(CLASSES) if digits >= least)
+
+
+def _periods(count: int) -> str:
+    return "1 period" if count == 1 else f"{count} periods"
+
+
+def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
+    from matplotlib.figure import Figure
+
+    heights = [_CELL * len(one.periods) for one in maps]
+    height = _TOP + sum(heights) + _GAP * (len(maps) - 1) + _BELOW + _LEGEND
+    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    width = (PAGE_WIDTH - _LEFT - _BETWEEN - _RIGHT) / 2
+    top = height - _TOP
+    for one, own in zip(maps, heights, strict=True):
+        for column, key in enumerate((ACHIEVED, ATTAINABLE)):
+            left = _LEFT + column * (width + _BETWEEN)
+            axes = add_axes(figure, Frame(left, top - own, width, own))
+            _draw_cells(axes, one, key)
+            if one is maps[0]:
+                axes.set_title(_HEADINGS[key], pad=5)
+            if one is maps[-1]:
+                _name_values(axes, family)
+            if column == 0:
+                axes.set_yticks(range(len(one.periods)), [_count(n) for n in one.periods])
+                axes.set_ylabel(f"{one.rung}\nperiods", size=SMALL)
+                axes.yaxis.set_label_coords(_NAMES / width, 0.5)
+        top -= own + _GAP
+    _draw_legend(figure)
+    return figure
+
+
+def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
+    from matplotlib.patches import Rectangle
+
+    axes.set(xlim=(-0.5, len(one.values) - 0.5), ylim=(-0.5, len(one.periods) - 0.5))
+    axes.set(xticks=[], yticks=[])
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(True)
+    for x, y, digits in _placed(one, key):
+        corner = (x - 0.5, y - 0.5)
+        if digits is None:
+            axes.add_patch(Rectangle(corner, 1, 1, gid="not run", **_HATCHED))
+            continue
+        colour = colour_of(digits)
+        axes.add_patch(
+            Rectangle(corner, 1, 1, facecolor=colour, edgecolor=FAINT, linewidth=0.4, gid="cell")
+        )
+        axes.text(
+            *(x, y, str(digits)),
+            size=_NUMBER,
+            ha="center",
+            va="center_baseline",
+            color=text_on(colour) if digits else QUIET,
+            gid=f"{one.rung} {_HEADINGS[key]} {one.values[x]} {one.periods[y]}",
+        )
+
+
+def _placed(one: _Map, key: str) -> Iterator[tuple[int, int, int | None]]:
+    for x, value in enumerate(one.values):
+        for y, count in enumerate(one.periods):
+            yield x, y, one.cells.get((value, count, key))
+
+
+def text_on(colour: str) -> str:
+    """Ink or paper, whichever is told better from the colour."""
+    return max((INK, PAPER), key=lambda text: contrast(text, colour))
+
+
+def _count(periods: int) -> str:
+    return str(periods) if periods < 1000 else power_of_ten(periods)
+
+
+def _name_values(axes: Axes, family: ReachFamily) -> None:
+    """Name some of the values where they are many."""
+    values = family.values
+    shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
+    axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
+    axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
+
+
+def _draw_legend(figure: Figure) -> None:
+    """The classes in a line at the foot."""
+    from matplotlib.patches import Rectangle
+
+    axes = add_axes(figure, Frame(_LEFT, 0.06, PAGE_WIDTH - _LEFT - _RIGHT, 0.16))
+    axes.set(xlim=(0, len(CLASSES) + 2.2), ylim=(0, 1))
+    axes.axis("off")
+    axes.text(0, 0.5, "digits left", size=SMALL, va="center_baseline", color=INK)
+    ends = [least for least, _ in CLASSES[1:]]
+    for i, (least, colour) in enumerate(CLASSES):
+        left = 1.2 + i
+        axes.add_patch(
+            Rectangle((left, 0), 0.24, 1, facecolor=colour, edgecolor=QUIET, linewidth=0.5)
+        )
+        last = ends[i] - 1 if i < len(ends) else None
+        words = (
+            "none"
+            if last == 0
+            else f"{least} and more"
+            if last is None
+            else f"{least}\N{EN DASH}{last}"
+        )
+        axes.text(left + 0.3, 0.5, words, size=SMALL, va="center_baseline", color=INK)

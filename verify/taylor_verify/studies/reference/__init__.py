@@ -1,0 +1,1 @@
+"""Exact motions in digits, to test other programs with."""

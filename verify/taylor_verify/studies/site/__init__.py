@@ -1,0 +1,1 @@
+"""Static pages of a report folder."""

@@ -1,0 +1,114 @@
+"""A report folder as the site reads it: verdicts, records, portraits and measurements, no physics.
+
+portrait   data/portraits/NAME.json: one scene in text, equations, exact values and a dense course;
+           a scene without one has a page all the same, with fewer sections
+record     data/records/NAME.taylor.RUNG.json: every sample's error of one run
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from taylor_verify.records import json_text, store
+from taylor_verify.records.file_names import of_scene, of_solver
+from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.runs import Run, runs
+from taylor_verify.studies.controls import stored as sights
+from taylor_verify.studies.controls.document import Sight
+from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.growth.document import GrowthStudy
+from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.reach import page as reach
+from taylor_verify.studies.reach.document import ReachStudy
+from taylor_verify.studies.tradeoff import stored as trades
+from taylor_verify.studies.tradeoff.stored import Trade, Trades
+
+Document = Mapping[str, Any]
+Study = TypeVar("Study")
+
+_SOLVER: Final = "taylor"
+
+
+@dataclass(frozen=True)
+class Report:
+    """What lies in ``folder``; each part is read when it is first asked for, and kept.
+
+    Every part raises OSError for files that cannot be read and ValueError for files that hold
+    something else; a measurement that was never published is None.
+    """
+
+    folder: Path
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        return runs(store.load(self.folder))
+
+    @cached_property
+    def versions(self) -> dict[str, str]:
+        return store.versions(verdict for run in self.runs for verdict in run.verdicts)
+
+    @cached_property
+    def machines(self) -> list[Document]:
+        """Processor, Python and command of the runs, each machine once."""
+        stored = self._stored(store.TIMINGS)
+        return list(stored["machines"]) if stored else []
+
+    @cached_property
+    def scenes(self) -> tuple[str, ...]:
+        """In reading order, each once."""
+        return tuple(dict.fromkeys(run.scene for run in self.runs))
+
+    @cached_property
+    def rungs(self) -> tuple[str, ...]:
+        return tuple(sorted({run.rung for run in self.runs}, key=place_of_rung))
+
+    def runs_of(self, scene: str) -> list[Run]:
+        return [run for run in self.runs if run.scene == scene]
+
+    def portrait(self, scene: str) -> Document | None:
+        return portraits.load(self.folder, scene)
+
+    def records(self, scene: str) -> dict[str, Document]:
+        """By rung, as far as there are some."""
+        found = {rung: self._record(scene, rung) for rung in self.rungs}
+        return {rung: record for rung, record in found.items() if record is not None}
+
+    @cached_property
+    def sights(self) -> tuple[Sight, ...]:
+        """The solvers that were broken on purpose with their verdicts; none where none are stored."""
+        if not (self.folder / sights.CONTROLS).exists():
+            return ()
+        return sights.load(self.folder).sights
+
+    @cached_property
+    def trades(self) -> Trades | None:
+        return trades.load(self.folder)
+
+    def trade(self, scene: str) -> Trade | None:
+        """Speed against accuracy on one scene, where it was measured."""
+        found = self.trades.trades if self.trades else ()
+        return next((trade for trade in found if trade.scene == scene), None)
+
+    @cached_property
+    def growth(self) -> GrowthStudy | None:
+        return self._study(growth.GROWTH, GrowthStudy)
+
+    @cached_property
+    def reach(self) -> ReachStudy | None:
+        return self._study(reach.REACH, ReachStudy)
+
+    def _record(self, scene: str, rung: str) -> Document | None:
+        name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
+        return self._stored(f"{store.RECORDS}/{name}")
+
+    def _study(self, name: str, kind: type[Study]) -> Study | None:
+        file = self.folder / name
+        return json_text.read(file, kind) if file.exists() else None
+
+    def _stored(self, name: str) -> Document | None:
+        file = self.folder / store.FOLDER / name
+        return store.read_document(file) if file.exists() else None

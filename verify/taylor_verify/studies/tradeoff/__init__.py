@@ -1,0 +1,99 @@
+"""Speed against accuracy on one scene: all settings measured, or one recommended."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from taylor_verify.scenes.scene import Scene
+    from taylor_verify.studies.tradeoff.recommend import Recommendation
+    from taylor_verify.studies.tradeoff.setting import Setting
+    from taylor_verify.studies.tradeoff.trade_off import TradeOff
+
+
+def tradeoff(
+    scene: Scene | str | PathLike[str],
+    asked: Sequence[Setting] | None = None,
+    repeats: int | None = None,
+    seed: int | None = None,
+) -> TradeOff:
+    """Measure the time and the error of every setting on a scene, and find the front.
+
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    asked
+        The settings to measure (trade.setting.chosen makes them of names); all that there are unless given.
+    repeats
+        The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
+    seed
+        The seed of the order of timing.
+
+    Returns
+    -------
+    trade.trade_off.TradeOff
+        A point for each setting: errors in the judge's units, processor seconds, and the front. A setting
+        that cannot run is a point that says why. It takes from seconds to minutes.
+
+    Raises
+    ------
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For fewer than one of ``repeats``.
+    """
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.studies.tradeoff.timing import REPEATS, SEED, cold_caches
+    from taylor_verify.studies.tradeoff.trade_off import trade_off
+
+    repeats, seed = REPEATS if repeats is None else repeats, SEED if seed is None else seed
+    if not repeats >= 1:
+        raise ValueError(f"expected repeats of at least 1, got {repeats}")
+    scene = as_scene(scene)
+    with cold_caches():
+        return trade_off(scene, asked, repeats, seed)
+
+
+def recommend(
+    scene: Scene | str | PathLike[str],
+    error: float,
+    asked: Sequence[Setting] | None = None,
+    seed: int | None = None,
+) -> Recommendation:
+    """Measure the settings and return the fastest whose error stays below a limit, here and nearby.
+
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    error
+        The largest error of all tracked quantities that is allowed, in the judge's units: relative to the
+        largest omega or impulse, radians, arc length.
+    asked
+        The settings to choose from; all that there are unless given.
+    seed
+        The seed of the starts nearby and of the order of timing.
+
+    Returns
+    -------
+    trade.recommend.Recommendation
+        The setting with its time and its errors. Rungs on which rounding alone leaves far more are not
+        measured. It takes from seconds to minutes.
+
+    Raises
+    ------
+    trade.recommend.OutOfReach
+        Where no setting reaches the error.
+    scenes.faults.Refused
+        For a scene that cannot be read.
+    ValueError
+        For an error that is no positive number.
+    """
+    from taylor_verify.studies.tradeoff import recommend as of
+    from taylor_verify.studies.tradeoff.timing import SEED
+
+    return of.recommend(scene, error, asked, SEED if seed is None else seed)

@@ -1,0 +1,92 @@
+"""Which precisions can reach an error at all: what rounding alone leaves on the scene's own orbit.
+
+The judge's floor grows with the number of steps, which is a solver's own affair. So it is taken for the
+fewest there can be, one rounding a sample: no arithmetic of that precision is asked for less. Only a
+solver that computes on another precision than it answers on may do better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+from math import ceil, inf, log2
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.errors.state import state_errors
+from taylor_verify.judge.floor.attainable import floor
+from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.records.quantities import FORMATS, GATE_FACTOR
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.scene import Scene
+
+# Of a truth that says only how large the motion is.
+_DIGITS: Final = 15
+_MOST_BITS: Final = 1000
+# A floor is not quite in proportion to the roundoff: beside an unstable motion, rounding the data moves
+# the orbit too. Some bits more make up for it.
+_MORE_BITS: Final = 8
+_ATTEMPTS: Final = 8
+
+
+@lru_cache(maxsize=64)
+def least_error(scene: Scene, rung: Rung) -> float | None:
+    """The largest attainable error of all tracked quantities and samples; None where it is not known."""
+    try:
+        given = pose(scene, rung).given
+        truth = solution(given).motion(given.clock.elapsed, _DIGITS)
+        base = floor(given, scene, rung.unit_roundoff, 0)
+    except (NotRepresentable, Unsettled):
+        return None
+    # Only the parts and their scales are asked for: the truth is compared with itself.
+    found = [np.max(base.of_state(errors)) for errors in state_errors(given, truth, truth)]
+    return float(max(found))
+
+
+def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, str]:
+    """The rungs on which rounding alone leaves far more than an error, each with that in words.
+
+    The floor is a model of random roundings: as the judge's gates leave GATE_FACTOR above it, so it takes
+    GATE_FACTOR here before a rung is given up unmeasured.
+    """
+    found = {}
+    for rung in dict.fromkeys(rungs):
+        least = least_error(scene, rung)
+        if least is not None and least > GATE_FACTOR * error:
+            found[rung] = f"on {rung.name} rounding alone leaves {_figure(least)}"
+    return found
+
+
+def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
+    """The rung of the fewest bits on which rounding alone leaves no more than an error, and how much.
+
+    A type of the ladder where one will do, else mpN; None where no rung does, or nothing is known.
+    """
+    rung, least = rung_named([*FORMATS][-1]), inf
+    for name in FORMATS:
+        rung = rung_named(name)
+        found = least_error(scene, rung)
+        if found is not None and found <= error:
+            return rung, found
+        least = inf if found is None else found
+    bits = rung.bits
+    for _ in range(_ATTEMPTS):
+        if not least < inf:
+            return None
+        bits += max(ceil(log2(least / error)), _MORE_BITS)
+        if not bits <= _MOST_BITS:
+            return None
+        rung = rung_named(f"mp{bits}")
+        found = least_error(scene, rung)
+        if found is not None and found <= error:
+            return rung, found
+        least = inf if found is None else found
+    return None
+
+
+def _figure(least: float) -> str:
+    return f"{least:.2g}" if least < 1 else f"{least:.2g}, more than the motion's own size"

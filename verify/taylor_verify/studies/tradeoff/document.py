@@ -1,0 +1,147 @@
+"""Speed against accuracy: what every setting achieved on a few scenes, and apart from it the times.
+
+The numbers are the same on any machine, but for the rounding. The times are those of one machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from taylor_verify.records.standing import Standing
+
+# None stands for a number that is not finite, or does not exist.
+Number = float | None
+
+
+@dataclass(frozen=True)
+class TradePoint:
+    """One setting on one scene: what was asked and achieved.
+
+    ``error`` is the largest of all tracked quantities and samples, ``drift`` the largest of the conserved
+    quantities, of which ``drifting`` is the name. ``max`` and ``final`` are errors by quantity.
+    ``because`` says why the point is not sound, where it is not.
+    """
+
+    scene: str
+    solver: str
+    setting: str
+    rung: str
+    family: str
+    asked: str
+    requested: Number
+    requested_digits: Number
+    achieved_digits: Number
+    error: Number
+    max: dict[str, Number]
+    final: dict[str, Number]
+    drift: Number
+    drifting: str
+    steps: int
+    evaluations: int
+    outcome: str
+    standing: Standing
+    because: str
+
+    @property
+    def label(self) -> str:
+        """The setting as `tradeoff` prints it."""
+        return " ".join(word for word in (self.solver, self.setting, self.rung) if word)
+
+
+@dataclass(frozen=True)
+class TradeScene:
+    """A measured scene.
+
+    ``attainable`` is what rounding alone leaves on each rung; empty in measurements without it.
+    ``requests`` tell in words what was asked and achieved.
+    """
+
+    scene: str
+    title: str
+    track: tuple[str, ...]
+    sha256: str
+    attainable: dict[str, Number] = field(default_factory=dict)
+    requests: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class PlainDouble:
+    """The closed form in plain doubles on one orbit, and the error of another solver beside it.
+
+    ``m_prime`` is 1 - m of the orbit, ``end`` the last sample.
+    """
+
+    what: str
+    scene: str
+    end: float
+    m_prime: Number
+    error: Number
+    outcome: str
+    standing: Standing
+    because: str
+    beside: str
+    error_beside: Number
+
+
+@dataclass(frozen=True)
+class TradeNumbers:
+    """All scenes and points; ``yardstick`` names the setting that times are multiples of."""
+
+    versions: dict[str, str]
+    yardstick: str
+    scenes: tuple[TradeScene, ...]
+    plain_doubles: tuple[PlainDouble, ...]
+    points: tuple[TradePoint, ...]
+
+
+@dataclass(frozen=True)
+class TradeTiming:
+    """The time of one setting on one scene, a median over processes.
+
+    ``ratio`` is that to the yardstick, between ``low`` and ``high``; both are None where the processes
+    are too few for an interval. ``inner_seconds`` is the part in compiled code, where it is known.
+    """
+
+    scene: str
+    solver: str
+    rung: str
+    seconds: float
+    inner_seconds: Number
+    ratio: float
+    low: Number
+    high: Number
+    processes: int
+
+
+@dataclass(frozen=True)
+class TimingMachine:
+    """The machine and the command that the times were taken with."""
+
+    processor: str
+    python: str
+    command: str
+
+
+@dataclass(frozen=True)
+class TimingMethod:
+    """The numbers of processes and rounds, the least duration of a measurement, and the confidence."""
+
+    processes: int
+    rounds: int
+    seed: int
+    least_seconds: float
+    times_resolution: int
+    clock_resolution: float
+    confidence: float
+    coverage: float
+    formula: str
+    of: str
+
+
+@dataclass(frozen=True)
+class TradeTimings:
+    """The times of every sound setting; ``machine`` and ``method`` say where and how they were taken."""
+
+    machine: TimingMachine
+    method: TimingMethod
+    timings: tuple[TradeTiming, ...]

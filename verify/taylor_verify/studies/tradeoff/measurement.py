@@ -1,0 +1,251 @@
+"""The published measurement: a few scenes, every setting, several fresh processes.
+
+A process is not one more repetition. Its hash seed, the places of its arrays and code in memory and
+the frequency at which the processor happens to run are drawn once for all of its life, so that solves
+within it agree with each other better than with those of the next. So the rounds of a process are
+reduced to their median, and the processes are what is counted.
+
+Errors are told apart from times: they are the same on the next machine but for the rounding, times are
+nobody else's.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import random
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from math import inf
+from typing import Final
+
+from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.tradeoff.document import (
+    PlainDouble,
+    TimingMachine,
+    TimingMethod,
+    TradeNumbers,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
+)
+from taylor_verify.studies.tradeoff.front import request_sentences
+from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, estimate
+from taylor_verify.studies.tradeoff.plain_doubles import plain_doubles
+from taylor_verify.studies.tradeoff.rounds import (
+    LEAST_SECONDS,
+    ROUNDS,
+    TIMES_RESOLUTION,
+    YARDSTICK,
+    Measured,
+    Name,
+    clock_resolution,
+    measured,
+)
+from taylor_verify.studies.tradeoff.setting import (
+    Setting,
+    geometric,
+    library,
+    outside,
+    setting,
+    taylor,
+)
+from taylor_verify.studies.tradeoff.timing import SEED, WHAT_IS_TIMED
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, trade_off
+
+SCENES: Final = (
+    *("euler/generic", "euler/with-attitude"),
+    *("kirchhoff/whole-motion", "kirchhoff/general-body"),
+)
+# The fewest whose two extremes hold the median with 95 %.
+PROCESSES: Final = 6
+# Every power of ten, so that the cheapest setting for so many digits is among them. RK45 would take
+# seconds for the last one; the two that are made for stiff equations take them much earlier.
+_EVERY_DIGIT: Final = tuple(f"1e-{digits}" for digits in range(3, 14))
+_SCIPY: Final = {
+    "RK45": _EVERY_DIGIT[:-1],
+    "DOP853": _EVERY_DIGIT,
+    "LSODA": _EVERY_DIGIT,
+    "Radau": ("1e-3", "1e-6"),
+    "BDF": ("1e-3", "1e-6"),
+}
+_ODEFUN: Final = "mpmath:odefun?tol=1e-6"
+# Of the other libraries those whose equations are compiled too. Each solve compiles anew, for seconds:
+# so the tolerances are three, at which such methods leave a little more than 6, 9 and 12 digits.
+_COMPILED: Final = ("cyrk-dop853", "cyrk-lsoda", "diffrax-dopri8")
+_FOR_THE_COLUMNS: Final = ("1e-8", "1e-11", "1e-13")
+_OWN_TOLERANCE: Final = ("f32", "f80", "f128", "mp237")
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """The trades of some scenes, and the timings of every setting that is sound."""
+
+    trades: tuple[TradeOff, ...]
+    timings: tuple[TradeTiming, ...]
+    processes: int
+    rounds: int
+    seed: int
+    resolution: float
+    doubles: tuple[PlainDouble, ...] = ()
+
+    def numbers(self) -> TradeNumbers:
+        """Return what is the same on the next machine, but for the rounding: errors, digits, outcomes."""
+        return TradeNumbers(
+            versions=_versions(),
+            yardstick=" ".join(YARDSTICK),
+            scenes=tuple(map(_scene, self.trades)),
+            plain_doubles=self.doubles,
+            points=tuple(p.on(trade.scene.name) for trade in self.trades for p in trade.points),
+        )
+
+    def times(self) -> TradeTimings:
+        """Return what is this machine's: seconds, and ratios to the yardstick with their intervals."""
+        method = TimingMethod(
+            processes=self.processes,
+            rounds=self.rounds,
+            seed=self.seed,
+            least_seconds=LEAST_SECONDS,
+            times_resolution=TIMES_RESOLUTION,
+            clock_resolution=self.resolution,
+            confidence=CONFIDENCE,
+            coverage=estimate([1.0] * self.processes).coverage,
+            formula=FORMULA,
+            of=WHAT_IS_TIMED,
+        )
+        machine = TimingMachine(processor(), versions()["python"], command())
+        return TradeTimings(machine, method, self.timings)
+
+
+def _versions() -> dict[str, str]:
+    """Of all that takes part in the numbers: SciPy too, which is no part of a verdict."""
+    found = {package: found for package, found in versions().items() if package != "python"}
+    with suppress(PackageNotFoundError):
+        found["scipy"] = version("scipy")
+    return found
+
+
+def measurement(
+    names: Sequence[str] = SCENES,
+    processes: int = PROCESSES,
+    rounds: int = ROUNDS,
+    with_outside: bool = False,
+    seed: int = SEED,
+    finished: Callable[[str], None] | None = None,
+) -> Measurement:
+    """Solve the scenes with every published setting, then time what is sound in fresh processes.
+
+    ``finished`` is told of each part as it ends.
+    """
+    tell = finished if finished is not None else (lambda what: None)
+    trades = []
+    for scene in map(load, names):
+        asked = published_settings(scene, with_outside)
+        # What is published must not hang on how busy the machine was.
+        trades.append(trade_off(scene, asked, 0, seed, patience=inf))
+        tell(f"errors of {scene.name}")
+    found: list[dict[str, dict[Name, Measured]]] = []
+    for number in range(processes):
+        found.append(_in_a_new_process(_asked(trades), seed + number, rounds))
+        tell(f"times, process {number + 1} of {processes}")
+    doubles = tuple(plain_doubles())
+    tell("the closed form in doubles")
+    timings = tuple(one for trade in trades for one in _timings(trade, found))
+    resolution = clock_resolution()
+    return Measurement(tuple(trades), timings, processes, rounds, seed, resolution, doubles)
+
+
+def published_settings(scene: Scene, with_outside: bool = False) -> tuple[Setting, ...]:
+    """Family by family, the coarsest first: taylor on every rung, all else on f64."""
+    return tuple(_published(scene, with_outside))
+
+
+def _published(scene: Scene, with_outside: bool) -> Iterator[Setting]:
+    f64 = rung_named("f64")
+    yield from taylor(f64)
+    for name in _OWN_TOLERANCE:
+        yield setting(YARDSTICK[0], rung_named(name))
+    for method, tolerances in _SCIPY.items():
+        yield from library([method], tolerances, f64)
+    if scene.model == "euler":
+        yield from geometric(scene, f64)
+        yield setting("closed-form:ellipj", f64)
+    if scene.model == "euler" and not scene.track - {"omega"}:
+        # Seconds a solve: the scene with the fewest equations says enough.
+        yield setting(_ODEFUN, f64)
+    if with_outside:
+        yield from outside(["f64"], _COMPILED, _FOR_THE_COLUMNS)
+
+
+Asked = Sequence[tuple[Scene, Sequence[Name]]]
+
+
+def _asked(trades: Sequence[TradeOff]) -> Asked:
+    return [(trade.scene, [name for name, _ in _sound(trade)]) for trade in trades]
+
+
+def _sound(trade: TradeOff) -> Iterator[tuple[Name, Setting]]:
+    for p in trade.points:
+        if p.standing is Standing.SOUND:
+            asked = p.timed.setting
+            yield (asked.solver.name, asked.rung.name), asked
+
+
+def _in_a_new_process(asked: Asked, seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
+    # Spawned, not forked: a fork would have the memory of this process, and its hash seed.
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        return pool.submit(one_process, asked, seed, rounds).result()
+
+
+def one_process(asked: Asked, seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
+    """What one process measures, by scene; the scenes too in an order of its own."""
+    scenes = list(asked)
+    random.Random(seed).shuffle(scenes)
+    return {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+
+
+def _timings(
+    trade: TradeOff, found: Sequence[Mapping[str, Mapping[Name, Measured]]]
+) -> Iterator[TradeTiming]:
+    """Yield the times of every setting that finished in all the processes."""
+    scene = trade.scene.name
+    of_scene = [one[scene] for one in found]
+    for name, _ in _sound(trade):
+        its = [one[name] for one in of_scene if name in one]
+        if its and len(its) == len(of_scene):
+            yield _timing(scene, name, its)
+
+
+def _timing(scene: str, name: Name, its: Sequence[Measured]) -> TradeTiming:
+    solver, rung = name
+    inner = [one.inner for one in its if one.inner is not None]
+    ratio = estimate(one.ratio for one in its)
+    return TradeTiming(
+        scene=scene,
+        solver=solver,
+        rung=rung,
+        seconds=estimate(one.seconds for one in its).median,
+        inner_seconds=estimate(inner).median if len(inner) == len(its) else None,
+        ratio=ratio.median,
+        low=ratio.low,
+        high=ratio.high,
+        processes=ratio.count,
+    )
+
+
+def _scene(trade: TradeOff) -> TradeScene:
+    """Return the scene of a trade; the sentences of its front are made when they are printed."""
+    return TradeScene(
+        scene=trade.scene.name,
+        title=trade.scene.title,
+        track=tuple(sorted(trade.scene.track)),
+        sha256=trade.scene.digest,
+        attainable=trade.attainable,
+        requests=tuple(request_sentences(trade.points)),
+    )

@@ -1,0 +1,98 @@
+"""The failures of the closed form in plain doubles: the same solver, from an easy orbit to none.
+
+1 - m of each orbit, on which it hangs, is exact; the error is that of omega, the largest of all samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+from taylor_verify.exact.elements import elements
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
+from taylor_verify.studies.tradeoff.point import point
+from taylor_verify.studies.tradeoff.setting import setting
+from taylor_verify.studies.tradeoff.timing import Timed
+from taylor_verify.studies.tradeoff.trade_off import Truths
+
+NAME: Final = "closed-form:ellipj"
+# Where a step by step solver gets in a moment, it is shown beside.
+_BESIDE: Final = "taylor"
+
+_EASY: Final = "euler/generic"
+_LONG: Final = (3, 6, 9, 12, 15)
+_NEAR: Final = (2, 4, 5, 6, 8)
+_SAMPLES: Final = 11
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, what it is in words, and whether it is short enough for a solver that takes steps."""
+
+    scene: Scene
+    what: str
+    is_short: bool = True
+
+
+def cases() -> Iterator[Case]:
+    """Easy orbits, long times, starts beside the middle axis, separatrices, the middle axis itself."""
+    yield Case(load(_EASY), "far from every degeneracy")
+    for digits in _LONG:
+        end = Fraction(10) ** digits
+        # No sample falls on a multiple of another, so that none is easy by chance.
+        times = tuple(end * k / (_SAMPLES - 1) + Fraction(k, 7) for k in range(_SAMPLES))
+        scene = replace(load(_EASY), clock=Clock(Fraction(0), times))
+        yield Case(scene, f"{_EASY} until t = 1e{digits}", digits <= 3)
+    for digits in _NEAR:
+        small = Fraction(1, 10**digits)
+        racket = load("euler/tennis-racket")
+        scene = replace(racket, initial=Spin((small, Fraction(1), small)))
+        yield Case(scene, f"a body 1, 2, 3 from omega = (1e-{digits}, 1, 1e-{digits})")
+    yield Case(load("euler/separatrix"), "the separatrix, its data dyadic")
+    yield Case(load("euler/separatrix-full-tensor"), "the separatrix, its axes oblique")
+    yield Case(load("euler/steady-middle-axis"), "a steady turn about the middle axis")
+
+
+def plain_doubles() -> Iterator[PlainDouble]:
+    """Yield a row for each case: 1 - m, error and outcome, and the error of taylor where it is short.
+
+    ``m_prime`` is None where the orbit has none.
+    """
+    f64 = rung("f64")
+    truths = Truths()
+    for case in cases():
+        problem = pose(case.scene, f64)
+        found = _achieved(NAME, problem, truths)
+        beside = _achieved(_BESIDE, problem, truths).error if case.is_short else None
+        yield PlainDouble(
+            what=case.what,
+            scene=case.scene.name,
+            end=float(case.scene.clock.instants[-1]),
+            m_prime=_m_prime(problem),
+            error=found.error,
+            outcome=found.outcome,
+            standing=found.standing,
+            because=found.because,
+            beside=_BESIDE,
+            error_beside=beside,
+        )
+
+
+def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
+    """Return one solve as a point of a trade."""
+    trajectory = solver_named(name).solve(problem)
+    run = Timed(setting(name, problem.rung), trajectory, 0.0, (trajectory.seconds,))
+    return point(run, truths.accuracy(problem, trajectory)).on(problem.scene.name)
+
+
+def _m_prime(problem: Problem) -> float | None:
+    found = elements(problem.given)
+    return float(found["m_prime"].value) if "m_prime" in found else None

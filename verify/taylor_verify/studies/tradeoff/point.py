@@ -1,0 +1,109 @@
+"""A point of the trade: what one setting achieved on a scene, and what it took."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, log10
+from typing import Any
+
+from taylor_verify.records.json_text import complete, finite
+from taylor_verify.records.standing import Standing
+from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.studies.tradeoff.accuracy import Accuracy
+from taylor_verify.studies.tradeoff.document import TradePoint
+from taylor_verify.studies.tradeoff.timing import Timed
+
+
+@dataclass(frozen=True)
+class Point:
+    """One setting's accuracy and time; ``because`` says why it is not sound, where it is not."""
+
+    timed: Timed
+    accuracy: Accuracy
+    standing: Standing
+    because: str = ""
+
+    @property
+    def label(self) -> str:
+        return self.timed.setting.label
+
+    @property
+    def asked_digits(self) -> float | None:
+        """Those of the tolerance; a step asks for none."""
+        setting = self.timed.setting
+        asks = setting.asked == "tolerance" and setting.requested is not None
+        return digits(setting.requested or 0.0) if asks else None
+
+    @property
+    def error(self) -> float:
+        """The largest error of all tracked quantities and samples."""
+        return self.accuracy.worst
+
+    @property
+    def seconds(self) -> float:
+        """The best time of a solve, nothing compiled; of a sound point alone."""
+        assert self.timed.best is not None
+        return self.timed.best
+
+    def on(self, scene: str) -> TradePoint:
+        """Return the point as it is stored, without its times."""
+        setting, trajectory = self.timed.setting, self.timed.trajectory
+        return TradePoint(
+            scene=scene,
+            solver=setting.solver.name,
+            setting=setting.solver.setting,
+            rung=setting.rung.name,
+            family=setting.family,
+            asked=setting.asked,
+            requested=setting.requested,
+            requested_digits=self.asked_digits,
+            achieved_digits=digits(self.error),
+            error=finite(self.error),
+            max={name: finite(value) for name, value in self.accuracy.max.items()},
+            final={name: finite(value) for name, value in self.accuracy.final.items()},
+            drift=finite(self.accuracy.drift),
+            drifting=self.accuracy.drifting,
+            steps=trajectory.steps,
+            evaluations=trajectory.evaluations,
+            outcome=trajectory.outcome.value,
+            standing=self.standing,
+            because=self.because,
+        )
+
+    def row(self) -> dict[str, Any]:
+        """Return the point with its times, as JSON has it; None is what does not exist or is not finite."""
+        achieved = complete(self.on(""))
+        del achieved["scene"]
+        return {
+            **achieved,
+            "seconds": self.timed.best,
+            "inner_seconds": self.timed.inner,
+            "spread": self.timed.spread,
+            "repeats": len(self.timed.seconds),
+            "first_seconds": self.timed.first,
+            "compile_seconds": self.timed.compiling,
+        }
+
+
+def point(timed: Timed, accuracy: Accuracy | None) -> Point:
+    """The point of a run; ``accuracy`` is None where there is no truth to compare with."""
+    trajectory = timed.trajectory
+    if trajectory.outcome is not Outcome.FINISHED:
+        outcome = trajectory.outcome
+        started = outcome is not Outcome.NOT_STARTED and not outcome.is_unavailable
+        because = trajectory.detail or trajectory.outcome.value
+        return Point(timed, Accuracy(), Standing.FAILED if started else Standing.NOT_RUN, because)
+    if accuracy is None:
+        return Point(timed, Accuracy(), Standing.UNDECIDED, "the truth is not to be had")
+    if not accuracy.worst < 1:
+        size = f"{accuracy.worst:.2g}"
+        because = f"it claims success with an error of {size}, the size of the motion"
+        return Point(timed, accuracy, Standing.FALSE, because)
+    if timed.best is None:
+        return Point(timed, accuracy, Standing.UNDECIDED, "it was not timed")
+    return Point(timed, accuracy, Standing.SOUND)
+
+
+def digits(error: float) -> float | None:
+    """How many decimal digits an error leaves; None of one that is no number or leaves them all."""
+    return -log10(error) if error > 0 and isfinite(error) else None

@@ -1,0 +1,176 @@
+"""The cheapest setting that reaches an error, with a margin, over an ensemble of starts."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import Any, Final
+
+from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.reading.positive import positive
+from taylor_verify.scenes.reading.reader import as_scene
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import PROCESS
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.studies.tradeoff.attainability import left_out, narrowest
+from taylor_verify.studies.tradeoff.front import sound_points
+from taylor_verify.studies.tradeoff.point import Point
+from taylor_verify.studies.tradeoff.setting import Setting, label, settings
+from taylor_verify.studies.tradeoff.starts import nearby
+from taylor_verify.studies.tradeoff.timing import SEED
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, Truths, trade_off
+
+# A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
+MARGIN: Final = 2.0
+# These may compute on a wider precision than they answer on, and so below its floor.
+_OF_ANOTHER_PRECISION: Final = (PROCESS, "mpmath:")
+
+
+class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
+    """No setting reaches the target; the text says what comes nearest."""
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """A setting ready to run: ``solver.solve(pose(scene, rung))``, ``taylor_verify.run``, or ``command``.
+
+    ``error`` is the largest over the scene's own start and ``starts`` - 1 others; ``margin`` times
+    it is not above ``target``. ``seconds`` is the best time of a solve, nothing compiled. ``left_out``
+    names the rungs that were not measured, because no arithmetic of theirs can reach the target.
+    """
+
+    scene: str
+    solver: Solver
+    rung: Rung
+    target: float
+    error: float
+    margin: float
+    starts: int
+    seed: int
+    seconds: float
+    left_out: tuple[str, ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """As ``tradeoff --target --json`` prints it."""
+        return {
+            "solver": self.solver.name,
+            "setting": self.solver.setting,
+            "rung": self.rung.name,
+            "target": self.target,
+            "error": self.error,
+            "margin": self.margin,
+            "starts": self.starts,
+            "seed": self.seed,
+            "seconds": self.seconds,
+            "left_out": list(self.left_out),
+            "command": self.command,
+            "sentence": self.sentence,
+        }
+
+    @property
+    def command(self) -> str:
+        """What runs and judges it, as it is typed into a shell."""
+        words = ["taylor-verify", "run", self.scene, "--solver", self.solver.name]
+        return shlex.join([*words, "--rung", self.rung.name])
+
+    @property
+    def sentence(self) -> str:
+        """The same for a person, with what was not measured and why."""
+        return (
+            f"To stay below {self.target:.3g}: {label(self.solver, self.rung)}, "
+            f"{self.seconds:.3g} s per solve. Its largest error over {self.starts} starts "
+            f"(seed {self.seed}) is {self.error:.2g}; a margin of {self.margin:g} is kept."
+            f"{_not_measured(self.left_out)}"
+        )
+
+
+def recommend(
+    scene: Scene | str | PathLike[str],
+    error: float,
+    asked: Sequence[Setting] | None = None,
+    seed: int = SEED,
+) -> Recommendation:
+    """Return the fastest setting measured here; the arguments are those of `taylor_verify.recommend`."""
+    check_target(error)
+    scene = as_scene(scene)
+    asked = settings(scene) if asked is None else asked
+    without = left_out(scene, (one.rung for one in asked if _computes_on_its_rung(one)), error)
+    kept = [one for one in asked if one.rung not in without or not _computes_on_its_rung(one)]
+    reasons = tuple(without.values())
+    if not kept and reasons:
+        raise OutOfReach(f"{_none_below(scene, error)}: {'; '.join(reasons)}{_wider(scene, error)}")
+    return replace(recommended(trade_off(scene, kept, seed=seed), error), left_out=reasons)
+
+
+def _computes_on_its_rung(setting: Setting) -> bool:
+    return not setting.solver.name.startswith(_OF_ANOTHER_PRECISION)
+
+
+def _not_measured(reasons: Sequence[str]) -> str:
+    return f" Not measured: {'; '.join(reasons)}." if reasons else ""
+
+
+def check_target(error: float) -> None:
+    """Raise ValueError for a target that is no positive number."""
+    positive(error, "error", "a positive error")
+
+
+def recommended(trade: TradeOff, error: float) -> Recommendation:
+    """The same from a trade that is measured already.
+
+    ``error`` is as in `recommend`. Raises OutOfReach where nothing reaches it.
+    """
+    scenes = nearby(trade.scene, trade.seed)
+    truths = Truths()
+    hopeful = [p for p in sound_points(trade.points) if MARGIN * p.error <= error]
+    for p in sorted(hopeful, key=lambda p: p.seconds):
+        worst = _largest(p, scenes, truths, error)
+        if worst is not None:
+            setting = p.timed.setting
+            return Recommendation(
+                *(trade.scene.name, setting.solver, setting.rung, error, worst, MARGIN),
+                *(1 + len(scenes), trade.seed, p.seconds),
+            )
+    raise OutOfReach(_nearest(trade, error))
+
+
+def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -> float | None:
+    """The largest error over all starts; None where one of them misses the target, or has no truth."""
+    setting, worst = p.timed.setting, p.error
+    for scene in scenes:
+        try:
+            problem = pose(scene, setting.rung)
+        except NotRepresentable:
+            return None
+        found = truths.accuracy(problem, setting.solver.solve(problem))
+        if found is None or not MARGIN * found.worst <= target:
+            return None
+        worst = max(worst, found.worst)
+    return worst
+
+
+def _nearest(trade: TradeOff, error: float) -> str:
+    asked, wider = _none_below(trade.scene, error), _wider(trade.scene, error)
+    sound = sound_points(trade.points)
+    if not sound:
+        return f"{asked}; none gave a sound answer{wider}"
+    best = min(sound, key=lambda p: p.error)
+    nearest = f"the most accurate, {best.label}, has an error of {best.error:.2g} on the scene"
+    return f"{asked}; {nearest}{wider}"
+
+
+def _none_below(scene: Scene, error: float) -> str:
+    return f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}"
+
+
+def _wider(scene: Scene, error: float) -> str:
+    """The narrowest rung that would do, in words."""
+    found = narrowest(scene, error / MARGIN)
+    if found is None:
+        return "; no precision is known on which rounding alone leaves so little"
+    rung, least = found
+    leaves = f"{rung.name} ({least:.2g})"
+    return f"; the narrowest precision on which rounding alone leaves so little is {leaves}"

@@ -1,0 +1,143 @@
+"""The measurement of speed against accuracy, as stored: errors in one file, times in another.
+
+tradeoff.json           of every scene and setting what was asked and achieved; the same on any
+                        machine, but for the rounding
+tradeoff-timings.json   seconds, ratios and intervals; the machine's own, and never compared
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.standing import Standing
+from taylor_verify.studies.tradeoff.document import (
+    TradeNumbers,
+    TradePoint,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
+)
+
+NUMBERS: Final = f"{store.FOLDER}/tradeoff.json"
+TIMINGS: Final = f"{store.FOLDER}/tradeoff-timings.json"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --tradeoff; do not edit"}
+# What both files have of a setting.
+_NAMES: Final = ("scene", "solver", "rung")
+_TIMES: Final = tuple(f.name for f in fields(TradeTiming) if f.name not in _NAMES)
+
+
+@dataclass(frozen=True)
+class TimedPoint:
+    """A sound setting on a scene: what it achieved, and the time that it took in every process."""
+
+    point: TradePoint
+    timing: TradeTiming
+
+    @property
+    def error(self) -> float:
+        """The largest error; infinite where it is no number."""
+        return float("inf") if self.point.error is None else self.point.error
+
+
+@dataclass(frozen=True)
+class Trade:
+    """One scene: a point for every setting, the coarsest of a family first, and the times of some.
+
+    ``timings`` are by solver and rung.
+    """
+
+    about: TradeScene
+    points: tuple[TradePoint, ...]
+    timings: Mapping[tuple[str, str], TradeTiming]
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene."""
+        return self.about.scene
+
+    @property
+    def sound(self) -> tuple[TimedPoint, ...]:
+        """What may be compared: sound, and timed in every process."""
+        timed = ((p, self._timing(p)) for p in self.points if p.standing is Standing.SOUND)
+        return tuple(TimedPoint(p, timing) for p, timing in timed if timing is not None)
+
+    @property
+    def uncompared(self) -> list[TradePoint]:
+        """The points that are not sound, or were not timed in every process."""
+        compared = {(row.point.solver, row.point.rung) for row in self.sound}
+        return [p for p in self.points if (p.solver, p.rung) not in compared]
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A row of `tradeoff --json` for every setting, with the ratio to the yardstick besides."""
+        return [self._row(p) for p in self.points]
+
+    def document(self) -> dict[str, Any]:
+        """Return what `tradeoff --json` has for one scene, as far as it is stored."""
+        return {
+            "scene": self.scene,
+            "track": list(self.about.track),
+            "points": self.rows,
+            "attainable": self.about.attainable,
+        }
+
+    def _timing(self, point: TradePoint) -> TradeTiming | None:
+        return self.timings.get((point.solver, point.rung))
+
+    def _row(self, point: TradePoint) -> dict[str, Any]:
+        timing = self._timing(point)
+        times = {name: getattr(timing, name, None) for name in _TIMES}
+        return {**complete(point), **times, "spread": _spread(timing)}
+
+
+@dataclass(frozen=True)
+class Trades:
+    """The whole measurement: its numbers, its times, and both of them together scene by scene."""
+
+    numbers: TradeNumbers
+    times: TradeTimings
+
+    @property
+    def trades(self) -> tuple[Trade, ...]:
+        """Every scene with its points and their times."""
+        return tuple(map(self._trade, self.numbers.scenes))
+
+    def _trade(self, about: TradeScene) -> Trade:
+        points = tuple(p for p in self.numbers.points if p.scene == about.scene)
+        own = [timing for timing in self.times.timings if timing.scene == about.scene]
+        return Trade(about, points, {(timing.solver, timing.rung): timing for timing in own})
+
+
+def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> tuple[Path, ...]:
+    """Store a measurement below ``folder``, both files or none. Raises OSError."""
+    documents = {NUMBERS: numbers, TIMINGS: times}
+    texts = {
+        name: store.laid_out({**_MADE_BY, **complete(document)})
+        for name, document in documents.items()
+    }
+    return replace_files(folder, texts)
+
+
+def load(folder: Path) -> Trades | None:
+    """Return the measurement stored below ``folder``; None where there is none.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
+    file = folder / NUMBERS
+    if not file.exists():
+        return None
+    return Trades(read(file, TradeNumbers), read(folder / TIMINGS, TradeTimings))
+
+
+def _spread(timing: TradeTiming | None) -> float | None:
+    """Return the upper end of the interval over the lower, which a picture draws as a bar."""
+    if timing is None or not (timing.low and timing.high):
+        return None
+    return timing.high / timing.low

@@ -1,0 +1,95 @@
+"""The way the published times were taken, in words: what is timed, the method, the machine, the command."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from taylor_verify.publish.cells import figure
+from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, Trades
+
+_WHAT_IS_TIMED: Final = (
+    (
+        "taylor",
+        "heyoka's steps, compiled, and the search for the longest step, in Python",
+        "compiling, rounding the scene to the rung, making exact numbers of the answer",
+    ),
+    (
+        "scipy",
+        "`solve_ivp` as a whole, with `t_eval`; the equations are straight-line Python on plain "
+        "floats, each operation once; LSODA's own steps are compiled Fortran",
+        "loading SciPy, making the straight-line code",
+    ),
+    (
+        "geometric",
+        "every step, Python throughout, and the attitude where it is tracked",
+        "nothing but rounding the scene",
+    ),
+    (
+        "closed-form",
+        "the orbit's constants, the phase and Jacobi's functions at all samples at once, NumPy and "
+        "compiled SciPy",
+        "loading SciPy",
+    ),
+    ("mpmath", "`odefun` as a whole, Python throughout", "making the straight-line code"),
+    (
+        "outside, process",
+        "what the program states of its own propagation; where it states nothing, all of it with "
+        "its start",
+        "what the program says it compiled before",
+    ),
+)
+
+
+def what_is_timed(found: Trades) -> str:
+    del found
+    columns = [Column("solver"), Column("in the time"), Column("not in it")]
+    return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
+
+
+def how_it_was_timed(found: Trades) -> list[str]:
+    """Return the method as it was, number by number."""
+    m, machine = found.times.method, found.times.machine
+    return [
+        f"{m.processes} fresh processes, one after the other. Hash seeds, places in memory and the "
+        "processor's frequency vary between processes, not within one, so the processes are what is "
+        "counted, and not the solves.",
+        f"In each {m.rounds} rounds; in a round every setting once, in an order drawn anew (seed "
+        f"{m.seed}). One measurement is as many solves as take {figure(m.least_seconds)} s or "
+        f"{m.times_resolution} times the clock's resolution ({figure(m.clock_resolution)} s), "
+        "whichever is longer, so that the resolution is below 1 %. Python's collector of garbage is "
+        "off. What takes more than a fifth of a second is solved once a process.",
+        f"Each time is divided by that of `{found.numbers.yardstick}` in the same round. A process "
+        "gives the median of its rounds; the table shows the median of the processes.",
+        _brackets(found),
+        f"Machine: {prose(machine.processor)}, Python {prose(machine.python)}. Ratios of "
+        "compiled code to Python, above all, are other ones elsewhere.",
+    ]
+
+
+def _brackets(found: Trades) -> str:
+    m = found.times.method
+    n, coverage = m.processes, f"{m.coverage:.1%}"
+    formula = (
+        f"the k-th smallest and the k-th largest of n do so with probability {prose(m.formula)}, "
+        f"k the largest that leaves {m.confidence:.0%}; here n = {n}"
+    )
+    if not m.coverage >= m.confidence:
+        return f"No interval is given: {formula}, where the extremes have no more than {coverage}."
+    return (
+        f"The brackets hold the median of what the processes are drawn from with {coverage}, however "
+        f"that is spread: {formula}. They say nothing of another machine."
+    )
+
+
+def remake(found: Trades) -> str:
+    packages = ", ".join(f"{name} {version}" for name, version in found.numbers.versions.items())
+    return (
+        f"`make tradeoff`, which is `taylor-verify publish --tradeoff`, measures anew and writes "
+        f"[tradeoff.json](../{NUMBERS}) (errors, the same on any machine but for the rounding) and "
+        f"[tradeoff-timings.json](../{TIMINGS}) (times, which are this machine's and which nothing "
+        "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
+        "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
+        "integrators of other libraries that are compiled as heyoka is. "
+        f"Made by {code(found.times.machine.command)} with {packages or 'unknown versions'}."
+    )

@@ -1,0 +1,1 @@
+"""A plain call of heyoka beside the driver of this suite."""

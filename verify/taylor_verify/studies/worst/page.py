@@ -1,0 +1,111 @@
+"""What the hunt for the worst has found: the stored rows, the scenes, and the page made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.publish.cells import figure
+from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.records import store
+from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies import measured
+from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
+
+WORST: Final = f"{store.FOLDER}/worst.json"
+PAGE: Final = "tables/worst.md"
+SHEET: Final = "tables/worst.csv"
+
+_MADE_BY: Final = {"made_by": "taylor-verify publish --worst; do not edit"}
+
+_WHAT: Final = (
+    "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
+    "component leave. How near does a sound solver come to it? In each family random places are drawn, "
+    "then steps are taken around the worst of them; the Taylor driver answers every scene on {rung}, and "
+    "the largest *error over attainable* of all its gates counts. A gate that is vacuous asks nothing "
+    "and does not count."
+)
+_KEPT: Final = (
+    "The worst scene of every family is kept in exact numbers, and runs with the extremes: "
+    "`taylor-verify run extremes`."
+)
+
+
+def write(folder: Path | str, study: WorstStudy) -> list[Path]:
+    """Store a search below ``folder``, and make its page. Raises OSError."""
+    place = Path(folder)
+    stored = replace_files(place, {WORST: store.laid_out({**_MADE_BY, **complete(study)})})
+    return [*stored, *replace_files(place, pages(place))]
+
+
+def keep(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
+    """Write scene files, by their names, in place of those that are there. Raises OSError."""
+    texts = {f"{name}.toml": text for name, text in scenes.items()}
+    return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
+
+
+def pages(folder: Path) -> dict[str, str]:
+    """The page of what is stored below ``folder``; nothing where there is none.
+
+    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
+    """
+    file = folder / WORST
+    if not file.exists():
+        return {}
+    study = load(folder)
+    return {PAGE: page(study), SHEET: measured.worst(study)}
+
+
+def load(folder: Path) -> WorstStudy:
+    """Return the search that is stored below ``folder``. Raises OSError and ValueError."""
+    return read(folder / WORST, WorstStudy)
+
+
+def page(study: WorstStudy) -> str:
+    """Return the page of the worst of each family, and of the search."""
+    factor, rung = f"{study.factor:g}", study.rung
+    families = sorted(study.families, key=lambda row: -row.ratio)
+    judged = sum(row.judged for row in families)
+    blocks = [
+        f"{MADE_BY}\n# The worst that a search has found",
+        _WHAT.format(factor=factor, rung=code(rung)),
+        f"Of {judged} scenes the worst is {code(families[0].scene)}: "
+        f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
+        _table(families),
+        _KEPT,
+        "## To remake this",
+        f"`taylor-verify publish --worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
+        "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
+        "find worse ones: the scenes that were found are the fact, and not that there are no others. "
+        f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST}).",
+        traced(complete(study.provenance)),
+    ]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _table(families: Sequence[WorstOfFamily]) -> str:
+    columns = [
+        Column("family"),
+        Column("scenes", True),
+        Column("error over attainable", True),
+        Column("in"),
+        Column("its error", True),
+        Column("verdict"),
+        Column("kept as"),
+    ]
+    rows = [
+        [
+            prose(row.what),
+            str(row.judged),
+            figure(row.ratio),
+            code(row.quantity),
+            figure(row.max),
+            row.verdict.value,
+            code(row.scene),
+        ]
+        for row in families
+    ]
+    return table(columns, rows)

@@ -1,0 +1,1 @@
+"""The pytest plugin, and what a test may demand of a solver."""

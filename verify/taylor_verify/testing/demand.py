@@ -1,0 +1,145 @@
+"""Rows that somebody's test demands of a judgement, and the words for those that are no pass."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import Final
+
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.quantities import STATES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.reading.faults import brief
+from taylor_verify.solvers.trajectory import Outcome
+
+Only = str | Collection[str] | None
+
+CONSERVED: Final = "conserved"
+
+_MEND: Final = {
+    Status.UNDECIDED: "no fault of the solver, and no pass; a larger tolerance may decide it",
+    Status.VACUOUS: "rounding alone reaches the size of the motion, so that no answer could fail: "
+    "take a wider rung, a tolerance of your own, or only='conserved'",
+    Status.REFUSED: "the rung cannot hold this scene: take another",
+}
+_MEND_UNAVAILABLE: Final = {
+    Outcome.NO_PACKAGE.value: "install the package that is missing: the command stands above",
+    Outcome.NO_FORMAT.value: "this machine lacks the number format of the rung: take another rung",
+    Outcome.UNSUITED.value: "the solver is not made for it: take another solver, or another rung",
+}
+
+
+def demanded_rows(judgement: Judgement, only: Only = None) -> list[Verdict]:
+    """Return the verdicts that a test asks for; never none.
+
+    ``only`` are the quantities asked for, or ``conserved`` for all that are. A judgement of a run that came
+    to no truth is demanded whole: nothing of it can be left out. Raises ValueError for a quantity that
+    is not there.
+    """
+    verdicts = list(judgement.verdicts)
+    if judgement.record is None or only is None:
+        return verdicts
+    if only == CONSERVED:
+        return [verdict for verdict in verdicts if verdict.is_conserved]
+    if not isinstance(only, str) and not (
+        isinstance(only, Collection) and all(isinstance(name, str) for name in only)
+    ):
+        raise ValueError(f"expected names of quantities, got {brief(only)} @ only")
+    wanted = [only] if isinstance(only, str) else list(only)
+    known = [*(verdict.quantity for verdict in verdicts), CONSERVED]
+    unknown = [name for name in wanted if name not in known]
+    if unknown or not wanted:
+        got = ", ".join(unknown) or "nothing"
+        raise ValueError(f"expected some of {', '.join(known)}, got {got} @ only")
+    return [verdict for verdict in verdicts if verdict.quantity in wanted]
+
+
+def is_met(verdict: Verdict) -> bool:
+    """Return True for a pass; undecided, vacuous, refused and unavailable are none."""
+    return verdict.verdict is Status.PASS
+
+
+# The words.
+
+
+def report(judgement: Judgement, demanded: Sequence[Verdict]) -> str:
+    """Return the demanded rows as text, quantity by quantity, those that are no pass first."""
+    some = judgement.verdicts[0]
+    ordered = sorted(demanded, key=is_met)
+    unmet = [verdict for verdict in ordered if not is_met(verdict)]
+    lines = [
+        f"{some.solver} on {some.scene}, {some.rung}: "
+        f"{len(unmet)} of {len(ordered)} judged quantities are no pass"
+    ]
+    against = ""
+    if judgement.record is not None:
+        route, regime = judgement.record.route, judgement.record.regime
+        against = f"the exact motion of the same rounded data (route {route}; {regime})"
+    for verdict in ordered:
+        lines += _passed(verdict) if is_met(verdict) else _failed(verdict, against)
+    return "\n".join([*lines, *_hints(ordered)])
+
+
+def _passed(verdict: Verdict) -> list[str]:
+    sizes = f"{_short(verdict.max)} <= {_short(verdict.bound)}{_unit(verdict)}"
+    return [f"{verdict.quantity}: pass, {sizes}"]
+
+
+def _failed(verdict: Verdict, against: str) -> list[str]:
+    outcome = f", {verdict.outcome}" if verdict.max is None else ""
+    lines = [f"{verdict.quantity}: {verdict.verdict}{outcome}; {_said(verdict)}"]
+    lines += [f"    {name:<8} {text}" for name, text in _reasons(verdict, against) if text]
+    return lines
+
+
+def _said(verdict: Verdict) -> str:
+    """Return the sentence of a verdict without its quantity."""
+    return verdict.sentence.removeprefix(f"{verdict.quantity}: ")
+
+
+def _reasons(verdict: Verdict, against: str) -> Iterator[tuple[str, str]]:
+    """The rest of what a person needs to act: each a word and what it says."""
+    if against:
+        yield "against", f"its value on {against}" if verdict.is_conserved else against
+    if verdict.bound is not None:
+        yield "bound", f"{_short(verdict.bound)}{_unit(verdict)}{_times_attainable(verdict)}"
+    yield "mend", _MEND.get(verdict.verdict, "")
+    if verdict.verdict is Status.UNAVAILABLE:
+        yield "mend", _MEND_UNAVAILABLE.get(verdict.outcome, "")
+
+
+def _times_attainable(verdict: Verdict) -> str:
+    if verdict.ratio is None:
+        return ""
+    where = "" if verdict.ratio_at == verdict.at else f" at t = {_short(verdict.ratio_at)}"
+    return f"; the error is {_short(verdict.ratio)} times what perfect rounding would leave{where}"
+
+
+def _hints(demanded: Sequence[Verdict]) -> list[str]:
+    """What the pattern of passes and fails points at."""
+    states = [verdict for verdict in demanded if verdict.quantity in STATES]
+    conserved = [verdict for verdict in demanded if verdict.is_conserved]
+    all_conserved = bool(conserved) and all(map(is_met, conserved))
+    if states and all_conserved and not any(map(is_met, states)):
+        names = ", ".join(verdict.quantity for verdict in conserved)
+        return [
+            f"{names} hold and the state does not: the wrong place on an orbit that conserves as it "
+            "should. Look at the time, a sign or the axes before the step"
+        ]
+    unmet = [verdict.quantity for verdict in demanded if not is_met(verdict)]
+    if "attitude" in unmet and not {"omega", "impulse"} & set(unmet):
+        return [
+            "the body axes pass and the attitude does not: is it a quaternion, scalar first, from "
+            "body to space, and of the method's full order?"
+        ]
+    return []
+
+
+def _short(value: float | None) -> str:
+    return "none" if value is None else f"{value:.3g}"
+
+
+def _unit(verdict: Verdict) -> str:
+    if not verdict.unit:
+        return ""
+    return " rad" if verdict.unit == "rad" else f" x {verdict.unit}"
