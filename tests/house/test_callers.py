@@ -24,7 +24,7 @@ from taylor_verify.scenes.library import cases_directory
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.registry import check_name
-from taylor_verify.studies.tradeoff.recommend import recommend
+from taylor_verify.studies.tradeoff.recommendation import recommend
 from taylor_verify.testing.demand import demanded_rows
 
 SCENE = "euler/generic"

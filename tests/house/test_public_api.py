@@ -24,7 +24,7 @@ from taylor_verify.scenes.precision import Rung, rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.recommend import recommend
+from taylor_verify.studies.tradeoff.recommendation import recommend
 from taylor_verify.studies.tradeoff.setting import setting
 
 NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
@@ -91,7 +91,7 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
     assert loaded.isdisjoint(slow)
     assert {name for name in loaded if name.startswith("taylor_verify.")} == {
         function.__module__ for function in FUNCTIONS
-    } | {"taylor_verify.records.version"}
+    } | {"taylor_verify.records", "taylor_verify.records.version", "taylor_verify.studies"}
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)

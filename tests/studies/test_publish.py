@@ -314,7 +314,7 @@ def test_data_that_are_no_verdicts_are_refused(report: Path, text: str, fault: s
 def test_publishing_imports_no_physics(report: Path) -> None:
     """Publishing, in a process of its own, loads no integrator, no arithmetic and no other room.
 
-    The light modules of the package itself are imported before: tests/test_public_api.py names them.
+    The light modules of the package itself are imported before: tests/house/test_public_api.py names them.
     """
     program = (
         "import sys, taylor_verify; light = set(sys.modules);"

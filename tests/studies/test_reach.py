@@ -28,7 +28,7 @@ from taylor_verify.studies.reach.families import (
     period_of,
 )
 from taylor_verify.studies.tradeoff.attainability import least_error, left_out, narrowest
-from taylor_verify.studies.tradeoff.recommend import MARGIN, OutOfReach, recommend
+from taylor_verify.studies.tradeoff.recommendation import MARGIN, OutOfReach, recommend
 from taylor_verify.studies.tradeoff.setting import setting
 
 F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")

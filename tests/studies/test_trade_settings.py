@@ -25,7 +25,7 @@ from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify.studies.tradeoff.cold import cold
-from taylor_verify.studies.tradeoff.recommend import recommend
+from taylor_verify.studies.tradeoff.recommendation import recommend
 from taylor_verify.studies.tradeoff.setting import (
     NOTHING,
     STEP,

@@ -37,7 +37,7 @@ from taylor_verify.studies.tradeoff.front import (
     request_sentences,
 )
 from taylor_verify.studies.tradeoff.point import Point, point
-from taylor_verify.studies.tradeoff.recommend import MARGIN, OutOfReach, recommend, recommended
+from taylor_verify.studies.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.starts import STARTS, nearby
 from taylor_verify.studies.tradeoff.timing import Timed, cold_caches, timed

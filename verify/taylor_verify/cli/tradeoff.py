@@ -123,7 +123,7 @@ def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
 
 
 def _target(text: str | None) -> float | None:
-    from taylor_verify.studies.tradeoff.recommend import check_target
+    from taylor_verify.studies.tradeoff.recommendation import check_target
 
     if text is None:
         return None
@@ -137,7 +137,7 @@ def _target(text: str | None) -> float | None:
 
 def _recommended(trade: TradeOff, target: float) -> tuple[dict[str, Any] | None, list[str]]:
     """The document of a recommendation, or none and the reason."""
-    from taylor_verify.studies.tradeoff.recommend import OutOfReach, recommended
+    from taylor_verify.studies.tradeoff.recommendation import OutOfReach, recommended
 
     try:
         return recommended(trade, target).document(), []

@@ -1,7 +1,7 @@
 """The likely causes of a failure: every hypothesis tried on one answer, the best of them said.
 
 To add a hypothesis: write a function from Material to candidates in the file of its family, name it in
-HYPOTHESES, write its broken twin in tests/test_causes.py and its line in docs/verdicts.md.
+HYPOTHESES, write its broken twin in tests/judge/test_causes.py and its line in docs/verdicts.md.
 """
 
 from __future__ import annotations

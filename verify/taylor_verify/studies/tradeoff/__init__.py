@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from taylor_verify.scenes.scene import Scene
-    from taylor_verify.studies.tradeoff.recommend import Recommendation
+    from taylor_verify.studies.tradeoff.recommendation import Recommendation
     from taylor_verify.studies.tradeoff.setting import Setting
     from taylor_verify.studies.tradeoff.trade_off import TradeOff
 
