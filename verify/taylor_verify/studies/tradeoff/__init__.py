@@ -93,7 +93,7 @@ def recommend(
     ValueError
         For an error that is no positive number.
     """
-    from taylor_verify.studies.tradeoff import recommend as of
+    from taylor_verify.studies.tradeoff import recommendation
     from taylor_verify.studies.tradeoff.timing import SEED
 
-    return of.recommend(scene, error, asked, SEED if seed is None else seed)
+    return recommendation.recommend(scene, error, asked, SEED if seed is None else seed)
