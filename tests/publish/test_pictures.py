@@ -514,7 +514,7 @@ def test_alt_texts_need_no_matplotlib() -> None:
     rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from taylor_verify.publish.pictures import trade, prices, time_by_rung\n"
+        "from taylor_verify.studies.tradeoff.pictures import trade\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

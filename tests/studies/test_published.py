@@ -149,13 +149,13 @@ def dead_links(page: Path) -> Iterator[str]:
 
 
 def test_no_other_test_reads_what_is_published() -> None:
-    """Tests of code make their data; the scripts of reports/upstream are run where they lie."""
+    """Tests of code make their data; scripts of reports/upstream and pages of the site stay where they lie."""
     reading = {
         file.name
         for file in Path(__file__).parents[1].rglob("*.py")
         if re.search(r"""(?<!tmp_path )/ "reports["/]""", file.read_text(encoding="utf-8"))
     }
-    assert reading == {"test_published.py", "test_upstream.py"}
+    assert reading - {"conftest.py"} == {"test_published.py", "test_upstream.py"}
 
 
 # Current: what is published is what the code makes of the published data.

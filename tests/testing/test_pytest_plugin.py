@@ -24,8 +24,8 @@ pytest_plugins = ["pytester"]
 LIGHT = {
     f"taylor_verify.{name}"
     for name in (
-        *("check", "claims", "exact", "explain", "pytest_plugin", "run", "run_many", "scenes"),
-        *("tradeoff", "version"),
+        *("check", "claims", "exact", "explain", "records", "records.version", "run", "run_many"),
+        *("scenes", "studies", "studies.tradeoff", "testing", "testing.plugin"),
     )
 }
 HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}
