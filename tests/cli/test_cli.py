@@ -67,7 +67,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     assert found == {
         "scenes": list(library.names()),
         "extremes": list(library.names("extremes")),
-        "solvers": list(registry.NAMES),
+        "solvers": list(registry.solver_names()),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
         "formats": [*READERS, *PART_READERS],
