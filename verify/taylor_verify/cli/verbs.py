@@ -27,13 +27,13 @@ def list_all(options: argparse.Namespace) -> Answer:
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reading.reader import load
-    from taylor_verify.solvers.files.formats.listing import formats
+    from taylor_verify.solvers.files.formats.reading import FORMATS
     from taylor_verify.solvers.registry import remarks, solver_names
 
     del options
     scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
     titles = {name: load(name).title for group in scenes.values() for name in group}
-    read = formats()
+    read = {suffix: one.sentence for suffix, one in FORMATS.items()}
     found = {
         **scenes,
         "solvers": list(solver_names()),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from io import TextIOWrapper
 from pathlib import Path
 from typing import BinaryIO, Final
@@ -24,9 +24,8 @@ from taylor_verify.solvers.values import is_number
 _LINE: Final = Limit(2**20, "characters in a line", "a thousand columns of a thousand each")
 
 
-def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+def read(file: BinaryIO, path: Path) -> list[Column]:
     """Return the columns; # begins a comment line. The rows are counted before any of them is kept."""
-    del known
     text = TextIOWrapper(file, encoding="utf-8-sig")
     try:
         _check_count(text, path)
