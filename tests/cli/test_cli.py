@@ -30,7 +30,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.guide import GUIDE
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.solvers import registry
-from taylor_verify.solvers.files.formats.reading import PART_READERS, READERS
+from taylor_verify.solvers.files.formats.reading import FORMATS
 
 ROOT = Path(__file__).resolve().parents[2]
 GENERIC = library.cases_directory() / "euler" / "generic.toml"
@@ -67,10 +67,10 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     assert found == {
         "scenes": list(library.names()),
         "extremes": list(library.names("extremes")),
-        "solvers": list(registry.NAMES),
+        "solvers": list(registry.solver_names()),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
-        "formats": [*READERS, *PART_READERS],
+        "formats": list(FORMATS),
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out

@@ -23,7 +23,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import cases_directory
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.registry import check_name
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.studies.tradeoff.recommendation import recommend
 from taylor_verify.testing.demand import demanded_rows
 
@@ -264,7 +264,7 @@ def test_only_takes_names(only: Any, judgement: Judgement) -> None:
 def test_no_setting_of_a_solver_is_taken_for_a_fault_of_ours(solver: str, number: str) -> None:
     """Every number of a solver's name is positive and one that a double holds."""
     with pytest.raises(ValueError, match=r"^expected .*, got .*"):
-        check_name(solver.format(number))
+        solver_named(solver.format(number))
 
 
 def test_a_long_setting_is_cut_short() -> None:
@@ -277,11 +277,11 @@ def test_a_long_setting_is_cut_short() -> None:
 def test_settings_that_never_end_are_refused() -> None:
     """mpmath would look for the bits of a huge tolerance, and sum a series of a billion terms, for ever."""
     with pytest.raises(ValueError, match="expected a tolerance of at most 1, got '1e300' @ tol"):
-        check_name("mpmath:odefun?tol=1e300")
+        solver_named("mpmath:odefun?tol=1e300")
     with pytest.raises(
         ValueError, match="expected a whole number from 2 to 1000, got '1e9' @ degree"
     ):
-        check_name("mpmath:odefun?degree=1e9")
+        solver_named("mpmath:odefun?degree=1e9")
 
 
 # What is not ours.

@@ -26,7 +26,7 @@ from taylor_verify.records.answers import Order, Stall
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import names
-from taylor_verify.solvers.registry import NAMES
+from taylor_verify.solvers.registry import FAMILIES
 from taylor_verify.solvers.trajectory import Outcome
 
 PAGES = sorted(page for page in DOCS.rglob("*.md") if "_build" not in page.parts)
@@ -197,13 +197,12 @@ def test_every_exception_told_of_exists() -> None:
 
 
 def test_every_kind_of_solver_is_documented() -> None:
-    """Each method that the command line knows by name is named, those of other libraries by theirs."""
+    """Each method that the command line knows by name is named; `list` names those of a folder."""
     page = text_of("command-line.md")
-    for name in NAMES:
-        method = name.partition("?")[0].rpartition(":")[2]
-        library = {"cvode": "CVODE", "cyrk": "CyRK", "rebound": "REBOUND"}
-        told = method.partition("-")[0] if name.startswith("outside:") else method
-        assert library.get(told, told) in page
+    for family in FAMILIES:
+        assert family.prefix.rstrip("?") in page
+        for name in family.names or ():
+            assert name.partition("?")[0].rpartition(":")[2] in page
 
 
 COMMANDS = [

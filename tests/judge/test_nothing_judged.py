@@ -17,8 +17,7 @@ from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.solvers import scipy as solver
-from taylor_verify.solvers.entrants import entrant
-from taylor_verify.solvers.entrants.environment import Environment, NotMade
+from taylor_verify.solvers.engines import engine, environment
 from taylor_verify.solvers.trajectory import Outcome
 
 SCENE = "euler/generic"
@@ -43,6 +42,10 @@ def with_broken_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solver, "import_module", broken)
 
 
+def without_uv(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(environment, "_uv", lambda: None)
+
+
 def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "heyoka", None)
 
@@ -54,6 +57,7 @@ def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
         (with_broken_scipy, "scipy:DOP853", INSTALL),
         (without_scipy, "closed-form:ellipj", INSTALL),
         (without_heyoka, "taylor", "pip install 'taylor-verify[taylor]'"),
+        (without_uv, "outside:cvode-bdf", "pip install 'taylor-verify[engines]'"),
     ],
 )
 def test_a_missing_package_is_exit_2_with_the_command(
@@ -96,18 +100,18 @@ def test_on_a_terminal_the_reason_is_said_once(
 def test_an_environment_that_cannot_be_made_is_a_missing_package(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    """From the first scene on: unavailable with the reason and the requirements, exit status 2."""
+    """From the first scene on: unavailable with the reason, exit status 2."""
 
-    def refuse(self: Environment, tell: object) -> None:
-        raise NotMade("pip: no network")
+    def refuse(name: str, block: str, tell: object) -> str:
+        raise environment.NotMade("uv: no network")
 
-    monkeypatch.setattr(Environment, "make", refuse)
-    monkeypatch.setattr(entrant, "_failed", {})
-    name = next(one.name for one in entrant.entrants() if not one.unavailable)
+    monkeypatch.setattr(environment, "_uv", lambda: "uv")
+    monkeypatch.setattr(environment, "interpreter", refuse)
+    monkeypatch.setattr(engine, "_interpreters", {})
     for _ in range(2):
-        assert main(["run", SCENE, "--solver", f"outside:{name}"]) == 2
+        assert main(["run", SCENE, "--solver", "outside:cvode-bdf"]) == 2
         told = last_line(capsys.readouterr().out)
-        assert "its environment could not be made: pip: no network; it takes: pip install" in told
+        assert "the environment of cvode could not be made: uv: no network" in told
 
 
 def test_a_missing_number_format_is_exit_0_and_said(

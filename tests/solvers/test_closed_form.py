@@ -22,7 +22,7 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import closed_form
-from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.studies.tradeoff.accuracy import Truth
 from taylor_verify.studies.tradeoff.plain_doubles import cases, plain_doubles
@@ -188,4 +188,4 @@ def test_other_rungs_are_unavailable() -> None:
 def test_a_name_that_is_wrong_is_told(name: str) -> None:
     """It has one form and no settings."""
     with pytest.raises(ValueError, match="expected a"):
-        check_name(name)
+        solver_named(name)

@@ -1,16 +1,13 @@
-"""The environment of a script: made when it is asked for, once, whole, and never half."""
+"""The environment of a script: made by uv when it is asked for, whole, and never half."""
 
 from __future__ import annotations
 
 import os
-import re
-import shlex
-import shutil
 import sys
 import threading
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from samples import THREE_INSTANTS
@@ -18,15 +15,16 @@ from samples import THREE_INSTANTS
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.entrants import entrant
-from taylor_verify.solvers.entrants.entrant import entrants, prepare
-from taylor_verify.solvers.entrants.environment import Environment, NotMade, metadata
-from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.engines import engine, environment
+from taylor_verify.solvers.engines.engine import engines, named, prepare
+from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
 
 
-def problem(on: str = "f64") -> Problem:
-    return pose(read(THREE_INSTANTS, "short"), rung(on))
+def problem(scene: str = THREE_INSTANTS) -> Problem:
+    return pose(read(scene, "short"), rung("f64"))
 
 
 # An environment, made for a script that needs nothing.
@@ -37,19 +35,27 @@ TINY = """\
 # requires-python = ">=3.11"
 # dependencies = [{requirements}]
 # [tool.taylor-verify]
-# methods = ["still", "quiet"]
-# rungs = ["f64"]
+# title = "Tiny"
+# models = ["euler"]
+# [tool.taylor-verify.methods]
+# still = "at rest"
+# quiet = "at rest too"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
+# order = ["first", "second"]
 # ///
 import json, sys
 assert sys.prefix != sys.base_prefix
-assert sys.argv[1:] == ["still", "1e-09", "1e-10"], sys.argv
+assert sys.argv[1:] == ["method=still", "rtol=1e-09", "atol=1e-10", "order=second"], sys.argv
+{body}
 scene = json.load(sys.stdin)
 found = {{"t": scene["time"]["times"]["hex"], "steps": 7, "seconds": 0}}
 for i, name in enumerate(("w1", "w2", "w3")):
     found[name] = [scene["initial"]["omega"]["hex"][i]] * len(found["t"])
 json.dump(found, sys.stdout)
 """
-NAME = "outside:tiny-still?rtol=1e-9&atol=1e-10"
+NAME = "outside:tiny-still?rtol=1e-9&atol=1e-10&order=second"
 NOWHERE = '"nothing @ file:///nowhere/nothing-1.0-py3-none-any.whl"'
 
 Script = Callable[..., Path]
@@ -57,148 +63,205 @@ Script = Callable[..., Path]
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache folder of the user, and no uv: it has a cache of its own."""
+    """An empty cache folder of the user and of uv, and no network."""
     folder = tmp_path / "cache"
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
-    monkeypatch.setattr(shutil, "which", lambda name: None)
-    monkeypatch.setattr(entrant, "_failed", {})
+    monkeypatch.setenv("UV_CACHE_DIR", str(folder / "uv"))
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    monkeypatch.setattr(engine, "_interpreters", {})
     return folder
 
 
 @pytest.fixture
-def script(
-    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Callable[..., Path]]:
+def script(cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Script]:
     """Writes the one script there is, in place of those that are shipped."""
     folder = tmp_path / "scripts"
     folder.mkdir()
-    monkeypatch.setattr(entrant, "SCRIPTS", folder)
+    monkeypatch.setattr(engine, "SCRIPTS", folder)
 
-    def write(requirements: str = "", text: str = TINY) -> Path:
+    def write(requirements: str = "", text: str = TINY, body: str = "") -> Path:
         file = folder / "with_tiny.py"
-        file.write_text(text.format(requirements=requirements))
-        entrants.cache_clear()
+        file.write_text(text.format(requirements=requirements, body=body))
+        engines.cache_clear()
         return file
 
     yield write
-    entrants.cache_clear()
+    engines.cache_clear()
 
 
-def environment_of(name: str = "tiny-still") -> Environment:
-    (found,) = [one.environment for one in entrants() if one.name == name]
-    assert found
-    return found
+def interpreter(name: str = NAME) -> Path:
+    """The Python of the environment, made if it is not there."""
+    block = named(name).block
+    return Path(environment.interpreter("tiny", block, lambda line: None))
 
 
-def test_an_entrant_runs_in_an_environment_of_its_own(script: Script, cache: Path) -> None:
-    """Asked to solve, it has its environment made, and is told method and tolerances."""
+def test_an_engine_runs_in_an_environment_of_its_own(script: Script, cache: Path) -> None:
+    """Asked to solve, it has its environment made, and gets its method and its settings."""
     script()
     found = solver_named(NAME).solve(problem())
     assert (found.outcome, found.detail) == (Outcome.FINISHED, "")
     assert (found.steps, found.seconds) == (7, 0.0)
-    assert environment_of().is_made
-    assert cache in environment_of().folder.parents
+    assert cache in interpreter().parents
 
 
 def test_to_name_and_to_list_makes_no_environment(script: Script, cache: Path) -> None:
-    """A list of the entrants, a check of a name and the question whether one can be had touch nothing."""
+    """A list of the engines, a name and the question whether one can be had touch nothing."""
     script()
-    assert [one.name for one in entrants()[:2]] == ["tiny-still", "tiny-quiet"]
-    check_name(NAME)
+    assert list(engines()) == ["tiny-still", "tiny-quiet"]
+    assert engine.usages()[0] == "outside:tiny-still?rtol=NUMBER&atol=NUMBER&order=first|second"
     assert solver_named(NAME).unavailable(rung("f64")) == ""
     assert "f64 alone" in solver_named(NAME).unavailable(rung("f80"))
     assert not cache.exists()
 
 
+def test_a_folder_is_the_registry(script: Script) -> None:
+    """A script that is put there is a solver, and one without methods has the name of its file."""
+    script(text=TINY.replace("# [tool.taylor-verify.methods]\n# still", "# [tool.other]\n# still"))
+    assert list(engines()) == ["tiny"]
+    assert solver_named("outside:tiny?order=second").settings[-1] == ("order", "second")
+    script().unlink()
+    engines.cache_clear()
+    assert not engines()
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("outside:tiny-still?order=third", "expected one of first, second, got 'third' @ order"),
+        ("outside:tiny-still?ordr=first", "did you mean order"),
+        ("outside:tiny", r"expected a method \(tiny-still, tiny-quiet\), got 'tiny'"),
+    ],
+)
+def test_a_setting_is_one_of_its_words(script: Script, name: str, words: str) -> None:
+    """A word that is none, a key that is none and a library without its method are refused."""
+    script()
+    with pytest.raises(ValueError, match=words):
+        solver_named(name)
+
+
+def test_a_model_that_is_not_taken_is_unsuited(script: Script) -> None:
+    """A script says in its metadata which models it takes."""
+    script()
+    solver = solver_named(NAME)
+    assert solver.unsuited(problem()) == ""
+    script(text=TINY.replace('["euler"]', '["kirchhoff"]'))
+    assert "made for kirchhoff alone" in solver_named(NAME).unsuited(problem())
+
+
 def test_an_environment_is_made_once(script: Script) -> None:
-    """What is there is not made again, by whichever of its names it is asked for."""
+    """An environment that is there is not made again, by whichever of its names it is asked for."""
     script()
     said: list[str] = []
     prepare("tiny-still", said.append)
-    mark = environment_of().folder / "mine"
+    mark = interpreter().parent / "mine"
     mark.touch()
     prepare("tiny-quiet", said.append)
     prepare(NAME, said.append)
     assert mark.exists()
-    assert said == ["making the environment of tiny, once: nothing"]
-
-
-def test_one_that_is_half_made_is_made_anew(script: Script) -> None:
-    """Without its mark an environment is not used, whatever is in the folder."""
-    script()
-    prepare("tiny-still")
-    made = environment_of()
-    (made.folder / ".whole").unlink()
-    (made.folder / "left over").touch()
-    assert not made.is_made
-    prepare("tiny-still")
-    assert made.is_made
-    assert not (made.folder / "left over").exists()
+    assert said == []
 
 
 def test_one_whose_python_is_gone_is_made_anew(script: Script) -> None:
     """An environment is whole only with an interpreter that can be started."""
     script()
-    prepare("tiny-still")
-    made = environment_of()
-    made.python.unlink()
-    made.python.symlink_to(made.folder / "no such python")
-    assert not made.is_made
-    prepare("tiny-still")
-    assert made.is_made
+    python = interpreter()
+    python.unlink()
+    python.symlink_to(python.parent / "no such python")
+    assert interpreter().exists()
 
 
-def test_two_at_once_make_it_once(script: Script) -> None:
-    """Whoever comes second waits for the first, and finds it made."""
+def test_two_at_once_make_it_together(script: Script) -> None:
+    """Two that ask for an environment at once have the same one, and it is whole."""
     script()
-    said: list[str] = []
+    found: list[Path] = []
     start = threading.Barrier(2)
 
     def make() -> None:
         start.wait()
-        environment_of().make(said.append)
+        found.append(interpreter())
 
     both = [threading.Thread(target=make) for _ in range(2)]
     for one in both:
         one.start()
     for one in both:
         one.join(120)
-    assert environment_of().is_made
-    assert sum(line.startswith("making") for line in said) == 1
-
-
-@pytest.mark.parametrize("works", [True, False], ids=["uv", "broken uv"])
-def test_uv_is_used_where_it_works(
-    works: bool, script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A uv on the PATH makes the environment; where it fails, venv and pip do."""
-    uv, called = tmp_path / "uv", tmp_path / "called"
-    making = f'{shlex.quote(sys.executable)} -m venv --without-pip "$5"' if works else "exit 2"
-    uv.write_text(f'#!/bin/sh\necho "$@" > {shlex.quote(str(called))}\n{making}\n')
-    uv.chmod(0o700)
-    monkeypatch.setattr(shutil, "which", lambda name: str(uv) if name == "uv" else None)
-    script()
-    prepare("tiny-still")
-    folder = environment_of().folder
-    assert called.read_text().split() == [
-        *("venv", "--quiet", "--python", sys.executable, str(folder))
-    ]
-    assert environment_of().is_made
+    assert len(found) == 2
+    assert found[0] == found[1]
     assert solver_named(NAME).solve(problem()).outcome is Outcome.FINISHED
 
 
-def test_another_pin_is_another_environment(script: Script) -> None:
-    """A changed requirement is never answered by the versions of before."""
+def test_uv_beside_the_interpreter_is_enough(
+    script: Script, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where no uv is on the PATH, that of the package beside this interpreter makes it."""
+    monkeypatch.setattr(environment.shutil, "which", lambda name: None)
     script()
-    before = environment_of().folder
-    script('"numpy==2.0.0"')
-    assert environment_of().folder != before
+    assert interpreter().exists()
+
+
+def test_without_uv_it_is_unavailable(script: Script, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A missing uv is a missing package: never a failure, and with the command that mends it."""
+    monkeypatch.setattr(environment, "_uv", lambda: None)
+    script()
+    solver = solver_named(NAME)
+    reason = solver.unavailable(rung("f64"))
+    assert reason == "uv is not installed: pip install 'taylor-verify[engines]'"
+    found = solver.solve(problem())
+    assert (found.outcome, found.detail) == (Outcome.NO_PACKAGE, reason)
+    with pytest.raises(NotMade, match="uv is not installed"):
+        prepare("tiny-still")
+
+
+def wheel(folder: Path, name: str, version: str) -> None:
+    """A package that knows its version, and nothing else."""
+    about = f"{name}-{version}.dist-info"
+    metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+    kind = "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+    with zipfile.ZipFile(folder / f"{name}-{version}-py3-none-any.whl", "w") as file:
+        file.writestr(f"{name}.py", f"VERSION = {version!r}\n")
+        file.writestr(f"{about}/METADATA", metadata)
+        file.writestr(f"{about}/WHEEL", kind)
+        file.writestr(f"{about}/RECORD", "")
+
+
+def test_a_version_is_that_of_the_package(
+    script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`version` runs the same script with another version of its package, each in its environment."""
+    for version in ("1.0", "2.0"):
+        wheel(tmp_path, "tinylib", version)
+    monkeypatch.setenv("UV_FIND_LINKS", str(tmp_path))
+    script('"tinylib==2.0"', body="import tinylib\nsys.exit(tinylib.VERSION)")
+    for query, version in (("", "2.0"), ("&version=1.0", "1.0"), ("&version=2.0", "2.0")):
+        found = solver_named(f"{NAME}{query}").solve(problem())
+        assert (found.outcome, found.detail) == (
+            Outcome.CRASHED,
+            f"exit status 1; stderr: {version}",
+        )
+    found = solver_named(f"{NAME}&version=3.0").solve(problem())
+    assert found.outcome is Outcome.NO_PACKAGE
+    assert "tinylib==3.0" in found.detail
+
+
+def test_an_environment_that_was_made_needs_no_network(
+    script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A filled cache is enough, also for an environment that has to be made anew."""
+    wheel(tmp_path, "tinylib", "1.0")
+    monkeypatch.setenv("UV_FIND_LINKS", str(tmp_path))
+    script('"tinylib==1.0"')
+    prepare("tiny-still")
+    monkeypatch.setenv("UV_INDEX_URL", "http://127.0.0.1:9/simple")
+    monkeypatch.delenv("UV_OFFLINE")
+    said: list[str] = []
+    prepare("tiny-still", said.append)
+    assert said == []
 
 
 def test_what_cannot_be_installed_is_told_in_one_line(
     script: Script, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """A failed installation is an outcome with its reason, leaves nothing, and is not tried again."""
+    """A failed installation is an outcome with its reason, and is not tried again."""
     script(NOWHERE)
     solver = solver_named(NAME)
     assert solver.unavailable(rung("f64")) == ""
@@ -207,7 +270,6 @@ def test_what_cannot_be_installed_is_told_in_one_line(
     assert found[0].detail == found[1].detail == solver.unavailable(rung("f64"))
     assert "nothing" in found[0].detail
     assert "\n" not in found[0].detail
-    assert not environment_of().folder.exists()
     assert [record.getMessage().partition(",")[0] for record in caplog.records] == [
         "making the environment of tiny"
     ]
@@ -238,26 +300,29 @@ def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
 
 
 def test_a_python_that_does_not_fit_is_told(script: Script) -> None:
-    """A script for another Python is unavailable before anything is made."""
+    """A script for a Python that is not there cannot have its environment, and the reason names it."""
     script(text=TINY.replace(">=3.11", ">=3.99"))
-    reason = solver_named(NAME).unavailable(rung("f64"))
-    assert reason.startswith("needs Python >=3.99, this is 3.")
-    with pytest.raises(NotMade, match=re.escape(">=3.99")):
+    found = solver_named(NAME).solve(problem())
+    assert found.outcome is Outcome.NO_PACKAGE
+    assert ">=3.99" in found.detail
+    with pytest.raises(NotMade, match=r">=3\.99"):
         prepare("tiny-still")
 
 
-@pytest.mark.parametrize(
-    ("version", "fits"),
-    [
-        *(((3, 10, 99), False), ((3, 11, 0), True), ((3, 14, 9), True)),
-        *(((3, 15, 0), False), ((4, 0, 0), False)),
-    ],
-)
-def test_the_bounds_of_python_hold(tmp_path: Path, version: Any, fits: bool) -> None:
-    """>=3.11,<3.15 takes its lower bound in and leaves its upper bound out."""
-    file = tmp_path / "script.py"
-    file.write_text('# /// script\n# requires-python = ">=3.11,<3.15"\n# ///\n')
-    assert (metadata(file).unfit(version) == "") is fits
+def test_a_uv_that_cannot_be_started_is_told(
+    script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A broken uv is a reason like any other."""
+    uv = tmp_path / "uv"
+    uv.write_text("no program")
+    monkeypatch.setattr(environment, "_uv", lambda: str(uv))
+    script()
+    with pytest.raises(NotMade, match="uv: Permission denied"):
+        prepare("tiny-still")
+    uv.write_text(f"#!{sys.executable}\nraise SystemExit(3)\n")
+    uv.chmod(0o700)
+    with pytest.raises(NotMade, match="uv: exit status 3"):
+        prepare("tiny-still")
 
 
 @pytest.mark.parametrize(
@@ -266,11 +331,13 @@ def test_the_bounds_of_python_hold(tmp_path: Path, version: Any, fits: bool) -> 
         ("print(1)\n", "expected one block of script metadata, got 0"),
         ("# /// script\n# a = 1\n# ///\nprint(1)\n" * 2, "got 2"),
         ("# /// script\n# a = \n# ///\n", "expected TOML"),
+        ("# /// script\n# [tool.taylor-verify]\n# titel = 1\n# ///\n", "unknown field `titel`"),
+        ("# /// script\n# dependencies = []\n# ///\n", "missing required field `title`"),
     ],
 )
 def test_metadata_that_is_none_is_refused(tmp_path: Path, text: str, words: str) -> None:
-    """A script has one block of metadata, and it is TOML."""
-    file = tmp_path / "script.py"
+    """A script has one block of metadata, it is TOML, and its table has known keys alone."""
+    file = tmp_path / "with_script.py"
     file.write_text(text)
-    with pytest.raises(ValueError, match=f"{words}.* @ script.py"):
-        metadata(file)
+    with pytest.raises(ValueError, match=f"{words}.* @ with_script.py"):
+        read_script(file)

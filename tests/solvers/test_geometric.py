@@ -35,7 +35,7 @@ from taylor_verify.solvers.geometric.methods import named as geometric
 from taylor_verify.solvers.geometric.midpoint import ImplicitMidpoint
 from taylor_verify.solvers.geometric.moser_veselov import MoserVeselov
 from taylor_verify.solvers.geometric.vectors import Quaternion, Vector
-from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 ORDERS = {
@@ -407,10 +407,10 @@ def test_a_body_at_rest_stays_there() -> None:
 
 def test_every_method_is_listed() -> None:
     """`list` shows each with its setting, and each shown one exists."""
-    listed = [name for name in registry.NAMES if name.startswith("geometric:")]
+    listed = [name for name in registry.solver_names() if name.startswith("geometric:")]
     assert listed == [f"geometric:{name}?step=NUMBER" for name in METHODS]
     for name in listed:
-        check_name(name.replace("NUMBER", "1/100"))
+        solver_named(name.replace("NUMBER", "1/100"))
         assert solver_named(name.replace("NUMBER", "0.01")).name == name.replace("NUMBER", "0.01")
 
 
@@ -432,7 +432,7 @@ def test_every_method_is_listed() -> None:
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
     """What was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
-        check_name(name)
+        solver_named(name)
 
 
 def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str]) -> None:

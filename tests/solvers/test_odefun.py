@@ -16,7 +16,7 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import odefun
-from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
 
 NAME = "mpmath:odefun"
@@ -112,4 +112,4 @@ def test_rates_that_are_no_numbers_are_an_outcome() -> None:
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
     """What was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
-        check_name(name)
+        solver_named(name)

@@ -19,10 +19,12 @@ from samples import THREE_INSTANTS
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
-from taylor_verify.solvers.entrants.entrant import SCRIPTS, Entrant, entrants, named, prepare
-from taylor_verify.solvers.entrants.environment import NotMade, metadata
+from taylor_verify.solvers.engines import environment
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
+from taylor_verify.solvers.engines.environment import NotMade
+from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.process import protocol
-from taylor_verify.solvers.registry import NAMES, OUTSIDE, check_name, solver_named
+from taylor_verify.solvers.registry import OUTSIDE, remarks, solver_named, solver_names
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.studies.tradeoff.accuracy import Truth
 
@@ -49,39 +51,53 @@ def problem(on: str = "f64") -> Problem:
         ("outside:cvode-bdf?tol=1", "expected a setting"),
         ("outside:cvode-bdf?rtol=0", "expected a positive number"),
         ("outside:cvode-bdf?atol=small", "@ atol"),
+        (
+            "outside:cvode-bdf?version=latest",
+            "expected a version such as .*, got 'latest' @ version",
+        ),
+        ("outside:cvode-bdf?version=1.0 ; evil", "@ version"),
+        ("outside:cvode-bdf?version=", "@ version"),
     ],
 )
 def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
-    """An entrant that there is not, and a tolerance that is none, are wrong calls."""
-    for take in (solver_named, check_name):
-        with pytest.raises(ValueError, match=words):
-            take(name)
+    """An engine that there is not, a tolerance and a version that are none, are wrong calls."""
+    with pytest.raises(ValueError, match=words):
+        solver_named(name)
 
 
 def test_the_absolute_tolerance_follows_the_relative_one() -> None:
     """Where atol is not set, it is rtol."""
     found = named("outside:cvode-bdf?rtol=1e-7")
-    assert (found.rtol, found.atol) == (1e-7, 1e-7)
+    assert found.settings == (("rtol", "1e-07"), ("atol", "1e-07"))
     found = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
-    assert (found.rtol, found.atol) == (1e-7, 1e-3)
+    assert found.settings == (("rtol", "1e-07"), ("atol", "0.001"))
+
+
+def test_a_version_replaces_the_pin_of_its_package() -> None:
+    """The metadata differ in the version of the library alone, and without one not at all."""
+    as_pinned = named("outside:diffrax-tsit5")
+    found = named("outside:diffrax-tsit5?version=0.7.0")
+    assert as_pinned.block == as_pinned.engine.script.block
+    assert found.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
+    assert found.block != as_pinned.block
 
 
 def test_the_command_line_lists_them_all() -> None:
     """The names of the registry are those of the scripts, and each of them is a solver."""
-    listed = {name.partition("?")[0] for name in NAMES if name.startswith(OUTSIDE)}
-    assert listed == {f"outside:{one.name}" for one in entrants()}
+    listed = {name.partition("?")[0] for name in solver_names() if name.startswith(OUTSIDE)}
+    assert listed == {f"outside:{name}" for name in engines()}
     assert listed
     for name in listed:
         assert solver_named(name).name == name
 
 
 def test_what_cannot_be_had_says_why() -> None:
-    """An entrant without a script is there by name, is not started, and says what it would take."""
-    without = [one for one in entrants() if one.script is None]
+    """An engine that nothing can install is there by name, is not started, and says why."""
+    without = [one for one in engines().values() if one.script.about.unavailable]
     assert without
     for one in without:
         solver = solver_named(f"outside:{one.name}")
-        assert solver.unavailable(rung("f64")) == one.unavailable != ""
+        assert solver.unavailable(rung("f64")) == one.unavailable == one.script.about.unavailable
         assert solver.solve(problem()).outcome is Outcome.NOT_STARTED
         with pytest.raises(NotMade):
             prepare(one.name)
@@ -97,17 +113,20 @@ def scripts() -> list[Path]:
 @pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
 def test_every_requirement_is_pinned(file: Path) -> None:
     """A script names exact versions, and fits every Python that the project fits."""
-    about = metadata(file)
-    assert about.requirements
-    for requirement in about.requirements:
+    script = read_script(file)
+    assert script.requirements
+    for requirement in script.requirements:
         assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*", requirement)
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
-    assert about.requires_python == project["requires-python"]
+    assert tomllib.loads(script.block)["requires-python"] == project["requires-python"]
 
 
 @pytest.mark.parametrize("file", scripts(), ids=lambda file: file.stem)
 def test_a_script_has_the_methods_it_names(file: Path) -> None:
     """The methods of the metadata are those of the script, and it loads no library to begin with."""
+    about = read_script(file).about
+    if about.unavailable:
+        return
     tree = ast.parse(file.read_text())
     tables = [
         ast.literal_eval(node.value)
@@ -115,7 +134,7 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "METHODS"
     ]
     (table,) = tables
-    assert metadata(file).tools["taylor-verify"]["methods"] == list(table)
+    assert list(about.methods) == list(table)
     siblings = {"equations", "question"}
     for node in tree.body:
         if isinstance(node, ast.Import):
@@ -142,10 +161,19 @@ def test_no_script_hides_a_library() -> None:
     assert own & imported == {"equations", "question"}
 
 
-def test_the_page_of_the_folder_names_them_all() -> None:
-    """README.md of the folder has every entrant, those that cannot be had included."""
-    page = (SCRIPTS / "README.md").read_text()
-    assert [one.name for one in entrants() if f"`{one.name}`" not in page] == []
+def test_a_list_says_what_each_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each has a title, with the reason beside it where it is unavailable; no environment is made."""
+    monkeypatch.setattr(environment, "_uv_says", None)
+    monkeypatch.setattr(environment, "_uv", lambda: "uv")
+    told = remarks()
+    for name in engines():
+        (remark,) = [
+            text for usage, text in told.items() if usage.partition("?")[0].endswith(f":{name}")
+        ]
+        assert remark
+        assert ("unavailable" in remark) is name.startswith("numbalsoda")
+    monkeypatch.setattr(environment, "_uv", lambda: None)
+    assert "pip install 'taylor-verify[engines]'" in remarks()[engines()["cvode-bdf"].usage]
 
 
 # What they share: the reading of the question, the equations, the writing of the answer.
@@ -214,18 +242,23 @@ def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -
 # The libraries themselves, where their environments are.
 
 
-def ready() -> list[Entrant]:
-    return [one for one in entrants() if not one.unavailable]
+def ready() -> list[Engine]:
+    return [one for one in engines().values() if not one.script.about.unavailable]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", ["euler/backward", "kirchhoff/whole-motion"])
 @pytest.mark.parametrize("one", ready(), ids=lambda one: one.name)
-def test_a_library_keeps_near_its_tolerance(one: Entrant, scene: str) -> None:
+def test_a_library_keeps_near_its_tolerance(
+    one: Engine, scene: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The error is the tolerance of every step carried on, and falls with the tolerance."""
-    assert one.environment
-    if not one.environment.is_made:
-        pytest.skip(f"no environment of {one.library}: `taylor-verify tradeoff --outside` makes it")
+    # A test downloads nothing: `taylor-verify tradeoff --outside` does.
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(one.name)
+    except NotMade as reason:
+        pytest.skip(str(reason))
     asked = pose(load(scene), rung("f64"))
     truth = Truth(asked)
     errors = {}

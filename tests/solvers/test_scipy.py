@@ -17,7 +17,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import registry
 from taylor_verify.solvers import scipy as solver
-from taylor_verify.solvers.registry import check_name, solver_named
+from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
 
 F64 = rung("f64")
@@ -147,10 +147,10 @@ def test_other_rungs_are_unavailable() -> None:
 
 def test_every_method_is_listed() -> None:
     """`list` shows each with its settings, and each shown one exists."""
-    listed = [name for name in registry.NAMES if name.startswith("scipy:")]
+    listed = [name for name in registry.solver_names() if name.startswith("scipy:")]
     assert listed == [f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in solver.METHODS]
     for name in listed:
-        check_name(name.replace("NUMBER", "1e-6"))
+        solver_named(name.replace("NUMBER", "1e-6"))
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_every_method_is_listed() -> None:
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
     """What was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
-        check_name(name)
+        solver_named(name)
 
 
 @pytest.mark.parametrize("tolerance", ["1e-3", 0, -1.0, float("nan"), True, 10**400])

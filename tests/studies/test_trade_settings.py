@@ -20,7 +20,7 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import NAMES, check_name, solver_named
+from taylor_verify.solvers.registry import solver_named, solver_names
 from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.trajectory import Trajectory
@@ -73,14 +73,14 @@ def test_a_tolerance_of_taylor_has_a_name() -> None:
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
     """What was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
-        check_name(name)
+        solver_named(name)
 
 
 def test_checking_a_tolerance_loads_no_heyoka() -> None:
     """A wrong name is told before anything heavy is imported."""
     program = (
-        "import sys; from taylor_verify.solvers.registry import check_name; "
-        "check_name('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
+        "import sys; from taylor_verify.solvers.registry import solver_named; "
+        "solver_named('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
@@ -94,7 +94,7 @@ def test_a_tolerance_that_the_rung_cannot_hold_is_unavailable() -> None:
 
 def test_every_solver_of_the_sweep_is_listed() -> None:
     """`list` shows a name of the form of every setting that is measured."""
-    listed = {name.partition("?")[0] for name in NAMES}
+    listed = {name.partition("?")[0] for name in solver_names()}
     measured = {one.solver.name.partition("?")[0] for one in settings(load("euler/generic"))}
     assert measured <= listed
 

@@ -98,12 +98,12 @@ def run_many(
     from taylor_verify.batch.report import ReportNotWritten
     from taylor_verify.batch.selection import Selection, select
     from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.solvers.registry import check_name
+    from taylor_verify.solvers.registry import solver_named
     from taylor_verify.studies.report import write_report
 
     if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
         raise ValueError("\n".join(faults))
-    check_name(solver)
+    solver_named(solver)
     if isinstance(scenes, Selection) and rungs is not None:
         raise ValueError("expected rungs within the Selection, got others besides @ rungs")
     selection = scenes if isinstance(scenes, Selection) else select(scenes, rungs)

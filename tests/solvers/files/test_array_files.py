@@ -14,12 +14,12 @@ from pyarrow import parquet
 from recordings import OMEGA
 
 from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.solvers.files.file import KNOWN, read
+from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.reading import read_table
 
 
 def names_of(file: str | Path) -> list[str]:
-    return [column.name for column in read_table(file, KNOWN).columns]
+    return [column.name for column in read_table(file).columns]
 
 
 def test_groups_and_structs_are_dotted_names(tmp_path: Path) -> None:
@@ -37,7 +37,7 @@ def test_groups_and_structs_are_dotted_names(tmp_path: Path) -> None:
     assert sorted(names_of(tmp_path / "run.h5")) == sorted(["t", *omegas, *matrix])
     deep = [f"imu.deep.q[{i}]" for i in range(3)]
     assert sorted(names_of(tmp_path / "run.mat")) == sorted(["t", *omegas, *deep])
-    table = read_table(tmp_path / "run.mat", KNOWN)
+    table = read_table(tmp_path / "run.mat")
     by_name = {column.name: list(column.values) for column in table.columns}
     assert by_name["imu.omega[1]"] == by_name["imu.deep.q[1]"] == [1, 4, 7, 10]
 
@@ -76,7 +76,7 @@ def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
     data = Path(scipy.io.matlab.__file__).parent / "tests" / "data" / "testhdf5_7.4_GLNX86.mat"
     with h5py.File(data) as content:
         expected = content["testdouble"][:, 0].tolist()
-    table = read_table(data, KNOWN)
+    table = read_table(data)
     assert [(c.name, list(c.values)) for c in table.columns] == [("testdouble", expected)]
     file = tmp_path / "run.mat"
     with h5py.File(file, "w", userblock_size=512) as content:
@@ -88,7 +88,7 @@ def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
             content[f"log/{name}"].attrs["MATLAB_class"] = np.bytes_("double")
     with file.open("r+b") as stream:
         stream.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
-    by_name = {c.name: list(c.values) for c in read_table(file, KNOWN).columns}
+    by_name = {c.name: list(c.values) for c in read_table(file).columns}
     assert by_name["t"] == [0, 1, 2, 3]
     assert by_name["q[1]"] == [1, 5, 9, 13]
 
@@ -116,6 +116,6 @@ def test_structs_in_parquet_are_dotted_names(tmp_path: Path) -> None:
     """A column of structs is a column for each of its numbers."""
     rows = [{"a": {"x": 1.0, "b": {"y": 2}}, "t": 0.0}, {"a": {"x": 3.0, "b": {"y": 4}}, "t": 1.0}]
     parquet.write_table(pa.Table.from_pylist(rows), tmp_path / "run.parquet")
-    table = read_table(tmp_path / "run.parquet", KNOWN)
+    table = read_table(tmp_path / "run.parquet")
     found = {column.name: list(column.values) for column in table.columns}
     assert found == {"a.x": [1.0, 3.0], "a.b.y": [2, 4], "t": [0.0, 1.0]}

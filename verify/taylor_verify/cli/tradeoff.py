@@ -102,13 +102,12 @@ def _make_environments() -> None:
     from contextlib import suppress
 
     from taylor_verify.cli.streams import say
-    from taylor_verify.solvers.entrants.entrant import entrants, prepare
-    from taylor_verify.solvers.entrants.environment import NotMade
+    from taylor_verify.solvers.engines.engine import engines, prepare
+    from taylor_verify.solvers.engines.environment import NotMade
 
-    for one in entrants():
-        if not one.unavailable:
-            with suppress(NotMade):
-                prepare(one.name, say)
+    for name in engines():
+        with suppress(NotMade):
+            prepare(name, say)
 
 
 def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:

@@ -27,15 +27,20 @@ def list_all(options: argparse.Namespace) -> Answer:
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reading.reader import load
-    from taylor_verify.solvers.files.formats.listing import formats
-    from taylor_verify.solvers.registry import NAMES
+    from taylor_verify.solvers.files.formats.reading import FORMATS
+    from taylor_verify.solvers.registry import remarks, solver_names
 
     del options
     scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
     titles = {name: load(name).title for group in scenes.values() for name in group}
-    read = formats()
-    found = {**scenes, "solvers": list(NAMES), "rungs": list(LADDER), "formats": list(read)}
-    text = partial(names_text, found, {**titles, **read}, GUIDE)
+    read = {suffix: one.sentence for suffix, one in FORMATS.items()}
+    found = {
+        **scenes,
+        "solvers": list(solver_names()),
+        "rungs": list(LADDER),
+        "formats": list(read),
+    }
+    text = partial(names_text, found, {**titles, **remarks(), **read}, GUIDE)
     return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
 
 
@@ -214,10 +219,10 @@ def known_rungs(rungs: Iterable[str]) -> list[str]:
 
 
 def _known_solver(name: str) -> None:
-    from taylor_verify.solvers.registry import check_name
+    from taylor_verify.solvers.registry import solver_named
 
     try:
-        check_name(name)
+        solver_named(name)
     except ValueError as error:
         raise WrongCall(f"{error} @ --solver") from error
 

@@ -1,97 +1,105 @@
-"""The solvers that the command line knows by name."""
+"""The solvers that the command line knows by name: a line of `FAMILIES` for each kind."""
 
 from __future__ import annotations
 
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 if TYPE_CHECKING:
     from taylor_verify.solvers.solver import Solver
 
 TAYLOR = "taylor"
-TAYLOR_AT = f"{TAYLOR}?"
 # A solver of one's own: what follows is the command that starts it.
 PROCESS = "process:"
-GEOMETRIC = "geometric:"
-SCIPY = "scipy:"
-MPMATH = "mpmath:"
 CLOSED_FORM = "closed-form:"
 # Of other libraries, each in an environment of its own.
 OUTSIDE = "outside:"
-# A simulator in an FMU: what follows is its file.
-FMU = "fmu:"
-# The names there are, NUMBER standing for what is to be chosen.
-NAMES = (
-    TAYLOR,
-    "taylor?tol=NUMBER",
-    "geometric:implicit-midpoint?step=NUMBER",
-    "geometric:splitting?step=NUMBER",
-    "geometric:moser-veselov?step=NUMBER",
-    "geometric:preprocessed-moser-veselov?step=NUMBER",
-    "geometric:lie-rk4?step=NUMBER",
-    "scipy:RK45?rtol=NUMBER&atol=NUMBER",
-    "scipy:DOP853?rtol=NUMBER&atol=NUMBER",
-    "scipy:Radau?rtol=NUMBER&atol=NUMBER",
-    "scipy:BDF?rtol=NUMBER&atol=NUMBER",
-    "scipy:LSODA?rtol=NUMBER&atol=NUMBER",
-    "mpmath:odefun?tol=NUMBER&degree=NUMBER",
-    "closed-form:ellipj",
-    "outside:cvode-adams?rtol=NUMBER&atol=NUMBER",
-    "outside:cvode-bdf?rtol=NUMBER&atol=NUMBER",
-    "outside:cyrk-dop853?rtol=NUMBER&atol=NUMBER",
-    "outside:cyrk-tsit5?rtol=NUMBER&atol=NUMBER",
-    "outside:cyrk-vern7?rtol=NUMBER&atol=NUMBER",
-    "outside:cyrk-vern8?rtol=NUMBER&atol=NUMBER",
-    "outside:cyrk-lsoda?rtol=NUMBER&atol=NUMBER",
-    "outside:diffrax-tsit5?rtol=NUMBER&atol=NUMBER",
-    "outside:diffrax-dopri8?rtol=NUMBER&atol=NUMBER",
-    "outside:extensisq-pr7?rtol=NUMBER&atol=NUMBER",
-    "outside:extensisq-pr8?rtol=NUMBER&atol=NUMBER",
-    "outside:extensisq-pr9?rtol=NUMBER&atol=NUMBER",
-    "outside:extensisq-swag?rtol=NUMBER&atol=NUMBER",
-    "outside:rebound-bs?rtol=NUMBER&atol=NUMBER",
-    "outside:numbalsoda-dop853?rtol=NUMBER&atol=NUMBER",
-    "outside:numbalsoda-lsoda?rtol=NUMBER&atol=NUMBER",
-    "fmu:FILE?step=NUMBER",
+
+
+class Family(NamedTuple):
+    """Solvers whose names begin alike, and the module in solvers whose ``named(name)`` makes one.
+
+    ``form`` is what a message calls them. ``names`` has NUMBER for what is to be chosen, and is None
+    where the module says by ``usages()`` what there is, and by ``remarks()`` what each of them is.
+    ``package`` is the package that they need, and ``extra`` brings it.
+    """
+
+    prefix: str
+    module: str
+    form: str
+    names: tuple[str, ...] | None = ()
+    package: str = ""
+    extra: str = ""
+
+
+def _each(form: str, methods: str) -> tuple[str, ...]:
+    return tuple(form.format(method) for method in methods.split())
+
+
+FAMILIES = (
+    Family(
+        *("taylor?", "taylor.driver", TAYLOR, (TAYLOR, "taylor?tol=NUMBER")),
+        *("heyoka", "taylor"),
+    ),
+    Family(
+        *("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER"),
+        _each(
+            "geometric:{}?step=NUMBER",
+            "implicit-midpoint splitting moser-veselov preprocessed-moser-veselov lie-rk4",
+        ),
+    ),
+    Family(
+        *("scipy:", "scipy", "scipy:METHOD"),
+        _each("scipy:{}?rtol=NUMBER&atol=NUMBER", "RK45 DOP853 Radau BDF LSODA"),
+        *("scipy", "scipy"),
+    ),
+    Family("mpmath:", "odefun", "mpmath:odefun", ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)),
+    Family(
+        *(CLOSED_FORM, "closed_form", "closed-form:ellipj", ("closed-form:ellipj",)),
+        *("scipy", "scipy"),
+    ),
+    Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
+    Family(PROCESS, "process.process", "process:COMMAND"),
+    Family(
+        *("fmu:", "fmu.fmu", "fmu:FILE?step=NUMBER", ("fmu:FILE?step=NUMBER",)),
+        *("fmpy", "fmu"),
+    ),
 )
+
+
+def solver_names() -> tuple[str, ...]:
+    """Return the names to choose from, NUMBER standing for what is to be chosen."""
+    found: list[str] = []
+    for family in FAMILIES:
+        found += _module(family).usages() if family.names is None else family.names
+    return tuple(found)
+
+
+def remarks() -> dict[str, str]:
+    """Return for a name what it is, and why it is unavailable here; nothing heavy is imported for it."""
+    found: dict[str, str] = {}
+    for family in FAMILIES:
+        if family.names is None:
+            found |= _module(family).remarks()
+        elif family.package and find_spec(family.package) is None:
+            install = f"unavailable: pip install 'taylor-verify[{family.extra}]'"
+            found |= dict.fromkeys(family.names, install)
+    return found
 
 
 def solver_named(name: str) -> Solver:
     """The solver of that name; ValueError lists the names there are."""
-    # A solver is imported when it is asked for: most bring a library with them.
-    if name == TAYLOR or name.startswith(TAYLOR_AT):
-        from taylor_verify.solvers.taylor import driver
-
-        return driver.named(name)
-    if name.startswith(PROCESS):
-        from taylor_verify.solvers.process import process
-
-        return process.named(name)
-    if name.startswith(GEOMETRIC):
-        from taylor_verify.solvers.geometric import methods
-
-        return methods.named(name)
-    if name.startswith(SCIPY):
-        from taylor_verify.solvers import scipy
-
-        return scipy.named(name)
-    if name.startswith(MPMATH):
-        from taylor_verify.solvers import odefun
-
-        return odefun.named(name)
-    if name.startswith(CLOSED_FORM):
-        from taylor_verify.solvers import closed_form
-
-        return closed_form.named(name)
-    if name.startswith(OUTSIDE):
-        from taylor_verify.solvers.entrants import entrant
-
-        return entrant.named(name)
-    if name.startswith(FMU):
-        from taylor_verify.solvers.fmu import fmu
-
-        return fmu.named(name)
+    for family in FAMILIES:
+        if f"{name}?".startswith(family.prefix):
+            return cast("Solver", _module(family).named(name))
     raise ValueError(unknown_solver(name))
+
+
+def _module(family: Family) -> Any:
+    # A solver is imported when it is asked for: most bring a library with them.
+    return import_module(f"taylor_verify.solvers.{family.module}")
 
 
 def as_solver(solver: Solver | str) -> Solver:
@@ -107,23 +115,9 @@ def as_solver(solver: Solver | str) -> Solver:
     raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
 
 
-def check_name(name: str) -> None:
-    """Raise the ValueError of `solver_named`; nothing heavy is imported for it."""
-    if name.startswith(TAYLOR_AT):
-        from taylor_verify.solvers.taylor.name import tolerance
-
-        tolerance(name)
-    elif name != TAYLOR:
-        solver_named(name)
-
-
 def unknown_solver(name: str) -> str:
     """What to say about a name that is no solver."""
-    families = [
-        *(TAYLOR, f"{GEOMETRIC}METHOD?step=NUMBER", f"{SCIPY}METHOD", f"{MPMATH}odefun"),
-        *(f"{CLOSED_FORM}ellipj", f"{OUTSIDE}LIBRARY-METHOD", f"{PROCESS}COMMAND"),
-        f"{FMU}FILE?step=NUMBER",
-    ]
-    near = get_close_matches(name, NAMES, n=1)
+    forms = ", ".join(family.form for family in FAMILIES)
+    near = get_close_matches(name, solver_names(), n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
-    return f"expected a solver ({', '.join(families)}), got {name!r}{hint}"
+    return f"expected a solver ({forms}), got {name!r}{hint}"

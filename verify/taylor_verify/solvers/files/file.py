@@ -26,7 +26,6 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.reading.faults import Faults, Refused, cut
-from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import Taken, select
 from taylor_verify.solvers.files.formats.column import MOST_ALIKE, Column, add_more_alike
@@ -120,7 +119,7 @@ def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
     taken, and ``columns`` names what has any other name, by pairs of our name and the file's. Raises
     Refused with every fault of it.
     """
-    table = read_table(file, KNOWN)
+    table = read_table(file)
     found = from_columns(table.columns, str(file), columns, table.notes)
     return replace(found, step=step_inside(parted(os.fspath(file))[0], table.columns))
 

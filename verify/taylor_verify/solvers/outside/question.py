@@ -1,11 +1,11 @@
-"""What every entrant is asked, and how it answers: the protocol's JSON, read and written once.
+"""Reader of the question and writer of the answer: the JSON of the protocol, shared by all scripts.
 
-A script has a function ``solve(question, setting)`` and ends with ``answer(solve)``. Its arguments are
-the method, the relative and the absolute tolerance:
+A script has a function ``solve(question, settings)`` and ends with ``answer(solve)``. Its arguments are
+the method, if it has several, and the settings that its metadata declares:
 
-    python with_cvode.py bdf 1e-9 1e-12 < question.json > answer.json
+    uv run --script with_cvode.py method=bdf rtol=1e-9 atol=1e-12 < question.json > answer.json
 
-The keys of the JSON are explained in solvers/protocol.py of taylor-verify. Numbers are the
+The keys of the JSON are explained in solvers/process/protocol.py of taylor-verify. Numbers are the
 doubles that the protocol hands over as ``hex``. An integration backwards in time is asked with
 ``sign`` -1: the rates are to be multiplied by it, and the clock runs forwards for every library.
 """
@@ -18,11 +18,15 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 from equations import rates  # type: ignore[import-not-found]
 
 Row = Sequence[float]
+# The method and the settings by name, numbers as numbers; the library's own names of them are the
+# script's affair.
+Settings = SimpleNamespace
 
 
 @dataclass(frozen=True)
@@ -49,15 +53,6 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Setting:
-    """How it is to be solved: the library's own name of the tolerances is the script's affair."""
-
-    method: str
-    rtol: float
-    atol: float
-
-
-@dataclass(frozen=True)
 class Solved:
     """The states at the instants of the question, and the work they took; times in seconds."""
 
@@ -68,12 +63,20 @@ class Solved:
     compile_seconds: float
 
 
-def answer(solve: Callable[[Question, Setting], Solved]) -> None:
+def answer(solve: Callable[[Question, Settings], Solved]) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout."""
-    method, rtol, atol = sys.argv[1:]
+    settings = Settings(**dict(map(_setting, sys.argv[1:])))
     question = read(json.load(sys.stdin))
-    solved = solve(question, Setting(method, float(rtol), float(atol)))
+    solved = solve(question, settings)
     json.dump(_written(question, solved), sys.stdout)
+
+
+def _setting(argument: str) -> tuple[str, str | float]:
+    name, _, value = argument.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
 
 
 def twice(propagate: Callable[[], Any]) -> tuple[Any, float, float]:

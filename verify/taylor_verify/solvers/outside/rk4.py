@@ -8,7 +8,7 @@
 
 It reads a scene as JSON on stdin and writes a trajectory as JSON on stdout; nothing but the standard
 library is needed. The argument is the longest step, in the scene's own time. The keys are explained
-in solvers/protocol.py of taylor-verify; rk4.c beside it is the same program in C.
+in solvers/process/protocol.py of taylor-verify; rk4.c beside it is the same program in C.
 
 H  angular momentum   K  inverse inertia    M     moment            omega = K H
 x  linear impulse     y  angular impulse    A B C  T = x.A x/2 + x.B y + y.C y/2

@@ -7,8 +7,13 @@
 #   "scipy==1.17.1",
 # ]
 # [tool.taylor-verify]
-# methods = ["adams", "bdf"]
-# rungs = ["f64"]
+# title = "SUNDIALS CVODE, by scikit-sundae"
+# [tool.taylor-verify.methods]
+# adams = "Adams-Moulton, order 1 to 12"
+# bdf = "BDF, order 1 to 5; Jacobian by differences"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
 # ///
 """CVODE of SUNDIALS, by scikit-sundae: variable-order Adams (to order 12) and BDF (to order 5).
 
@@ -24,7 +29,7 @@ from typing import Any
 
 from question import (  # type: ignore[import-not-found]
     Question,
-    Setting,
+    Settings,
     Solved,
     answer,
     compiled_rates,
@@ -36,7 +41,7 @@ METHODS = {"adams": "Adams", "bdf": "BDF"}
 MOST_STEPS = 10**7
 
 
-def solve(question: Question, setting: Setting) -> Solved:
+def solve(question: Question, settings: Settings) -> Solved:
     import numpy
     from sksundae.cvode import CVODE  # type: ignore[import-not-found]
 
@@ -54,9 +59,9 @@ def solve(question: Question, setting: Setting) -> Solved:
 
     solver = CVODE(
         rates,
-        method=METHODS[setting.method],
-        rtol=setting.rtol,
-        atol=setting.atol,
+        method=METHODS[settings.method],
+        rtol=settings.rtol,
+        atol=settings.atol,
         max_num_steps=MOST_STEPS,
     )
     found, seconds, more = twice(lambda: solver.solve(question.instants, start))

@@ -7,8 +7,16 @@
 #   "scipy==1.17.1",
 # ]
 # [tool.taylor-verify]
-# methods = ["dop853", "tsit5", "vern7", "vern8", "lsoda"]
-# rungs = ["f64"]
+# title = "CyRK"
+# [tool.taylor-verify.methods]
+# dop853 = "Dormand-Prince 8(5,3)"
+# tsit5 = "Tsitouras 5(4)"
+# vern7 = "Verner 7(6)"
+# vern8 = "Verner 8(7)"
+# lsoda = "ODEPACK's LSODA"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
 # ///
 """CyRK: explicit Runge-Kutta methods and LSODA in C++, called with equations compiled by numba.
 
@@ -25,7 +33,7 @@ from typing import Any
 
 from question import (  # type: ignore[import-not-found]
     Question,
-    Setting,
+    Settings,
     Solved,
     answer,
     compiled_rates,
@@ -43,7 +51,7 @@ METHODS = {
 MOST_MEMORY = 2000
 
 
-def solve(question: Question, setting: Setting) -> Solved:
+def solve(question: Question, settings: Settings) -> Solved:
     address: list[int] = []
 
     def propagate() -> tuple[Any, int, int]:
@@ -52,7 +60,7 @@ def solve(question: Question, setting: Setting) -> Solved:
             # Whoever holds the address must hold the code behind it too.
             propagate.compiled = compiled  # type: ignore[attr-defined]
             address.append(compiled.address)
-        return _propagated(address[0], question, setting)
+        return _propagated(address[0], question, settings)
 
     (states, steps, evaluations), seconds, compiling = twice(propagate)
     return Solved(states, steps, evaluations, seconds, compiling)
@@ -71,7 +79,7 @@ def _right_hand_side(question: Question) -> Any:
     return cyjit(counted)
 
 
-def _propagated(address: int, question: Question, setting: Setting) -> tuple[Any, int, int]:
+def _propagated(address: int, question: Question, settings: Settings) -> tuple[Any, int, int]:
     """The states, the steps and the evaluations; the arguments are those of CyRK's own C function."""
     import numpy
     from CyRK.cy.common import MAX_SIZE  # type: ignore[import-not-found]
@@ -79,10 +87,10 @@ def _propagated(address: int, question: Question, setting: Setting) -> tuple[Any
     from CyRK.nb import numba_solver as c  # type: ignore[import-not-found]
 
     start, instants = numpy.array(question.state), numpy.array(question.instants)
-    rtol, atol, count = (numpy.array([value]) for value in (setting.rtol, setting.atol, 0.0))
+    rtol, atol, count = (numpy.array([value]) for value in (settings.rtol, settings.atol, 0.0))
     found = c.c_numba_cysolve_ivp(
         *(address, 0.0, question.end, start.ctypes.data, start.size),
-        *(find_ode_method_int(METHODS[setting.method]), 0, 0),  # no size expected, nothing extra
+        *(find_ode_method_int(METHODS[settings.method]), 0, 0),  # no size expected, nothing extra
         *(count.ctypes.data, count.nbytes),
         *(0, MOST_MEMORY, False),  # any number of steps; no interpolant is kept
         *(instants.ctypes.data, instants.size),

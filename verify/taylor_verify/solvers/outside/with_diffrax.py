@@ -9,8 +9,14 @@
 #   "scipy==1.17.1",
 # ]
 # [tool.taylor-verify]
-# methods = ["tsit5", "dopri8"]
+# title = "diffrax on JAX"
 # rungs = ["f32", "f64"]
+# [tool.taylor-verify.methods]
+# tsit5 = "Tsitouras 5(4)"
+# dopri8 = "Prince-Dormand 8(7)"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
 # ///
 """diffrax: Runge-Kutta methods in JAX, the whole propagation compiled by XLA, in float64 or float32.
 
@@ -25,7 +31,7 @@ from typing import Any
 from equations import rates  # type: ignore[import-not-found]
 from question import (  # type: ignore[import-not-found]
     Question,
-    Setting,
+    Settings,
     Solved,
     answer,
     twice,
@@ -35,7 +41,7 @@ METHODS = {"tsit5": "Tsit5", "dopri8": "Dopri8"}
 DOUBLE_BITS = 53
 
 
-def solve(question: Question, setting: Setting) -> Solved:
+def solve(question: Question, settings: Settings) -> Solved:
     import jax  # type: ignore[import-not-found]
 
     jax.config.update("jax_enable_x64", question.bits == DOUBLE_BITS)
@@ -50,14 +56,14 @@ def solve(question: Question, setting: Setting) -> Solved:
     def propagated(start: Any, instants: Any, parameters: Any) -> Any:
         return diffrax.diffeqsolve(
             diffrax.ODETerm(field),
-            getattr(diffrax, METHODS[setting.method])(),
+            getattr(diffrax, METHODS[settings.method])(),
             t0=0.0,
             t1=question.end,
             dt0=None,
             y0=start,
             args=parameters,
             saveat=diffrax.SaveAt(ts=instants),
-            stepsize_controller=diffrax.PIDController(rtol=setting.rtol, atol=setting.atol),
+            stepsize_controller=diffrax.PIDController(rtol=settings.rtol, atol=settings.atol),
             max_steps=None,
             throw=False,
         )

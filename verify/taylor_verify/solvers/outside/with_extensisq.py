@@ -6,10 +6,18 @@
 #   "numpy==2.4.6",
 #   "scipy==1.17.1",
 # ]
+# [tool.uv]
+# no-binary-package = ["extensisq"]
 # [tool.taylor-verify]
-# methods = ["pr7", "pr8", "pr9", "swag"]
-# rungs = ["f64"]
-# from-source = ["extensisq"]
+# title = "extensisq on SciPy"
+# [tool.taylor-verify.methods]
+# pr7 = "Prince 7(6)"
+# pr8 = "Prince 8(7)"
+# pr9 = "Prince 9(8)"
+# swag = "Shampine-Gordon-Watts, Adams, order 1 to 12"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
 # ///
 """extensisq: methods for SciPy's solve_ivp, Prince's pairs of order 7, 8 and 9, and Shampine-Gordon.
 
@@ -23,7 +31,7 @@ from typing import Any
 
 from question import (  # type: ignore[import-not-found]
     Question,
-    Setting,
+    Settings,
     Solved,
     answer,
     compiled_rates,
@@ -33,13 +41,13 @@ from question import (  # type: ignore[import-not-found]
 METHODS = {"pr7": "Pr7", "pr8": "Pr8", "pr9": "Pr9", "swag": "SWAG"}
 
 
-def solve(question: Question, setting: Setting) -> Solved:
+def solve(question: Question, settings: Settings) -> Solved:
     import extensisq  # type: ignore[import-not-found]
     import numpy
     from scipy.integrate import solve_ivp
 
     fill = compiled_rates(question)
-    method = getattr(extensisq, METHODS[setting.method])
+    method = getattr(extensisq, METHODS[settings.method])
     steps = 0
 
     class Counted(method):  # type: ignore[misc, valid-type]
@@ -64,8 +72,8 @@ def solve(question: Question, setting: Setting) -> Solved:
             question.state,
             method=Counted,
             t_eval=question.instants,
-            rtol=setting.rtol,
-            atol=setting.atol,
+            rtol=settings.rtol,
+            atol=settings.atol,
         )
 
     found, seconds, compiling = twice(propagate)

@@ -6,8 +6,12 @@
 #   "numpy==2.4.6",
 # ]
 # [tool.taylor-verify]
-# methods = ["bs"]
-# rungs = ["f64"]
+# title = "REBOUND"
+# [tool.taylor-verify.methods]
+# bs = "Gragg-Bulirsch-Stoer"
+# [tool.taylor-verify.settings]
+# rtol = 1e-9
+# atol = "rtol"
 # ///
 """REBOUND's Bulirsch-Stoer integrator, which takes arbitrary equations besides particles.
 
@@ -23,7 +27,7 @@ from typing import Any
 
 from question import (  # type: ignore[import-not-found]
     Question,
-    Setting,
+    Settings,
     Solved,
     answer,
     compiled_rates,
@@ -34,13 +38,13 @@ from question import (  # type: ignore[import-not-found]
 METHODS = {"bs": "bs"}
 
 
-def solve(question: Question, setting: Setting) -> Solved:
+def solve(question: Question, settings: Settings) -> Solved:
     compiled: list[Any] = []
 
     def propagate() -> tuple[Any, int, int]:
         if not compiled:
             compiled.append(_right_hand_side(question))
-        return _propagated(compiled[0].address, question, setting)
+        return _propagated(compiled[0].address, question, settings)
 
     (states, steps, evaluations), seconds, compiling = twice(propagate)
     return Solved(states, steps, evaluations, seconds, compiling)
@@ -63,12 +67,12 @@ def _right_hand_side(question: Question) -> Any:
     return cfunc(signature)(rates)
 
 
-def _propagated(address: int, question: Question, setting: Setting) -> tuple[Any, int, int]:
+def _propagated(address: int, question: Question, settings: Settings) -> tuple[Any, int, int]:
     import rebound  # type: ignore[import-not-found]
 
     sim = rebound.Simulation()
-    sim.integrator = METHODS[setting.method]
-    sim.integrator.eps_rel, sim.integrator.eps_abs = setting.rtol, setting.atol
+    sim.integrator = METHODS[settings.method]
+    sim.integrator.eps_rel, sim.integrator.eps_abs = settings.rtol, settings.atol
     ode = sim.create_ode(len(question.state), needs_nbody=False)
     ode._derivatives = ctypes.cast(address, type(ode._derivatives))
     ode.ref = 0

@@ -113,12 +113,14 @@ def outside(
     They are on f64, which all have: none where the ``rungs`` are without it. One that cannot be had
     says so when it is asked to run.
     """
-    from taylor_verify.solvers.entrants.entrant import entrants
+    from taylor_verify.solvers.engines.engine import engines
 
     if "f64" not in rungs:
         return ()
     wanted = None if only is None else set(only)
-    names = [one.name for one in entrants() if wanted is None or one.name in wanted]
+    # An engine of fixed steps has no tolerance to choose.
+    toleranced = [name for name, one in engines().items() if "rtol" in one.script.about.settings]
+    names = [name for name in toleranced if wanted is None or name in wanted]
     return tuple(library(names, tolerances, rung_named("f64"), "outside:"))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from io import BytesIO
 from itertools import islice
 from lzma import LZMAError
@@ -52,9 +52,8 @@ class _Member(NamedTuple):
     dtype: np.dtype[np.generic]
 
 
-def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+def read(file: BinaryIO, path: Path) -> list[Column]:
     """Return the arrays; every header is checked before the data of any is read."""
-    del known
     try:
         _check_entries(file, path)
         with zipfile.ZipFile(file) as archive:

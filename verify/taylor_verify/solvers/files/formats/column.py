@@ -6,8 +6,8 @@ Every format holds a file to these limits before it makes anything of its conten
 from __future__ import annotations
 
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, Final, NamedTuple, final, overload
+from collections.abc import Iterable, Sequence
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.scenes.reading.clock import MOST_SAMPLES
 from taylor_verify.scenes.reading.faults import Faults, Refused
@@ -31,71 +31,15 @@ MOST_ALIKE: Final = 3
 _MOST_SHOWN: Final = 40
 
 
-# So many entries of a column are packed, and worked on, at once.
+# So many entries of a column are worked on at once.
 CHUNK: Final = 4096
 
 
 class Column(NamedTuple):
-    """A name and its entries: a list, an array of NumPy, or packed texts."""
+    """A name and its entries: a list, or an array of NumPy, of texts or of numbers."""
 
     name: str
     values: Sequence[Any]
-
-
-@final
-class Texts(Sequence[str]):
-    """Texts that are added one by one, packed: as a string each they would take 50 bytes besides."""
-
-    def __init__(self) -> None:
-        self._packed: list[str | list[str]] = []
-        self._open: list[str] = []
-        self._last: tuple[int, list[str]] = (-1, [])
-
-    def append(self, text: str) -> None:
-        self._open.append(text)
-        if len(self._open) == CHUNK:
-            joined = "\n".join(self._open)
-            # A text that holds the mark between two of them cannot be packed.
-            is_whole = joined.count("\n") == CHUNK - 1
-            self._packed.append(joined if is_whole else self._open)
-            self._open = []
-
-    def __len__(self) -> int:
-        return CHUNK * len(self._packed) + len(self._open)
-
-    @overload
-    def __getitem__(self, place: int) -> str: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> list[str]: ...
-
-    def __getitem__(self, place: int | slice) -> str | list[str]:
-        if isinstance(place, slice):
-            return self._some(range(len(self))[place])
-        k = range(len(self))[place]
-        return self._chunk(k // CHUNK)[k % CHUNK]
-
-    def __iter__(self) -> Iterator[str]:
-        for number in range(len(self._packed) + 1):
-            yield from self._chunk(number)
-
-    def _some(self, places: range) -> list[str]:
-        if places.step != 1:
-            return [self[k] for k in places]
-        found: list[str] = []
-        for number in range(places.start // CHUNK, (places.stop - 1) // CHUNK + 1):
-            low = max(places.start - CHUNK * number, 0)
-            found += self._chunk(number)[low : places.stop - CHUNK * number]
-        return found
-
-    def _chunk(self, number: int) -> list[str]:
-        if number == len(self._packed):
-            return self._open
-        if self._last[0] != number:
-            packed = self._packed[number]
-            texts = packed.split("\n") if isinstance(packed, str) else packed
-            self._last = number, texts
-        return self._last[1]
 
 
 class Table(NamedTuple):

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
 from taylor_verify.scenes.reading.faults import Faults, Refused
+from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.formats.column import ROWS, VALUES, Column, no_utf8, shown
 
 _BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
 
 
-def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+def read(file: BinaryIO, path: Path) -> list[Column]:
     """Return the arrays; their commas are counted before anything is made of the text."""
     content = file.read()
     try:
@@ -32,7 +33,7 @@ def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
     for name, values in document.items():
         if isinstance(values, list):
             columns.append(Column(name, values))
-        elif name in known:
+        elif name in KNOWN:
             faults.add("an array of numbers", shown(values), f"{path}, column {name}")
     if faults.lines:
         raise Refused(faults.lines)

@@ -11,9 +11,8 @@ from taylor_verify.solvers.files.formats.column import BYTES, CHARACTERS, Column
 from taylor_verify.solvers.files.formats.package import needed
 
 
-def read(file: BinaryIO, path: Path, known: Collection[str]) -> list[Column]:
+def read(file: BinaryIO, path: Path) -> list[Column]:
     """Return the columns; what the footer says of their size is checked before any is read."""
-    del known
     with needed("pyarrow", "Parquet", "parquet", path):
         from pyarrow import ArrowException, parquet
     try:

@@ -1,11 +1,15 @@
-"""The columns of a trajectory file, by the reader of its format."""
+"""The formats of a trajectory file: a line of `FORMATS` for each suffix.
+
+To add one: a file beside this one whose ``read`` returns the columns, and a line here.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import BinaryIO, Final, NamedTuple
 
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.regular_file import regular_file
@@ -22,34 +26,65 @@ from taylor_verify.solvers.files.formats import (
 )
 from taylor_verify.solvers.files.formats.column import BYTES, Column, Table, check_lengths
 
-Reader = Callable[[BinaryIO, Path, Collection[str]], list[Column]]
-# Formats that may hold several trajectories: the text after # in FILE#PART says which one is read.
-PartReader = Callable[[BinaryIO, Path, str], Table]
+# The text after # in FILE#PART says which of several trajectories in a file is read.
+Reader = Callable[[BinaryIO, Path, str], Table]
 
-READERS: Final[Mapping[str, Reader]] = {
-    ".csv": delimited.read,
-    ".tsv": delimited.read,
-    ".txt": delimited.read,
-    ".json": documents.read,
-    ".npz": binary.read,
-    ".parquet": parquet.read,
+
+class Format(NamedTuple):
+    """What a format is, its reader, and the package that the reader needs with the extra that has it."""
+
+    what: str
+    read: Reader
+    package: str = ""
+    extra: str = ""
+    needs: str = "needs"
+
+    @property
+    def sentence(self) -> str:
+        """What the format is, with the install command where its package is missing."""
+        if not self.package or _is_there(self.package):
+            return self.what
+        install = f"pip install 'taylor-verify[{self.extra}]'"
+        return f"{self.what}; {self.needs} {self.package}: {install}"
+
+
+def _alone(read: Callable[[BinaryIO, Path], list[Column]]) -> Reader:
+    """The reader of a format that holds one trajectory in a file."""
+
+    def read_alone(file: BinaryIO, path: Path, part: str) -> Table:
+        if part:
+            expected = "a file of one trajectory by its name alone"
+            raise Refused([f"expected {expected}, got `#{part}` @ {path}"])
+        return Table(read(file, path))
+
+    return read_alone
+
+
+_DELIMITED: Final = _alone(delimited.read)
+_HDF5: Final = ("h5py", "hdf5")
+_BAG: Final = (rosbag.read, "rosbags", "rosbag")
+FORMATS: Final[Mapping[str, Format]] = {
+    ".csv": Format("a header line and rows", _DELIMITED),
+    ".tsv": Format("a header line and rows, with tabs", _DELIMITED),
+    ".txt": Format("a header line and rows, with blanks; or an AEM", _DELIMITED),
+    ".json": Format("an object of arrays", _alone(documents.read)),
+    ".npz": Format("named arrays of NumPy", _alone(binary.read)),
+    ".parquet": Format("columns of numbers", _alone(parquet.read), "pyarrow", "parquet"),
+    ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", aem.read),
+    ".kvn": Format("attitude ephemeris of the CCSDS, as text", aem.read),
+    ".xml": Format("attitude ephemeris of the CCSDS, as XML", aem.read),
+    ".h5": Format("datasets of numbers", hdf5.read, *_HDF5),
+    ".hdf5": Format("datasets of numbers", hdf5.read, *_HDF5),
+    ".nc": Format("NetCDF 4, which is HDF5", hdf5.read, *_HDF5),
+    ".mat": Format("arrays and structs of MATLAB", matlab.read, *_HDF5, "version 7.3 needs"),
+    ".mcap": Format("a topic of ROS 2 messages or JSON", mcap.read, "mcap", "mcap"),
+    ".bag": Format("a topic of a rosbag of ROS 1", *_BAG),
+    ".db3": Format("a topic of a rosbag of ROS 2; its folder is read too", *_BAG),
 }
-PART_READERS: Final[Mapping[str, PartReader]] = {
-    ".aem": aem.read,
-    ".kvn": aem.read,
-    ".xml": aem.read,
-    ".h5": hdf5.read,
-    ".hdf5": hdf5.read,
-    ".nc": hdf5.read,
-    ".mat": matlab.read,
-    ".mcap": mcap.read,
-    ".bag": rosbag.read,
-    ".db3": rosbag.read,
-}
 
 
-def read_table(file: str | os.PathLike[str], known: Collection[str]) -> Table:
-    """Return the columns as they are written; ``known`` are the names that mean something.
+def read_table(file: str | os.PathLike[str]) -> Table:
+    """Return the columns as they are written.
 
     ``file`` is a path, or FILE#PART where a file holds several trajectories. Raises Refused for what is
     no regular file of bounded size, and for a fault of its format.
@@ -58,7 +93,7 @@ def read_table(file: str | os.PathLike[str], known: Collection[str]) -> Table:
     if rosbag.is_folder(path):
         return rosbag.read_folder(path, part)
     with regular_file(path, "a trajectory file", BYTES) as content:
-        table = _table(content, path, part, known)
+        table = _reader(content, path)(content, path, part)
     check_lengths(table.columns, path)
     return table
 
@@ -72,17 +107,18 @@ def parted(file: str) -> tuple[Path, str]:
     return Path(file), ""
 
 
-def _table(content: BinaryIO, path: Path, part: str, known: Collection[str]) -> Table:
-    suffix = path.suffix.lower()
-    part_reader = aem.read if aem.is_text(content) else PART_READERS.get(suffix)
-    if part_reader is not None:
-        return part_reader(content, path, part)
-    reader = READERS.get(suffix)
-    if reader is None:
-        expected = f"a file that ends in {', '.join((*READERS, *PART_READERS))}"
+def _reader(content: BinaryIO, path: Path) -> Reader:
+    if aem.is_text(content):
+        return aem.read
+    found = FORMATS.get(path.suffix.lower())
+    if found is None:
+        expected = f"a file that ends in {', '.join(FORMATS)}"
         raise Refused([f"expected {expected}, got {path.suffix or 'no suffix'} @ {path}"])
-    if part:
-        raise Refused(
-            [f"expected a file of one trajectory by its name alone, got `#{part}` @ {path}"]
-        )
-    return Table(reader(content, path, known))
+    return found.read
+
+
+def _is_there(package: str) -> bool:
+    try:
+        return find_spec(package) is not None
+    except ValueError:  # it is marked as missing, as tests do
+        return False

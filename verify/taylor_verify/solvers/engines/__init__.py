@@ -1,0 +1,1 @@
+"""Solvers of other libraries and engines, each a script that runs in an environment of its own."""

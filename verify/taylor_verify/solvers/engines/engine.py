@@ -1,0 +1,196 @@
+"""Solvers of other libraries and engines: `outside:NAME?version=VERSION&SETTING=VALUE`.
+
+The scripts in solvers/outside are the registry. A script answers by the protocol of a program of one's
+own, and runs in an environment of its own with the versions that its metadata pins; `version` replaces
+the pin of its main package. An environment is made when a solver is asked to solve, or by `prepare`:
+neither the standard run nor a list makes one.
+"""
+
+from __future__ import annotations
+
+import logging
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Final, final
+
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.solvers.engines import environment
+from taylor_verify.solvers.engines.environment import NotMade, Tell
+from taylor_verify.solvers.engines.script import Script, scripts
+from taylor_verify.solvers.options import Options, options
+from taylor_verify.solvers.process import process
+from taylor_verify.solvers.solver import Lack, Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+PREFIX: Final = "outside:"
+SCRIPTS: Final = Path(__file__).parents[1] / "outside"
+_VERSION: Final = "version"
+
+_log = logging.getLogger(__name__)
+# The interpreter of each block of metadata, or why there is none: not tried again for every scene.
+_interpreters: dict[str, str | Lack] = {}
+
+
+@dataclass(frozen=True)
+class Engine:
+    """A method of a script, or a script without methods; ``method`` is empty there."""
+
+    script: Script
+    method: str = ""
+
+    @property
+    def name(self) -> str:
+        return "-".join(filter(None, (self.script.library, self.method)))
+
+    @property
+    def title(self) -> str:
+        about = self.script.about
+        return ": ".join(filter(None, (about.title, about.methods.get(self.method))))
+
+    @property
+    def usage(self) -> str:
+        """The name and the settings, NUMBER standing for one; words are shown as they are."""
+        settings = [
+            f"{key}={'|'.join(default) if isinstance(default, list) else 'NUMBER'}"
+            for key, default in self.script.about.settings.items()
+        ]
+        return PREFIX + "?".join(filter(None, (self.name, "&".join(settings))))
+
+    @property
+    def unavailable(self) -> str:
+        """Why nothing here can run it; empty where it is ready, or would be after a download."""
+        return self.script.about.unavailable or process.unavailable() or environment.unavailable()
+
+
+@cache
+def engines() -> Mapping[str, Engine]:
+    """Return all engines by name, those that cannot be had included; no environment is made for it."""
+    found = [
+        Engine(script, method)
+        for script in scripts(SCRIPTS)
+        for method in script.about.methods or [""]
+    ]
+    return {engine.name: engine for engine in found}
+
+
+def usages() -> tuple[str, ...]:
+    """Return the names to choose from, with their settings."""
+    return tuple(engine.usage for engine in engines().values())
+
+
+def remarks() -> dict[str, str]:
+    """Return for each of the usages its title, with the reason if it is unavailable here."""
+    return {
+        engine.usage: engine.title
+        + (f" (unavailable: {engine.unavailable})" if engine.unavailable else "")
+        for engine in engines().values()
+    }
+
+
+def prepare(name: str, tell: Tell = _log.warning) -> None:
+    """Make the environment of an engine, by `cvode-bdf` or a solver's whole name, if it is not there.
+
+    ``tell`` hears what is being done: it may take minutes. Raises NotMade with the reason, and
+    ValueError for a name that is none.
+    """
+    solver = named(name if name.startswith(PREFIX) else f"{PREFIX}{name}")
+    if reason := solver.engine.unavailable:
+        raise NotMade(reason)
+    _interpreters.pop(solver.block, None)
+    if isinstance(answer := _interpreter(solver, tell), Lack):
+        raise NotMade(answer)
+
+
+def _interpreter(solver: Outside, tell: Tell) -> str | Lack:
+    if solver.block not in _interpreters:
+        library = solver.engine.script.library
+        try:
+            _interpreters[solver.block] = environment.interpreter(library, solver.block, tell)
+        except NotMade as reason:
+            sentence = f"the environment of {library} could not be made: {reason}"
+            _interpreters[solver.block] = Lack(sentence, Outcome.NO_PACKAGE)
+    return _interpreters[solver.block]
+
+
+@final
+@dataclass(frozen=True)
+class Outside(Solver):
+    """An engine with its settings, as text; ``block`` is the metadata with the version asked for.
+
+    Tolerances and steps count in the scene's own units.
+    """
+
+    engine: Engine
+    name: str
+    block: str
+    settings: tuple[tuple[str, str], ...]
+    time_limit: float = process.DEFAULT_LIMIT
+    setting: str = ""
+
+    def unavailable(self, rung: Rung) -> str:
+        rungs = self.engine.script.about.rungs
+        if reason := self.engine.unavailable:
+            return reason
+        if rung.name not in rungs:
+            return f"{self.name} is made for {' and '.join(rungs)} alone"
+        answer = _interpreters.get(self.block)
+        return answer if isinstance(answer, Lack) else ""
+
+    def unsuited(self, problem: Problem) -> str:
+        models = self.engine.script.about.models
+        if problem.given.model not in models:
+            return f"{self.name} is made for {' and '.join(models)} alone"
+        if problem.given.body.manufactured is not None:
+            return f"{self.name} is made for constant loads, and not for a manufactured motion"
+        return ""
+
+    def solve(self, problem: Problem) -> Trajectory:
+        reason = self.unavailable(problem.rung)
+        python = reason or _interpreter(self, _log.warning)
+        if reason or isinstance(python, Lack):
+            outcome = python.outcome if isinstance(python, Lack) else Outcome.NOT_STARTED
+            return Trajectory(outcome, detail=str(python))
+        # Without what the user has set for another Python, and leaving no files beside the script.
+        words = [python, "-B", "-E", "-s", str(self.engine.script.path), *self._arguments()]
+        command = f"{process.PREFIX}{shlex.join(words)}"
+        return process.Process(command, self.time_limit).solve(problem)
+
+    def _arguments(self) -> list[str]:
+        method = [("method", self.engine.method)] if self.engine.method else []
+        return [f"{key}={value}" for key, value in (*method, *self.settings)]
+
+
+def named(name: str) -> Outside:
+    """Return the engine of that name with its settings.
+
+    Raises ValueError for an engine or a setting that there is not, and for a value it cannot have.
+    """
+    known = engines()
+    method = name.removeprefix(PREFIX).partition("?")[0]
+    defaults = known[method].script.about.settings if method in known else {}
+    asked = options(name, known, [*defaults, _VERSION])
+    engine = known[asked.method]
+    settings: dict[str, str] = {}
+    for key, default in defaults.items():
+        settings[key] = _value(asked, key, default, settings)
+    block = engine.script.block
+    if _VERSION in asked:
+        block = engine.script.at_version(asked.values[_VERSION])
+    return Outside(engine, name, block, tuple(settings.items()), process.time_limit())
+
+
+def _value(
+    asked: Options, key: str, default: float | str | list[str], settings: Mapping[str, str]
+) -> str:
+    """The value of a setting: one of its words, or a number as a double prints it."""
+    if isinstance(default, list):
+        word = asked.values.get(key, default[0])
+        if word not in default:
+            raise ValueError(f"expected one of {', '.join(default)}, got {word!r:.60} @ {key}")
+        return word
+    fallback = settings[default] if isinstance(default, str) else repr(default)
+    return repr(float(asked.positive(key, fallback)))
