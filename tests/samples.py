@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.scene import Scene
@@ -41,6 +43,15 @@ def one_instant(body: Body, start: State, *track: str) -> Scene:
     model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
     clock = Clock(Fraction(0), (Fraction(1),))
     return Scene("test", "test", model, frozenset(track), body, start, clock)
+
+
+def spun(omega: Sequence[float], end: float, samples: int) -> Scene:
+    """A free body of moments 1, 2, 3 from these doubles, at equally spaced times that are doubles."""
+    elapsed = (Fraction(end * (k / (samples - 1))) for k in range(samples))
+    body = RigidBody(tensors.diagonal(vector(1, 2, 3)))
+    clock = Clock(Fraction(0), tuple(elapsed))
+    spin = Spin(tuple(Fraction(value) for value in omega))
+    return Scene("spun", "spun", "euler", frozenset(), body, spin, clock)
 
 
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.

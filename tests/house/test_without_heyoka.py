@@ -19,7 +19,7 @@ EVERY_MODULE = """
 import importlib, pkgutil, taylor_verify
 names = [m.name for m in pkgutil.walk_packages(taylor_verify.__path__, "taylor_verify.")]
 names = [n for n in names if ".outside" not in n and not n.endswith("__main__")]
-assert "taylor_verify.solvers.taylor.plain.clock" in names
+assert "taylor_verify.solvers.taylor.plain" in names
 for name in names:
     importlib.import_module(name)
 """
@@ -60,7 +60,7 @@ for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f
     "a trade-off": f"""
 from taylor_verify import tradeoff
 from taylor_verify.scenes.precision import rung
-from taylor_verify.trade.setting import setting
+from taylor_verify.studies.tradeoff.setting import setting
 names = ["taylor", "geometric:splitting?step=1/4"]
 found = tradeoff("euler/spherical", [setting(n, rung("f64")) for n in names], repeats=1)
 absent, present = found.document()["points"]

@@ -25,7 +25,6 @@ from test_ci import violations
 from test_docs import results
 from test_latex import html_has_the_cells, latex_has_the_rows, links_lead_somewhere, page_in
 from test_latex_compiled import compiled
-from test_traps import fresh, judged
 
 from taylor_verify.claims.ledger import claims, examined
 from taylor_verify.claims.numbers import CITED
@@ -63,7 +62,6 @@ from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.site.builder import build
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
-from taylor_verify.studies.traps import page as traps
 from taylor_verify.studies.worst import page as worst
 from taylor_verify.studies.worst.document import WorstStudy
 
@@ -278,15 +276,6 @@ def test_the_gallery_shows_every_picture() -> None:
 
 def first_line_of(text: str) -> str:
     return text.partition("\n")[0]
-
-
-def test_traps_say_what_is_measured_now() -> None:
-    """The same words, code, cases and verdicts; the digits of an error may differ by processor."""
-    kept, made_now = traps.load(REPORTS).traps, fresh().traps
-    assert [replace(t, cases=()) for t in kept] == [replace(t, cases=()) for t in made_now]
-    known = judged(kept)
-    # A rung or a library that is not here has no case here.
-    assert {name: known.get(name) for name in judged(made_now)} == judged(made_now)
 
 
 # What other pages quote.
