@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from lacking import lacking
+from builders.lacking import lacking
 
 import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import CLEBSCH, TENSOR, spun, vector
+from builders.scenes import LOADED as SOLID
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import libmp, mp
-from samples import CLEBSCH, TENSOR, spun, vector
-from samples import LOADED as SOLID
 
 from taylor_verify.exact.conditioning import gathering
 from taylor_verify.exact.conditioning.condition import transition

@@ -8,9 +8,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import made
 import pytest
-from test_prices import short
+from builders import reports
+from builders.studies.prices import study as prices_study
 
 from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.records.provenance import Provenance
@@ -25,9 +25,9 @@ from taylor_verify.studies.worst import page as worst
 @cache
 def measured_report() -> Path:
     """A report with a document of every measurement, all of them short."""
-    place = made.folder()
-    shutil.copytree(made.small(), place, dirs_exist_ok=True)
-    prices.write(place, short())
+    place = reports.folder()
+    shutil.copytree(reports.small(), place, dirs_exist_ok=True)
+    prices.write(place, prices_study())
     return place
 
 

@@ -76,3 +76,19 @@ omega = [1, "0.4", "0.3"]
 [time]
 at = ["0.5", 1, 2]
 """
+
+
+def remus_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r: inertia minus added terms."""
+    mass, roll, pitch = Fraction("30.48"), Fraction("0.177"), Fraction("3.45")
+    added = {
+        **{(0, 0): "-0.930", (1, 1): "-35.5", (2, 2): "-35.5"},  # Xu', Yv', Zw'
+        **{(3, 3): "-0.0704", (4, 4): "-4.88", (5, 5): "-4.88"},  # Kp', Mq', Nr'
+        **{(1, 5): "1.93", (2, 4): "-1.93"},  # Yr', Zq'
+        **{(4, 2): "-1.93", (5, 1): "1.93"},  # Mw', Nv'
+    }
+    solid = (mass, mass, mass, roll, pitch, pitch)
+    return tuple(
+        tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
+        for i in range(6)
+    )
