@@ -6,7 +6,7 @@ BIN = .venv/bin
 PIP = $(BIN)/python -m pip --quiet --disable-pip-version-check
 INSTALLED = .venv/.installed
 
-.PHONY: help verify verify-all test test-all docs site test-site bench reports release-data tradeoff
+.PHONY: help verify verify-all test test-all docs site test-site bench reports traps release-data tradeoff
 .PHONY: check-reports lint clean
 
 help:  ## Print this list
@@ -49,6 +49,7 @@ bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish --controls > /dev/null
+	@$(MAKE) --no-print-directory traps > /dev/null
 	@$(BIN)/taylor-verify publish --extremes > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish --reference > /dev/null
@@ -57,6 +58,10 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify publish --gallery > /dev/null
 	@$(BIN)/taylor-verify publish --claims > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null
+
+# A report to heyoka's authors, beside its minimal scripts; no part of the package.
+traps: $(INSTALLED)  ## Measure the table of heyoka's traps anew (reports/upstream/traps)
+	@cd reports/upstream && $(CURDIR)/$(BIN)/python -m traps
 
 release-data: $(INSTALLED)  ## Pack everything published, what is not committed included, into dist
 	@$(BIN)/taylor-verify publish --missing > /dev/null

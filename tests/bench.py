@@ -21,8 +21,8 @@ from pathlib import Path
 from unittest.mock import patch
 
 from bench_check import judging
+from builders.two_runs import two_runs
 from mpmath import mpf
-from two_runs import two_runs
 
 from taylor_verify.exact.conditioning.sensitivity import sensitivity
 from taylor_verify.exact.elements import elements

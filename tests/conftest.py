@@ -15,6 +15,8 @@ from mpmath import mp
 settings.register_profile("house", deadline=None, derandomize=True)
 settings.register_profile("search", deadline=None)
 settings.load_profile("house")
+# An assertion in a shared builder shows its values as one in a test does.
+pytest.register_assert_rewrite("builders")
 
 
 @pytest.fixture(autouse=True)

@@ -18,16 +18,19 @@ x, one = hy.make_vars("x"), hy.real(1, 237)
 hy.taylor_adaptive([(x, -x)], [one], time=0 * one, fp_type=hy.real, compact_mode=True)
 """
 
-with TemporaryDirectory() as folder:
-    for _ in range(3):
-        subprocess.run([sys.executable, "-c", PROGRAM, folder], check=True)
-    connection = sqlite3.connect(Path(folder, "cache.db"))
-    keys = [key for (key,) in connection.execute("SELECT bitcode FROM cache")]
-    connection.close()
+if __name__ == "__main__":
+    with TemporaryDirectory() as folder:
+        for _ in range(3):
+            subprocess.run([sys.executable, "-c", PROGRAM, folder], check=True)
+        connection = sqlite3.connect(Path(folder, "cache.db"))
+        keys = [key for (key,) in connection.execute("SELECT bitcode FROM cache")]
+        connection.close()
 
-print("expected  one piece of code, compiled by the first of three processes")
-print(f"got       {len(keys)}, of {', '.join(str(len(key)) for key in keys)} bytes of bitcode")
-if len(keys) > 1:
-    differing = [i for i, (a, b) in enumerate(zip(*keys[:2], strict=False)) if a != b]
-    print(f"          the first two differ in {len(differing)} of them, from byte {differing[0]}")
-sys.exit(1 if len(keys) > 1 else 0)
+    print("expected  one piece of code, compiled by the first of three processes")
+    print(f"got       {len(keys)}, of {', '.join(str(len(key)) for key in keys)} bytes of bitcode")
+    if len(keys) > 1:
+        differing = [i for i, (a, b) in enumerate(zip(*keys[:2], strict=False)) if a != b]
+        print(
+            f"          the first two differ in {len(differing)} of them, from byte {differing[0]}"
+        )
+    sys.exit(1 if len(keys) > 1 else 0)

@@ -12,8 +12,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from samples import THREE_INSTANTS
-from test_runs import Backwards
+from builders.executor import Backwards
+from builders.scenes import THREE_INSTANTS
 
 import taylor_verify
 from taylor_verify.batch.failure import Failed

@@ -16,32 +16,10 @@ from multiprocessing import get_context
 from typing import Any
 
 import pytest
+from builders.executor import Backwards
 
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.runs import run_all
-
-
-class Backwards(Executor):
-    """An executor of somebody's own: it waits until ``count`` are submitted and begins with the last."""
-
-    def __init__(self, count: int) -> None:
-        self.count = count
-        self.calls: list[tuple[Future[Any], Callable[[], Any]]] = []
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        self.calls.append((future, lambda: fn(*args, **kwargs)))
-        if len(self.calls) == self.count:
-            threading.Thread(target=self._run).start()
-        return future
-
-    def _run(self) -> None:
-        for future, call in reversed(self.calls):
-            if future.set_running_or_notify_cancel():
-                try:
-                    future.set_result(call())
-                except BaseException as error:
-                    future.set_exception(error)
 
 
 def square(number: int) -> int:

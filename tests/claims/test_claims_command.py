@@ -7,37 +7,21 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from builders.studies.claims import ROWS, STUDY
 
 from taylor_verify.claims import ledger
-from taylor_verify.claims.claim import Claim, Residual, Verdict
-from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy
-from taylor_verify.claims.ledger import claims, examined
+from taylor_verify.claims.claim import Verdict
+from taylor_verify.claims.document import ClaimResiduals
+from taylor_verify.claims.ledger import claims
 from taylor_verify.claims.numbers import CITED
 from taylor_verify.cli import main
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.records.provenance import Provenance
 from taylor_verify.studies.claims.page import CLAIMS, PAGE, SHEET, load, page, pages, write
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}
 
 Captured = pytest.CaptureFixture[str]
-
-
-def row(claim: Claim) -> ClaimRow:
-    (finding,) = examined([claim])
-    return finding.row()
-
-
-def without_checks(claim: Claim) -> ClaimRow:
-    """The row that the recorded verdict asks for, with no check run."""
-    fine = lambda: Residual(0.0, 0.0, "")  # noqa: E731
-    missed = (lambda: Residual(1.0, 0.0, "")) if claim.transcribed else None
-    return row(replace(claim, check=fine, transcribed=missed))
-
-
-ROWS = tuple(without_checks(claim) for claim in claims())
-STUDY = ClaimsStudy(Provenance({"taylor-verify": "1"}, "A chip", "a command"), dict(CITED), ROWS)
 
 
 def test_json_is_a_list_of_entries(capsys: Captured) -> None:

@@ -11,8 +11,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from samples import THREE_INSTANTS
-from test_baseline import row
+from builders.scenes import THREE_INSTANTS
+from builders.verdicts import row
 
 from taylor_verify.batch.comparison import Earlier, compare_with_baseline
 from taylor_verify.check import check

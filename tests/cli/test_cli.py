@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import LISTED_INSTANTS
 from mpmath import mp
-from samples import LISTED_INSTANTS
 
 import taylor_verify
 from taylor_verify.batch.job import Job

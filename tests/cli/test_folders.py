@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from samples import THREE_INSTANTS
+from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main

@@ -12,10 +12,10 @@ from pathlib import Path
 from subprocess import run
 
 import pytest
+from builders.scenes import LISTED_INSTANTS
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
-from samples import LISTED_INSTANTS
 
 from taylor_verify.cli import main
 from taylor_verify.cli.console import EscapingConsole, new_console, print_line, text_of

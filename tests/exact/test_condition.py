@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
 from mpmath import libmp, mp, mpf
-from samples import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
 
 from taylor_verify.exact.conditioning import condition
 from taylor_verify.exact.conditioning.condition import Derivatives, derivatives, transition

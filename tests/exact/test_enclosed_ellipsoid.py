@@ -6,10 +6,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.ellipsoids import quadrature
+from builders.scenes import one_instant, vector
 from flint import arb, ctx
 from mpmath import mp, mpf
-from samples import one_instant, vector
-from test_ellipsoid import quadrature
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure import lamb

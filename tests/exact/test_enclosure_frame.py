@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from builders.boxes import CASES, enclosed, is_contained
+from builders.scenes import GENERAL, one_instant, vector
 from flint import arb, ctx
-from samples import GENERAL, one_instant, vector
-from test_enclosure import CASES, enclosed, is_contained
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import placing

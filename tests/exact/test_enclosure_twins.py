@@ -10,8 +10,8 @@ from typing import Any
 from unittest import mock
 
 import pytest
+from builders.scenes import one_instant, vector
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
-from samples import one_instant, vector
 
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.enclosure import box, system, tube

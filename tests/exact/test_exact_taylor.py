@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 from mpmath import libmp, mp, mpf
-from samples import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled

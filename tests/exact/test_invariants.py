@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import libmp, mp, mpf
-from samples import (
+from builders.scenes import (
     CLEBSCH,
     COUPLE,
     FORCE,
@@ -21,6 +20,7 @@ from samples import (
     TENSOR,
     vector,
 )
+from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.taylor import TaylorSolution

@@ -14,11 +14,11 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from builders.scenes import one_instant
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from samples import one_instant
 
 from taylor_verify.exact.enclosure import tube
 from taylor_verify.exact.enclosure.course import Coarse, Course, Row

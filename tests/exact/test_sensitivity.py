@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
 from mpmath import mp, mpf
-from samples import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
 
 from taylor_verify.exact.conditioning import sensitivity as module
 from taylor_verify.exact.conditioning.condition import derivatives

@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 import pytest
+from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
-from samples import one_instant, vector
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution

@@ -6,8 +6,8 @@ from dataclasses import replace
 from math import ceil
 
 import pytest
+from builders.two_runs import APART_DIGITS, GUARD_BITS, GUARD_DIGITS, two_runs
 from mpmath import mp, mpf
-from two_runs import APART_DIGITS, GUARD_BITS, GUARD_DIGITS, two_runs
 
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.reading.reader import load

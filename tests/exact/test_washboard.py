@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.washboards import DIGITS, FRAME, ROUTES, axial, board, gap, loaded
 from flint import acb, arb, ctx
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -22,7 +23,6 @@ from taylor_verify.exact.conditioning import condition
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.moments import washboard_balls, washboard_chebyshev
 from taylor_verify.exact.euler.moments.turnings import regime, turnings
-from taylor_verify.exact.euler.moments.washboard import Washboard
 from taylor_verify.exact.euler.moments.washboard_balls import Turn
 from taylor_verify.exact.euler.moments.washboard_panels import Panels
 from taylor_verify.exact.euler.moments.washboard_speed import speed
@@ -33,15 +33,12 @@ from taylor_verify.models.problem import pose
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-DIGITS = 45
-ROUTES = ("arb", "mpmath")
-FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 SHIPPED = {
     "moment-middle-axis": "washboard-swing",
     "washboard-swing": "washboard-swing",
@@ -51,20 +48,6 @@ SHIPPED = {
 
 def vector(*entries: int | str) -> Vector:
     return tuple(Fraction(entry) for entry in entries)
-
-
-def loaded(inertia: Matrix, moment: Vector, omega: Vector, attitude: bool = False) -> Scene:
-    track = frozenset({"attitude"} if attitude else ())
-    clock = Clock(Fraction(0), (Fraction(0), Fraction(1)))
-    return Scene(
-        "drawn", "drawn", "euler", track, RigidBody(inertia, moment), Spin(omega, FRAME), clock
-    )
-
-
-def axial(axis: int, push: str, omega: Vector) -> Scene:
-    """Moments 1, 2, 3 about the axes 1, 2, 3, and M along one of them."""
-    moment = tuple(Fraction(push) if i == axis else Fraction(0) for i in range(3))
-    return loaded(tensors.diagonal(vector(1, 2, 3)), moment, omega)
 
 
 # A rotation with rational entries, so that the principal axes are rational and none is a body axis.
@@ -104,25 +87,8 @@ TIMES = tuple(map(Fraction, ("0", "1/3", "13/2", "-4", "-8")))
 LONGER = ("least run", "greatest run", "steep run", "middle falling", "from rest above")
 
 
-def gap(one: Motion, other: Motion) -> mpf:
-    """The largest distance of a row from its like, in parts of its norm."""
-    worst = mpf(0)
-    with mp.workdps(3 * DIGITS):
-        for name, rows in one.quantities.items():
-            for p, q in zip(rows, other[name], strict=True):
-                size = mp.norm(list(p.flat))
-                worst = max(worst, mp.norm(list((p - q).flat)) / (size if size else 1))
-    return worst
-
-
 # What two numbers of so many digits may differ by.
 BOTH = 2 * mpf(10) ** -DIGITS
-
-
-def board(scene: Scene) -> Washboard:
-    assert isinstance(scene.body, RigidBody)
-    assert isinstance(scene.initial, Spin)
-    return Washboard(scene.body.inertia, scene.body.moment, scene.initial.omega)
 
 
 @cache

@@ -9,10 +9,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.scenes import one_instant, vector
+from builders.washboards import DIGITS, ROUTES, axial, board, gap
 from flint import arb, ctx, fmpq
 from mpmath import mpf
-from samples import one_instant
-from test_washboard import DIGITS, ROUTES, axial, board, gap, vector
 
 from taylor_verify.exact.euler.moments import washboard_teeth
 from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, located

@@ -11,9 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from builders.webers import BODIES, STARTS, built, case, curve_of, exact
 from flint import ctx
 from mpmath import mp, mpf
-from webers import BODIES, STARTS, built, case, curve_of, exact
 
 from taylor_verify.exact.balls import max_or_nan, midpoint
 from taylor_verify.exact.elements import elements

@@ -6,11 +6,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
+from builders.webers import BODIES, built, case, curve_of, second
 from flint import acb, acb_mat, arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from webers import BODIES, built, case, curve_of, second
 
 from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.kirchhoff.weber import surd as surds

@@ -16,7 +16,8 @@ from types import ModuleType
 from typing import Any
 
 import pytest
-from worked import DOCS, ROOT, blocks, work
+from builders.pages import results, table_rows
+from builders.worked import DOCS, ROOT, blocks, work
 
 import taylor_verify
 from taylor_verify.cli import answer
@@ -53,12 +54,6 @@ def configuration() -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-def table_rows(page: str) -> list[list[str]]:
-    """The cells of every line of a table, heads and rules included."""
-    lines = [line for line in text_of(page).splitlines() if line.startswith("| ")]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 
 
 # The pages.
@@ -115,10 +110,6 @@ def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
 
 
 # What the pages tell.
-
-
-def results() -> list[list[str]]:
-    return [row for row in table_rows("results.md") if row[0].startswith("`")]
 
 
 def test_the_table_of_results_has_both_models_and_every_state() -> None:

@@ -14,7 +14,8 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-PACKAGE: Final = Path(__file__).resolve().parents[2] / "verify" / "taylor_verify"
+TESTS: Final = Path(__file__).resolve().parents[1]
+PACKAGE: Final = TESTS.parent / "verify" / "taylor_verify"
 
 Sources = Mapping[str, str]
 """Module name to source text; a package goes by its own name, as in an import."""
@@ -346,6 +347,35 @@ def test_no_detour_round_a_wall() -> None:
 def test_the_walls_have_something_behind_them(name: str) -> None:
     """Each room with a wall has code in it: no rule holds for want of modules."""
     assert any(source for module, source in TREE.items() if room(module) == name)
+
+
+# The tests
+
+
+def imports_no_tests(module: str, source: str) -> Iterator[str]:
+    """No test module is imported: what two of them need stands in builders."""
+    for target, line, _ in imports(source):
+        if any(part.startswith("test_") for part in target.split(".")[:-1] or [target]):
+            yield f"expected an import from builders, got {target} @ {module}:{line}"
+
+
+def test_no_test_module_is_imported() -> None:
+    """No file below tests imports a test module."""
+    files = sorted(TESTS.rglob("*.py"))
+    assert len(files) > 100
+    faults = [imports_no_tests(file.stem, file.read_text(encoding="utf-8")) for file in files]
+    assert list(itertools.chain(*faults)) == []
+
+
+@pytest.mark.parametrize(
+    "source", ["from test_reach import row", "import test_reach", "from reach.test_page import row"]
+)
+def test_an_import_of_a_test_module_is_named(source: str) -> None:
+    """The fault names the module that is imported, and the file that imports it."""
+    (fault,) = imports_no_tests("test_growth", source)
+    assert "test_" in fault.partition(", got ")[2]
+    assert fault.endswith(" @ test_growth:1")
+    assert list(imports_no_tests("test_growth", "from builders.verdicts import row")) == []
 
 
 # The checker must catch what is planted

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from lacking import WITHOUT_UNIX, lacking
+from builders.lacking import WITHOUT_UNIX, lacking
 
 USES = {
     "load and exact": """

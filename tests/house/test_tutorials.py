@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from worked import DOCS, Numbers, Untrue, blocks, compare, work
+from builders.worked import DOCS, Numbers, Untrue, blocks, compare, work
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 # A tutorial for each role, and for each use.

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import CLEBSCH, TENSOR, spun, vector
+from builders.scenes import LOADED as SOLID
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import libmp, mp
-from samples import CLEBSCH, TENSOR, vector
-from samples import LOADED as SOLID
 
 from taylor_verify.exact.conditioning import gathering
 from taylor_verify.exact.conditioning.condition import transition
@@ -40,8 +40,7 @@ from taylor_verify.scenes.precision import power_of_two, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
-from taylor_verify.solvers.taylor.plain.body import Plain
-from taylor_verify.studies.traps.measured import free
+from taylor_verify.solvers.taylor.plain import Plain
 
 Array = np.ndarray[Any, Any]
 U = 2.0**-53
@@ -255,7 +254,7 @@ def _floor_of(asked: Scene, steps: int) -> tuple[Floor, Motion]:
 
 def edge(d: float, samples: int, tumbles: float = 1.0) -> Scene:
     """(d, 1, 0) with moments 1, 2, 3, until so many times as long as it takes to the first tumble."""
-    return free("edge", (d, 1.0, 0.0), tumbles * log(1 / d) / RATE, samples)
+    return spun((d, 1.0, 0.0), tumbles * log(1 / d) / RATE, samples)
 
 
 @pytest.mark.parametrize("d", [1e-8, 1e-12])
@@ -315,7 +314,7 @@ def _all_floors(asked: Scene) -> list[Array]:
 
 def returning(samples: int) -> Scene:
     """A body that comes back to its unstable axis every 27 units, six times."""
-    return free("returning", (1e-6, 1.0, 2.5e-7), 165.0, samples)
+    return spun((1e-6, 1.0, 2.5e-7), 165.0, samples)
 
 
 def test_floor_does_not_depend_on_where_the_samples_lie() -> None:
@@ -334,7 +333,7 @@ def in_step(samples: int) -> Scene:
     inertia = tuple(tuple(I * (i == j) for j in range(3)) for i, I in enumerate(moments))
     spin = Spin((Fraction(0), Fraction(1), Fraction(1, 10)))
     times = tuple(Fraction(20 * k, samples - 1) for k in range(samples))
-    plain = free("in step", (0.0, 1.0, 0.0), 20.0, 3)
+    plain = spun((0.0, 1.0, 0.0), 20.0, 3)
     return replace(plain, body=RigidBody(inertia), initial=spin, clock=Clock(Fraction(0), times))
 
 
@@ -394,4 +393,4 @@ def test_a_step_without_a_bound_is_seen_beside_the_unstable_axis(d: float) -> No
 @pytest.mark.parametrize("solve", [plain, driver])
 def test_both_pass_where_nothing_is_small(solve: Callable[[Scene], tuple[Verdict, ...]]) -> None:
     """On a generic orbit the step needs no bound: what fails above is the small component alone."""
-    assert {v.verdict for v in solve(free("generic", (0.3, 1.0, 0.2), 20.0))} == {Status.PASS}
+    assert {v.verdict for v in solve(spun((0.3, 1.0, 0.2), 20.0, 11))} == {Status.PASS}

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.verdicts import ATTAINABLE, row
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,37 +18,12 @@ from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
 from taylor_verify.judge.baseline import hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
-from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.studies.report import load as load_report
 from taylor_verify.studies.report import write
 
-ATTAINABLE = 1e-14
-
 Captured = pytest.CaptureFixture[str]
-
-
-def row(errors: float = 0.5, **changed: Any) -> Verdict:
-    """A row whose errors are so many times what is attainable."""
-    numbers: dict[str, Any] = {
-        "verdict": Status.PASS,
-        "outcome": "reached the last sample",
-        **dict.fromkeys(("max", "mean", "final"), errors * ATTAINABLE),
-        "at": 7.0,
-        "unit": "max|omega|",
-        "bound": 10 * ATTAINABLE,
-        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
-        "attainable": ATTAINABLE,
-        "ratio": errors,
-        "ratio_at": 7.0,
-        "roundoff": 2.0**-53,
-        "steps": 100,
-        "evaluations": 2000,
-        "provenance": {"scene": "digest"},
-    }
-    names: dict[str, Any] = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
-    return Verdict(**{"solver": "taylor", "setting": "", **names, **numbers, **changed})
 
 
 def regressions(old: Iterable[Verdict], new: Iterable[Verdict]) -> list[str]:

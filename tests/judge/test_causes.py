@@ -11,10 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from first_order import engine, in_space_axes, none
-from scipy.spatial.transform import Rotation
-from trajectories import QUATERNION, VECTORS, Columns, columns_at, write_csv
-from wrong_dynamics import (
+from builders.first_order import engine, in_space_axes, none
+from builders.trajectories import QUATERNION, VECTORS, Columns, columns_at, write_csv
+from builders.wrong_dynamics import (
     Array,
     Numbers,
     Rate,
@@ -26,6 +25,7 @@ from wrong_dynamics import (
     turned,
     turned_by_space,
 )
+from scipy.spatial.transform import Rotation
 
 import taylor_verify
 from taylor_verify.cli import main

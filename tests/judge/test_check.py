@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.trajectories import MATRIX, VECTORS, Columns, columns_at, exact_columns, write_csv
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
-from trajectories import MATRIX, VECTORS, Columns, columns_at, exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main

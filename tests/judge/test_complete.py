@@ -10,7 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from trajectories import columns_at, write_csv
+from builders.trajectories import columns_at, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main

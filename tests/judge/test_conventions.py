@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from first_order import engine, explicit, none
-from mpmath import mp, mpf
-from trajectories import (
+from builders.first_order import engine, explicit, none
+from builders.trajectories import (
     MATRIX,
     QUATERNION,
     VECTORS,
@@ -24,6 +23,7 @@ from trajectories import (
     rows_of,
     write_csv,
 )
+from mpmath import mp, mpf
 
 import taylor_verify
 from taylor_verify.judge.answer import FileJudgement

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import Floats, explicit_euler, fixed_step, rk4
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -20,7 +18,6 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
-Floats = np.ndarray[Any, Any]
 HALVED = [2.0**-k for k in range(1, 11)]
 FLOOR = 1e-14
 
@@ -158,59 +155,6 @@ def short(name: str, span: int = 4) -> Scene:
     return replace(
         load(name), clock=Clock(Fraction(0), tuple(Fraction(k) for k in range(span + 1)))
     )
-
-
-def euler_rates(problem: Problem, number: type) -> Callable[[Floats], Floats]:
-    inertia = np.array(problem.given.body.inertia, dtype=float)
-    inverse = np.linalg.inv(inertia).astype(number)
-    inertia = inertia.astype(number)
-    return lambda w: inverse @ np.cross(inertia @ w, w)
-
-
-def explicit_euler(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
-    return w + h * f(w), w
-
-
-def rk4(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
-    """The step, and the mean of the angular velocities at its four stages."""
-    two = type(h)(2)
-    k1 = f(w)
-    w2 = w + h / two * k1
-    k2 = f(w2)
-    w3 = w + h / two * k2
-    k3 = f(w3)
-    w4 = w + h * k3
-    weights = (w + two * w2 + two * w3 + w4) / type(h)(6)
-    return w + h / type(h)(6) * (k1 + two * k2 + two * k3 + f(w4)), weights
-
-
-def turned(q: Floats, angle: Floats) -> Floats:
-    """q times the exponential of half a rotation vector in body axes."""
-    size = float(np.linalg.norm(angle))
-    s, v = math.cos(size / 2), math.sin(size / 2) / size * angle
-    return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))])
-
-
-def fixed_step(
-    method: Callable[..., tuple[Floats, Floats]], number: type = np.float64, attitude: bool = False
-) -> Callable[[Problem, float], Floats]:
-    def solve(problem: Problem, step: float) -> Floats:
-        f = euler_rates(problem, number)
-        initial = problem.given.initial
-        w = np.array([float(v) for v in initial.omega]).astype(number)
-        q = np.array([float(v) for v in initial.attitude])
-        q /= np.linalg.norm(q)
-        rows = [[*w, *q] if attitude else [*w]]
-        for a, b in pairwise(float(t) for t in problem.given.clock.elapsed):
-            count = round((b - a) / step)
-            h = number((b - a) / count)
-            for _ in range(count):
-                w, mean = method(f, w, h)
-                q = turned(q, float(h) * mean.astype(float)) if attitude else q
-            rows.append([*w, *q] if attitude else [*w])
-        return np.array(rows)
-
-    return solve
 
 
 COARSE = [2.0**-k for k in range(1, 7)]

@@ -12,8 +12,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from builders.integrators import explicit_euler, fixed_step, rk4
 from jsonschema import Draft202012Validator
-from test_convergence import explicit_euler, fixed_step, rk4
 
 import taylor_verify
 from taylor_verify.cli import main

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders import verdicts
 
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
@@ -29,25 +30,7 @@ STEPS = 200
 
 def row(**changed: Any) -> Verdict:
     """A published error of half of what is attainable."""
-    numbers: dict[str, Any] = {
-        "verdict": Status.PASS,
-        "outcome": "reached the last sample",
-        "max": 5e-15,
-        "mean": 2e-15,
-        "final": 1e-15,
-        "at": 7.0,
-        "unit": "max|omega|",
-        "bound": 1e-13,
-        "attainable": 1e-14,
-        "ratio": 0.6,
-        "ratio_at": 7.0,
-        "roundoff": 2.0**-53,
-        "steps": 100,
-        "evaluations": 2000,
-        "provenance": {"scene": "digest"},
-    }
-    names: dict[str, Any] = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
-    return Verdict(**{"solver": "taylor", "setting": "", **names, **numbers, **changed})
+    return verdicts.row(**{"max": 5e-15, "mean": 2e-15, "final": 1e-15, "ratio": 0.6, **changed})
 
 
 def told(old: list[Verdict], new: list[Verdict]) -> list[str]:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_ci import row
-from trajectories import Columns, columns_at, write_csv
+from builders.trajectories import Columns, columns_at, write_csv
+from builders.verdicts import far_off as row
 
 import taylor_verify
 from taylor_verify.cli import main

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.trajectories import VECTORS, columns_at, write_csv
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
-from trajectories import VECTORS, columns_at, write_csv
 
 from taylor_verify.check import check
 from taylor_verify.exact.rates import rates

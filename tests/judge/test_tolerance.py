@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.trajectories import exact_columns, write_csv
 from mpmath import mpf
-from trajectories import exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.batch.expectations import compare_with_expectations

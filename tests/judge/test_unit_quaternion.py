@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajectories import QUATERNION, columns_at, exact_columns, write_csv
+from builders.trajectories import QUATERNION, columns_at, exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.exact.route import solution

@@ -18,10 +18,11 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from builders.scenes import LISTED_INSTANTS
+from builders.schema import SCHEMA, SCHEMA_FILE, violations
+from builders.verdicts import far_off as row
 from hypothesis import given
 from hypothesis import strategies as st
-from jsonschema import Draft202012Validator
-from samples import LISTED_INSTANTS
 
 from taylor_verify.cli import main
 from taylor_verify.publish.ci import annotations, junit
@@ -34,36 +35,10 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 
 ROOT = Path(__file__).resolve().parents[2]
-SCHEMA_FILE = ROOT / "verify" / "taylor_verify" / "records" / "verdicts.schema.json"
-SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
 ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
 EXAMPLE = ROOT / ".github" / "workflows" / "example.yml"
 
 Captured = pytest.CaptureFixture[str]
-
-
-def row(status: Status = Status.PASS, **changed: Any) -> Verdict:
-    """An error of 3.3e-12 at t = 7, where 2e-13 is allowed."""
-    numbers: dict[str, Any] = {
-        "verdict": status,
-        "outcome": "reached the last sample",
-        "max": 3.3e-12,
-        "mean": 2e-12,
-        "final": 1e-12,
-        "at": 7.0,
-        "unit": "max|omega|",
-        "bound": 2e-13,
-        "reason": stated(Cause.STATED, "10 x attainable; one rounding a step"),
-        "attainable": 2e-14,
-        "ratio": 165.0,
-        "ratio_at": 6.5,
-        "roundoff": 2.0**-53,
-        "steps": 100,
-        "seconds": 0.25,
-        "provenance": {"scene": "digest", "versions": {"python": "3.12.1"}},
-    }
-    names: dict[str, Any] = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
-    return Verdict(**{"solver": "taylor", "setting": "", **names, **numbers, **changed})
 
 
 def unscored(status: Status, because: str, **changed: Any) -> Verdict:
@@ -388,12 +363,6 @@ def test_the_summary_is_never_longer_than_github_takes() -> None:
 
 
 # JSON.
-
-
-def violations(document: Any) -> list[str]:
-    """The places where a document is not of the published schema."""
-    found = Draft202012Validator(SCHEMA).iter_errors(document)
-    return [f"{error.message} @ {error.json_path}" for error in found]
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from io import StringIO
 from xml.etree import ElementTree
 
 import pytest
+from builders.studies.reach import study
 from hypothesis import given
 from hypothesis import strategies as st
-from test_reach_page import study
 
 from taylor_verify.publish.pictures.compact_svg import compact
 from taylor_verify.publish.pictures.picture import plotting

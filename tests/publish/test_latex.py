@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from html.parser import HTMLParser
 from pathlib import Path
 
-import made
 import pytest
+from builders import reports
+from builders.pages import html_has_the_cells, latex_has_the_rows, links_lead_somewhere, page_in
+from builders.verdicts import MIXED, RECORD
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_publish import MIXED, RECORD
 
 from taylor_verify.cli import main
 from taylor_verify.publish.paper import html, latex, latex_table, latex_text
@@ -198,123 +198,24 @@ def test_a_table_that_is_cut_keeps_the_rows_that_have_something() -> None:
 
 @pytest.fixture(scope="module")
 def rendered() -> dict[str, str]:
-    return files.renderings(made.small())
-
-
-def page_in(folder: Path, path: str) -> Page:
-    return Page(path, (folder / path).read_text(encoding="utf-8"))
-
-
-class Cells(HTMLParser):
-    """The tables of a page: every cell's text; code and bold are not told apart from words."""
-
-    VOID = frozenset({"meta", "img", "br", "hr", "mspace"})
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tables: list[list[list[str]]] = []
-        self.open: list[str] = []
-        self.links: list[str] = []
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.links += [value or "" for name, value in attrs if name in ("href", "src")]
-        if tag in self.VOID:
-            return
-        self.open.append(tag)
-        match tag:
-            case "table":
-                self.tables.append([])
-            case "tr":
-                self.tables[-1].append([])
-            case "td" | "th":
-                self.tables[-1][-1].append("")
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag not in self.VOID:
-            assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        if {"td", "th"} & set(self.open):
-            self.tables[-1][-1][-1] += data
-
-
-def markdown_tables(text: str) -> list[list[list[str]]]:
-    """The tables of a page, its lines cut at their bars: no parser of Markdown has a part in it."""
-    found: list[list[list[str]]] = []
-    before = ""
-    for line in text.splitlines():
-        if line.startswith("|"):
-            if not before.startswith("|"):
-                found.append([])
-            if not re.fullmatch(r"[|:\- ]+", line) or "---" not in line:
-                cells = re.split(r"(?<!\\)\|", line)[1:-1]
-                found[-1].append([plain(cell) for cell in cells])
-        before = line
-    return found
-
-
-def plain(cell: str) -> str:
-    """The cell without its Markdown: what a reader sees."""
-    seen = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", cell.strip())
-    parts = re.split(r"((?<!\\)`[^`]*`)", seen)
-    words = [
-        part.strip("`").replace(r"\|", "|")
-        if part.startswith("`")
-        else re.sub(r"\\(.)", "\\1", re.sub(r"(?<!\\)\*+", "", part))
-        for part in parts
-    ]
-    return "".join(words)
+    return files.renderings(reports.small())
 
 
 @pytest.mark.parametrize("path", MADE)
 def test_html_has_the_cells_of_the_page(path: str, rendered: Mapping[str, str]) -> None:
     """Every table, row and cell of the Markdown stands in the HTML, whose elements all close."""
-    html_has_the_cells(page_in(made.small(), path), rendered)
-
-
-def html_has_the_cells(page: Page, rendered: Mapping[str, str]) -> None:
-    text = rendered[f"tables/{page.stem}.html"]
-    parsed = Cells(text)
-    assert parsed.open == []
-    assert text.splitlines()[0] == html.MAKER
-    assert parsed.tables == markdown_tables(page.text)
+    html_has_the_cells(page_in(reports.small(), path), rendered)
 
 
 @pytest.mark.parametrize("path", MADE)
 def test_latex_has_the_rows_of_the_page(path: str, rendered: Mapping[str, str]) -> None:
     """No row of a table is lost, a cut one may have more of them; no sign is without its macro."""
-    latex_has_the_rows(page_in(made.small(), path), rendered)
-
-
-def latex_has_the_rows(page: Page, rendered: Mapping[str, str]) -> None:
-    text = rendered[f"tables/{page.stem}.tex"]
-    assert text.splitlines()[0] == latex.MAKER
-    assert "[U+" not in text
-    assert text.count("\\begin{") == text.count("\\end{")
-    expected = sum(len(table) - 1 for table in markdown_tables(page.text))
-    cut = text.count("further columns")
-    assert len(re.findall(r" \\\\$", text, re.M)) >= expected
-    assert cut or len(re.findall(r" \\\\$", text, re.M)) == expected
+    latex_has_the_rows(page_in(reports.small(), path), rendered)
 
 
 def test_every_link_leads_somewhere(rendered: Mapping[str, str]) -> None:
     """Links and pictures of the HTML lead to renderings, or to files that are there."""
-    links_lead_somewhere(made.small(), rendered)
-
-
-def links_lead_somewhere(folder: Path, rendered: Mapping[str, str]) -> None:
-    for name, text in rendered.items():
-        for link in Cells(text).links if name.endswith(".html") else ():
-            address, _, anchor = link.partition("#")
-            if "://" in address:
-                continue
-            place = (folder / "tables" / address).resolve() if address else None
-            target = place.relative_to(folder.resolve()).as_posix() if place else name
-            assert target in rendered or (folder / target).exists(), (name, link)
-            if anchor and target in rendered:
-                assert f'id="{anchor}"' in rendered[target], (name, link)
+    links_lead_somewhere(reports.small(), rendered)
 
 
 def test_the_paper_has_every_page_once(rendered: Mapping[str, str]) -> None:

@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from pathlib import Path
 
-import pytest
-from test_publish import MIXED, RECORD
+from builders.pages import compiled
+from builders.verdicts import MIXED, RECORD
 
 from taylor_verify.publish.markdown import Column, code, prose, table
 from taylor_verify.publish.paper import latex
 from taylor_verify.publish.paper.parsed import Page
 from taylor_verify.studies import paper as files
 from taylor_verify.studies.report import publish, write
-
-
-def compiled(folder: Path, name: str, out: Path) -> str:
-    """What pdflatex says the second time, when the contents of a paper are known."""
-    program = shutil.which("pdflatex")
-    if program is None:
-        pytest.skip("there is no pdflatex on this machine")
-    # Those that come with Debian's texlive-latex-extra and lmodern, and not with LaTeX itself.
-    packages = ["docmute.sty", "lmodern.sty"]
-    if subprocess.run(["kpsewhich", *packages], capture_output=True, check=False).returncode:
-        pytest.skip(f"expected {' and '.join(packages)}, which the LaTeX of this machine lacks")
-    options = ["-interaction=nonstopmode", "-halt-on-error", f"-output-directory={out}"]
-    for _ in range(2):
-        ran = subprocess.run(
-            [program, *options, name], cwd=folder, capture_output=True, check=False
-        )
-        said = ran.stdout.decode("utf-8", errors="replace")
-        assert ran.returncode == 0, said[-2000:]
-    assert (out / name).with_suffix(".pdf").stat().st_size
-    return said
-
 
 # Signs that look like others are what it is about.
 HOSTILE = "a_b^c 50% #1 {x} \\y ~z & \"q\" 'r' <b> |v| $w$ – × ≤ ½ ω ′ → ‖ é"  # noqa: RUF001

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import made
 import numpy as np
 import pytest
+from builders import reports
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -54,7 +54,7 @@ lengths = st.floats(0.2, 5)
 
 
 def stored() -> Stored:
-    return Stored(made.for_gallery())
+    return Stored(reports.for_gallery())
 
 
 @cache
@@ -422,7 +422,7 @@ def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
     assert re.findall(r"\]\(([\w-]+)\.svg\)", text) == stems
     named = re.findall(r"(?:\]\(\.\./|`)((?:data|reference)/[^)`]+)[)`]", text)
     assert len(named) > len(stems)
-    assert [name for name in named if not (made.for_gallery() / name).is_file()] == []
+    assert [name for name in named if not (reports.for_gallery() / name).is_file()] == []
     assert all(one.picture.alt for one in shown())
     assert not any(re.search(r"\b(nan|inf|None)\b", one.block()) for one in shown())
 
@@ -436,7 +436,7 @@ def test_the_command_asks_for_what_is_missing(
     name = stored().portrait_name("euler/generic")
     for file in (name, stored().record_name("euler/generic", "f64")):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(made.for_gallery() / file, tmp_path / file)
+        shutil.copy(reports.for_gallery() / file, tmp_path / file)
     reference = stored().reference_name("euler/generic")
     (tmp_path / reference).parent.mkdir()
     (tmp_path / reference).write_text("t\n0\n", encoding="utf-8")

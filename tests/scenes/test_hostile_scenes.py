@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from samples import LISTED_INSTANTS
+from builders.scenes import LISTED_INSTANTS
 
 from taylor_verify.scenes.reading.clock import MOST_SAMPLES
 from taylor_verify.scenes.reading.faults import Refused

@@ -5,10 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from builders.scenes import remus_inertia
 from flint import arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_scenes import remus_inertia
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.ellipsoid import inertias

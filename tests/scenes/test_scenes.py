@@ -9,6 +9,7 @@ from hashlib import sha256
 from itertools import accumulate, dropwhile, pairwise, permutations
 
 import pytest
+from builders.scenes import remus_inertia
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -220,22 +221,6 @@ def test_the_energy_of_the_remus_is_the_inverse_of_its_inertia() -> None:
     assert tensors.product(scene.body.energy_matrix, inertia) == ones
     velocities = tuple(Fraction(v) for v in ("1.5", "0.1", "-0.2", "0.5", "0.3", "0.2"))
     assert tensors.apply(inertia, velocities) == scene.initial.linear + scene.initial.angular
-
-
-def remus_inertia() -> Matrix:
-    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r: inertia minus added terms."""
-    mass, roll, pitch = Fraction("30.48"), Fraction("0.177"), Fraction("3.45")
-    added = {
-        **{(0, 0): "-0.930", (1, 1): "-35.5", (2, 2): "-35.5"},  # Xu', Yv', Zw'
-        **{(3, 3): "-0.0704", (4, 4): "-4.88", (5, 5): "-4.88"},  # Kp', Mq', Nr'
-        **{(1, 5): "1.93", (2, 4): "-1.93"},  # Yr', Zq'
-        **{(4, 2): "-1.93", (5, 1): "1.93"},  # Mw', Nv'
-    }
-    solid = (mass, mass, mass, roll, pitch, pitch)
-    return tuple(
-        tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
-        for i in range(6)
-    )
 
 
 def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_inverse_of_its_inertia() -> None:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from samples import THREE_INSTANTS
+from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung

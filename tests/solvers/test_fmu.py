@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from lacking import lacking
+from builders.lacking import lacking
 from pythonfmu.builder import FmuBuilder
 
 import taylor_verify

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.trajectories import columns_at, write_csv
 from mpmath import mp, mpf
-from trajectories import columns_at, write_csv
 
 import taylor_verify
 from taylor_verify.exact.route import solution

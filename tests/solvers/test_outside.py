@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from samples import THREE_INSTANTS
+from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.scenes import THREE_INSTANTS
 from hypothesis import given
 from hypothesis import strategies as st
-from samples import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.status import Status

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from trajectories import columns_at
+from builders.trajectories import columns_at
 
 from taylor_verify.cli import main
 from taylor_verify.models.problem import pose

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 
 import pytest
-from test_publish import MIXED, NAN, STOPPED, UNIT, passed, unscored
+from builders.verdicts import MIXED, NAN, STOPPED, UNIT, passed, unscored
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict

@@ -9,8 +9,8 @@ import shutil
 import tarfile
 from pathlib import Path
 
-import made
 import pytest
+from builders import reports
 
 from taylor_verify.cli import main
 from taylor_verify.cli import missing as command
@@ -27,9 +27,9 @@ Captured = pytest.CaptureFixture[str]
 def report(tmp_path: Path) -> Path:
     """A whole report of two scenes on two rungs."""
     place = tmp_path / "report"
-    made.write_runs(place, [(scene, rung) for scene in SCENES for rung in ("f32", "f64")])
-    made.write_portraits(place, SCENES)
-    made.report.publish(place)
+    reports.write_runs(place, [(scene, rung) for scene in SCENES for rung in ("f32", "f64")])
+    reports.write_portraits(place, SCENES)
+    reports.report.publish(place)
     return place
 
 
@@ -104,7 +104,7 @@ def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
 @pytest.mark.slow
 def test_scenes_and_solvers_that_are_not_ours_are_not_made(tmp_path: Path) -> None:
     """Somebody's own report lacks nothing that this package could make."""
-    assert bulk.missing(made.small(), {}).data == ""
+    assert bulk.missing(reports.small(), {}).data == ""
     with pytest.raises(command.WrongCall, match=r"no such file @ .*verdicts\.json"):
         command.make_missing(tmp_path)
 
@@ -153,8 +153,10 @@ def test_a_report_that_lacks_something_is_not_packed(
 
 def test_the_paper_draws_the_pictures_that_are_there() -> None:
     """Each SVG of a report has its PDF, drawn of stored data: those of LaTeX's pages are among them."""
-    place = made.folder()
-    shutil.copytree(made.small(), place, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.pdf"))
+    place = reports.folder()
+    shutil.copytree(
+        reports.small(), place, dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.pdf")
+    )
     assert main(["publish", "--paper", "--from", str(place)]) == 0
     stems = {file.stem for file in (place / "figures").glob("*.svg")}
     assert len(stems) >= 5

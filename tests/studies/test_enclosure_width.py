@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from samples import GENERAL, one_instant, vector
+from builders.scenes import GENERAL, one_instant, vector
 
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.publish.pictures.picture import plotting, save

@@ -8,27 +8,23 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from builders.studies.worst import verdict, worst_of
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
 from taylor_verify.cli import main
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.worst import measure as hunt
 from taylor_verify.studies.worst import page as worst
-from taylor_verify.studies.worst.measure import FAMILIES, Catch, Family, Found
+from taylor_verify.studies.worst.measure import FAMILIES, Catch, Family
 
 KEPT = library.names(library.WORST)
 EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
-
-
-def verdict(ratio: float | None, status: Status = Status.PASS) -> Verdict:
-    return Verdict("here", "taylor", "f64", "", "omega", status, "reached", ratio=ratio)
 
 
 # The families.
@@ -139,14 +135,9 @@ def test_the_worst_runs_with_the_extremes() -> None:
     assert library.named(library.WORST) == KEPT
 
 
-def found_of(name: str, ratio: float) -> Found:
-    family = Family(name, "things", 1, lambda place: f'title = "{place[0]}"\n')
-    return Found(family, 7, Catch((0.25,), verdict(ratio)))
-
-
 def test_scene_file_says_why_it_is_there() -> None:
     """The text of the worst begins with its reason, and is the family's text besides."""
-    text = found_of("euler-thing", 3.25).scene_text
+    text = worst_of("euler-thing", 3.25).scene_text
     assert text.startswith("# Why: of things")
     assert "3.25 in omega" in text
     assert text.endswith('title = "0.25"\n')
@@ -154,7 +145,7 @@ def test_scene_file_says_why_it_is_there() -> None:
 
 def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
-    rows = hunt.study([found_of("euler-a", 1.5), found_of("euler-b", 2.5)], 60.0, 3)
+    rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60.0, 3)
     worst.write(tmp_path, rows)
     page = worst.pages(tmp_path)[worst.PAGE]
     assert page.index("euler-b") < page.index("euler-a")

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import csv
 import shutil
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import made
 import pytest
-from test_prices import short
-from test_traps import as_measured
+from builders import reports
+from builders.studies.prices import study as prices_study
 
 from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.records.provenance import Provenance
@@ -21,25 +19,16 @@ from taylor_verify.studies.accuracy import page as tables
 from taylor_verify.studies.growth import page as growth
 from taylor_verify.studies.prices import page as prices
 from taylor_verify.studies.reach import page as reach
-from taylor_verify.studies.traps import page as traps
-from taylor_verify.studies.traps import table
-from taylor_verify.studies.traps.table import TRAPS
 from taylor_verify.studies.worst import page as worst
 
 
 @cache
 def measured_report() -> Path:
     """A report with a document of every measurement, all of them short."""
-    place = made.folder()
-    shutil.copytree(made.small(), place, dirs_exist_ok=True)
-    prices.write(place, short())
-    some = [trap for trap in TRAPS if trap.key in _TRAPS]
-    traps.publish(place, table.study([replace(t, cases=as_measured(t.key)) for t in some]))
+    place = reports.folder()
+    shutil.copytree(reports.small(), place, dirs_exist_ok=True)
+    prices.write(place, prices_study())
     return place
-
-
-# With more than one case, and with gates on each.
-_TRAPS = ("T1", "T3")
 
 
 def read(text: str) -> list[dict[str, str]]:
@@ -98,20 +87,6 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     assert {c["ratio_at_equal_error"] for c in found if c["rung"] != "f64"} <= {""}
 
 
-def test_traps_have_a_row_for_every_case() -> None:
-    """What heyoka reported, how wrong it was, and each gate's verdict."""
-    rows = traps.load(measured_report()).traps
-    found = read(measured.traps(rows))
-    cases = [(row, case) for row in rows for case in row.cases]
-    assert len(found) == len(cases)
-    for cells, (row, case) in zip(found, cases, strict=True):
-        assert (cells["trap"], cells["reports"]) == (row.key, " ".join(case.said.split()))
-        assert number(cells["error"]) == case.error
-        for name, gate in case.gates.items():
-            assert cells[f"{name}_verdict"] == gate.verdict
-            assert number(cells[f"{name}_over_bound"]) == gate.over_bound
-
-
 def test_worst_has_a_row_for_every_family() -> None:
     """With its scene and its ratio."""
     study = worst.load(measured_report())
@@ -142,7 +117,7 @@ def test_claims_have_a_row_for_every_entry() -> None:
     assert found["mutations"] == "one; two"
 
 
-@pytest.mark.parametrize("module", [growth, prices, reach, traps, worst])
+@pytest.mark.parametrize("module", [growth, prices, reach, worst])
 def test_what_is_remade_is_page_and_sheet(module: Any) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
     found = module.pages(measured_report())

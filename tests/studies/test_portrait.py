@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.reports import every_portrait
 from latex2mathml.converter import convert
-from made import every_portrait
 
 from taylor_verify.cli import main
 from taylor_verify.exact.kirchhoff.displaced import centred

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
+from builders.studies.prices import named, study
 
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
@@ -19,14 +19,10 @@ from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices import measure as prices
 from taylor_verify.studies.prices import page as page
 from taylor_verify.studies.prices.document import PricesStudy
-from taylor_verify.studies.prices.variants import Variant, variants
+from taylor_verify.studies.prices.variants import variants
 
 F64 = rung("f64")
 NAMES = [variant.name for variant in variants()]
-
-
-def named(name: str) -> Variant:
-    return next(variant for variant in variants() if variant.name == name)
 
 
 def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
@@ -68,26 +64,9 @@ def test_variants_of_one_scene_take_the_same_steps(name: str) -> None:
     assert [pace.run() for pace in steps] == [first, other]
 
 
-@cache
-def short() -> PricesStudy:
-    """A short measurement of a few variants."""
-    patch = pytest.MonkeyPatch()
-    kept = tuple(named(n) for n in ("omega", "literals", "attitude", "impulse", "whole"))
-    patch.setattr(prices, "variants", lambda: kept)
-    patch.setattr(prices, "RUNGS", {"f64": 6})
-    patch.setattr(prices, "_LEAST_SECONDS", 1e-4)
-    told: list[str] = []
-    try:
-        found = prices.study(told.append)
-    finally:
-        patch.undo()
-    assert told == ["f64"]
-    return found
-
-
 @pytest.fixture(scope="module")
 def measured() -> PricesStudy:
-    return short()
+    return study()
 
 
 def test_the_barest_form_costs_one(measured: PricesStudy) -> None:

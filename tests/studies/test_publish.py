@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import re
 import subprocess
 import sys
@@ -15,6 +14,17 @@ from typing import Any
 from unittest.mock import patch
 
 import pytest
+from builders.verdicts import (
+    MIXED,
+    NAN,
+    PROVENANCE,
+    RECORD,
+    STOPPED,
+    UNIT,
+    VERSIONS,
+    passed,
+    unscored,
+)
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -24,84 +34,10 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.reason import Cause, stated
-from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.accuracy import page as tables
 from taylor_verify.studies.report import load, publish, write
-
-VERSIONS = {"python": "3.12.1", "taylor-verify": "0.1.0", "heyoka": "7.13.0"}
-PROVENANCE = {"versions": VERSIONS, "processor": "A chip", "command": "taylor-verify run"}
-UNIT = {"f32": 2.0**-24, "f64": 2.0**-53, "mp237": 2.0**-237}
-
-
-def passed(scene: str, rung: str, quantity: str, **changed: Any) -> Verdict:
-    """A verdict of 3 u at t = 7, a mean of 2 u, and 6 u attainable."""
-    u = UNIT[rung]
-    numbers: dict[str, Any] = {
-        "verdict": Status.PASS,
-        "outcome": "reached the last sample",
-        "max": 3 * u,
-        "mean": 2 * u,
-        "final": u,
-        "at": 7.0,
-        "unit": "max|omega|",
-        "bound": 60 * u,
-        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
-        "attainable": 6 * u,
-        "ratio": 0.5,
-        "ratio_at": 7.0,
-        "roundoff": u,
-        "steps": 41,
-        "evaluations": 410,
-        "seconds": 0.25,
-        "provenance": {**PROVENANCE, "scene": f"digest of {scene}"},
-    }
-    return Verdict(scene, "taylor", rung, "", quantity, **numbers | changed)
-
-
-def unscored(scene: str, rung: str, quantity: str, status: Status, outcome: str) -> Verdict:
-    because = f"the reason why {scene} has no number"
-    return Verdict(
-        *(scene, "taylor", rung, "", quantity, status, outcome),
-        reason=stated(Cause.STATED, because),
-        provenance=PROVENANCE,
-    )
-
-
-NAN = {"max": math.nan, "mean": math.nan, "final": math.nan, "ratio": math.nan}
-STOPPED = "stopped: a state or derivative was not finite"
-
-MIXED = [
-    *(passed("kirchhoff/screw", "f64", quantity) for quantity in ("impulse", "T", "F2", "y3")),
-    *(passed("euler/generic", rung, q) for rung in ("mp237", "f64") for q in ("omega", "T")),
-    unscored("euler/generic", "f80", "omega", Status.UNAVAILABLE, "not started"),
-    unscored("euler/broken", "f64", "omega", Status.FAIL, STOPPED),
-    passed("euler/lost", "f64", "omega", verdict=Status.FAIL, **NAN),
-    passed("euler/lost", "f64", "T", verdict=Status.FAIL, **NAN),
-    unscored("euler/vast", "f32", "omega", Status.REFUSED, "not started: out of range"),
-    passed("euler/long", "f64", "omega", verdict=Status.VACUOUS, bound=3.0),
-    passed("euler/long", "f64", "T", verdict=Status.FAIL, ratio=50.0, ratio_at=5.0),
-]
-
-RECORD = Record(
-    scene="euler/generic",
-    title="Free asymmetric body",
-    solver="taylor",
-    rung="f64",
-    track=("omega",),
-    equations=("H1' = H2 * w3",),
-    parameters={"K11": "1.0"},
-    units={"time": "1"},
-    regime="max",
-    route="arb",
-    truth_digits=19,
-    outcome="reached the last sample",
-    steps=41,
-    unit_roundoff=2.0**-53,
-    times=(0.0, 0.1),
-    gates=(GateRecord("omega", "max|omega|", (0.0, math.nan), (1e-300, math.inf), 5e-324),),
-)
 
 
 @pytest.fixture

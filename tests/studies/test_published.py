@@ -17,15 +17,18 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import made
 import pytest
-from test_baseline import regressions
-from test_baseline import row as baseline_row
-from test_ci import violations
-from test_docs import results
-from test_latex import html_has_the_cells, latex_has_the_rows, links_lead_somewhere, page_in
-from test_latex_compiled import compiled
-from test_traps import fresh, judged
+from builders import reports
+from builders.pages import (
+    compiled,
+    html_has_the_cells,
+    latex_has_the_rows,
+    links_lead_somewhere,
+    page_in,
+    results,
+)
+from builders.schema import violations
+from builders.verdicts import row as baseline_row
 
 from taylor_verify.claims.ledger import claims, examined
 from taylor_verify.claims.numbers import CITED
@@ -63,7 +66,6 @@ from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.site.builder import build
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
-from taylor_verify.studies.traps import page as traps
 from taylor_verify.studies.worst import page as worst
 from taylor_verify.studies.worst.document import WorstStudy
 
@@ -235,7 +237,7 @@ def test_every_extreme_is_published_as_it_is_now() -> None:
 
 def test_exact_trajectories_are_those_of_the_code() -> None:
     """Each CSV, the page and the examples are byte for byte what is computed now."""
-    fresh_files = (made.every_reference() / reference_files.FOLDER).iterdir()
+    fresh_files = (reports.every_reference() / reference_files.FOLDER).iterdir()
     made_now = {
         f"{reference_files.FOLDER}/{f.name}": f.read_bytes()
         for f in fresh_files
@@ -251,7 +253,7 @@ def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -
     # What errors of runs are drawn in needs their records, which are not published.
     motions = [
         one.picture
-        for one in gallery.shown(gallery.Stored(made.for_gallery()))
+        for one in gallery.shown(gallery.Stored(reports.for_gallery()))
         if not one.picture.stem.endswith(("-errors", "-polhode", "controls-shifts"))
     ]
     pictures = [*drawings.pictures(clone), *motions]
@@ -262,7 +264,7 @@ def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -
 
 def test_every_published_picture_can_be_drawn_again() -> None:
     """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
-    folder = made.for_gallery()
+    folder = reports.for_gallery()
     gallery_stems = {one.picture.stem for one in gallery.shown(gallery.Stored(folder))}
     drawn = gallery_stems | {picture.stem for picture in drawings.pictures(REPORTS)}
     assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
@@ -271,22 +273,13 @@ def test_every_published_picture_can_be_drawn_again() -> None:
 def test_the_gallery_shows_every_picture() -> None:
     """The page has the pictures of the gallery, in their order, and names its maker."""
     page = REPORTS / gallery.PAGE
-    stems = [one.picture.stem for one in gallery.shown(gallery.Stored(made.for_gallery()))]
+    stems = [one.picture.stem for one in gallery.shown(gallery.Stored(reports.for_gallery()))]
     assert first_line(page) == first_line_of(gallery.page([]))
     assert re.findall(r"\]\(([\w-]+)\.svg\)", page.read_text(encoding="utf-8")) == stems
 
 
 def first_line_of(text: str) -> str:
     return text.partition("\n")[0]
-
-
-def test_traps_say_what_is_measured_now() -> None:
-    """The same words, code, cases and verdicts; the digits of an error may differ by processor."""
-    kept, made_now = traps.load(REPORTS).traps, fresh().traps
-    assert [replace(t, cases=()) for t in kept] == [replace(t, cases=()) for t in made_now]
-    known = judged(kept)
-    # A rung or a library that is not here has no case here.
-    assert {name: known.get(name) for name in judged(made_now)} == judged(made_now)
 
 
 # What other pages quote.
@@ -348,7 +341,7 @@ def test_unlike_rungs_are_in_one_class() -> None:
     assert len(pairs) > 1000
     assert [pair for pair in pairs if max(pair) > FACTOR * max(LEVEL, min(pair))] == []
     rows = [(baseline_row(was), baseline_row(now)) for was, now in pairs]
-    assert [pair for pair in rows if regressions([pair[0]], [pair[1]])] == []
+    assert [pair for pair in rows if baseline.hold([pair[0]], [pair[1]]).regressions] == []
 
 
 def test_published_rows_are_no_departures_from_themselves() -> None:

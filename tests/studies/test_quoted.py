@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from test_publish import passed
+from builders.verdicts import passed
 
 from taylor_verify.studies.accuracy import quoted
 from taylor_verify.studies.accuracy.quoted import BEGIN, END

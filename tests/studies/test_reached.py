@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import SPIN, TENSOR, one_instant, vector
 from flint import arb
 from mpmath import mp, mpf
-from samples import SPIN, TENSOR, one_instant, vector
 
 import taylor_verify
 from taylor_verify.cli import main

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from made import every_reference
+from builders.reports import every_reference
 
 import taylor_verify
 from taylor_verify.batch.documents import document as document_of

@@ -11,8 +11,8 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
-import made
 import pytest
+from builders import reports
 
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.reference import page as reference_files
@@ -25,7 +25,7 @@ U = 2.0**-53
 @cache
 def folder() -> Path:
     """The exact trajectory of one scene with the examples, as they are published."""
-    place = made.folder()
+    place = reports.folder()
     return reference_files.write(place, [reference(load("euler/generic"))])[0].parent
 
 

@@ -13,11 +13,11 @@ from math import dist
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-import made
 import pytest
+from builders import reports
+from builders.reports import SCENES
 from hypothesis import given
 from hypothesis import strategies as st
-from made import SCENES
 
 from taylor_verify.cli import main
 from taylor_verify.publish.mathml import inline, mathml
@@ -34,7 +34,7 @@ from taylor_verify.studies.site.source import Report
 
 @pytest.fixture(scope="module")
 def report() -> Path:
-    return made.small()
+    return reports.small()
 
 
 @pytest.fixture(scope="module")

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.scenes import THREE_INSTANTS
 from hypothesis import example, given
 from hypothesis import strategies as st
 from mpmath import mp
-from samples import THREE_INSTANTS
 
 import taylor_verify
 from taylor_verify.cli import main

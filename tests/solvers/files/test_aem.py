@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-import recordings
+from builders import recordings
+from builders.recordings import OMEGA, QUATERNION, Columns
+from builders.trajectories import columns_at
 from ccsds_ndm import mapping, ndm_io
 from ccsds_ndm.models import ndmxml2
-from recordings import OMEGA, QUATERNION, Columns
-from trajectories import columns_at
 
 import taylor_verify
 from taylor_verify.scenes.reading.faults import Refused

@@ -10,8 +10,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 import scipy.io
+from builders.recordings import OMEGA
 from pyarrow import parquet
-from recordings import OMEGA
 
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.files.file import read

@@ -10,10 +10,10 @@ from pathlib import Path
 from time import perf_counter
 
 import pytest
+from builders.trajectories import MATRIX, Columns, exact_columns, write_csv
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
-from trajectories import MATRIX, Columns, exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main

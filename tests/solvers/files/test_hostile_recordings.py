@@ -12,12 +12,12 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-import recordings
+from builders import recordings
+from builders.recordings import OMEGA, QUATERNION, WRITERS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
-from recordings import OMEGA, QUATERNION, WRITERS
 from scipy.io import savemat
 
 from taylor_verify.scenes.reading.faults import Refused

@@ -13,9 +13,9 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 import xarray as xr
+from builders.trajectories import MATRIX, QUATERNION, VECTORS, exact_columns, rows_of
 from scipy.optimize import OptimizeResult
 from scipy.spatial.transform import Rotation
-from trajectories import MATRIX, QUATERNION, VECTORS, exact_columns, rows_of
 
 import taylor_verify
 from taylor_verify.judge.answer import FileJudgement

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import recordings
+from builders import recordings
+from builders.lacking import lacking
+from builders.recordings import CLOCK, OMEGA, QUATERNION, WRITERS, Columns
+from builders.trajectories import columns_at, write_csv
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from lacking import lacking
 from mcap.writer import CompressionType
-from recordings import CLOCK, OMEGA, QUATERNION, WRITERS, Columns
 from rosbags import rosbag1, rosbag2
-from trajectories import columns_at, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main

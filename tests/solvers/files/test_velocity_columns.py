@@ -11,8 +11,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.trajectories import (
+    VECTORS,
+    Columns,
+    columns_at,
+    exact_columns,
+    named,
+    rows_of,
+    write_csv,
+)
 from mpmath import mp
-from trajectories import VECTORS, Columns, columns_at, exact_columns, named, rows_of, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main

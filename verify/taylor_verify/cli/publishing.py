@@ -45,8 +45,8 @@ def add_options(verb: argparse.ArgumentParser) -> None:
     made.add_argument(
         "--controls",
         action="store_true",
-        help="instead run the solvers that are broken on purpose and the calls of heyoka that go "
-        "wrong, and write what each gate sees of them into DIR/data and DIR/tables",
+        help="instead run the solvers that are broken on purpose, and write what each gate sees of "
+        "them into DIR/data and DIR/tables",
     )
     made.add_argument(
         "--enclosure",
@@ -235,17 +235,13 @@ def gallery(folder: Path) -> Answer:
 
 
 def controls(folder: Path) -> Answer:
-    """What each gate sees of broken solvers, and what heyoka does where nobody takes care."""
+    """What each gate sees of broken solvers."""
     from taylor_verify.controls.defects import DEFECTS
     from taylor_verify.studies import report
     from taylor_verify.studies.controls import measure as sight
-    from taylor_verify.studies.traps import page as traps
-    from taylor_verify.studies.traps import table
 
-    finished = counting(len(DEFECTS) + len(table.TRAPS))
-    seen = sight.study(sight.sights(DEFECTS, finished))
-    trapped = table.study(table.TRAPS, finished)
-    return files_written([*report.publish_controls(folder, seen), *traps.publish(folder, trapped)])
+    seen = sight.study(sight.sights(DEFECTS, counting(len(DEFECTS))))
+    return files_written(report.publish_controls(folder, seen))
 
 
 def enclosure(folder: Path) -> Answer:

@@ -25,7 +25,7 @@ from taylor_verify.models.frame import attitude_rate
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.taylor.plain.body import Plain
+from taylor_verify.solvers.taylor.plain import Plain
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 
 _BRICK: Final = "euler/nesc-brick"

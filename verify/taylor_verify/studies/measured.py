@@ -16,7 +16,6 @@ from taylor_verify.studies.accuracy.sheet import sheet
 from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity
 from taylor_verify.studies.prices.document import PriceRow, PricesStudy
 from taylor_verify.studies.reach.document import ReachRow
-from taylor_verify.studies.traps.document import TrapCase, TrapRow
 from taylor_verify.studies.worst.document import WorstStudy
 
 Row = Mapping[str, Any]
@@ -42,12 +41,6 @@ _PRICES: Final = (
     *("rung", "variant", "against", "states", "parameters", "sums", "products", "quotients"),
     *("order", "steps_per_time", "microseconds", "step_ratio", "step_low", "step_high"),
     *("time_ratio", "time_low", "time_high", "error", "ratio_at_equal_error", "what"),
-)
-_GATED: Final = ("omega", "T", "H2")
-_TRAPS: Final = (
-    *("trap", "title", "case", "reports", "silent", "error", "driver", "driver_error", "steps"),
-    *(f"{name}_{field}" for name in _GATED for field in ("verdict", "over_bound")),
-    *("cause", "documented", "script"),
 )
 _WORST: Final = (
     *("family", "what", "rung", "judged", "ratio", "quantity", "max", "verdict", "scene"),
@@ -118,27 +111,6 @@ def _priced(row: PriceRow, at_equal: Mapping[str, float | None]) -> dict[str, An
     }
     equal = at_equal.get(row.variant) if row.rung == "f64" else None
     return {**complete(row), **intervals, "ratio_at_equal_error": equal}
-
-
-def traps(rows: Iterable[TrapRow]) -> str:
-    """Return a row for every case of every trap, with the verdict of each gate that was asked."""
-    return sheet(_TRAPS, (_trapped(row, case) for row in rows for case in row.cases))
-
-
-def _trapped(row: TrapRow, case: TrapCase) -> dict[str, Any]:
-    gates = {
-        f"{name}_{field}": getattr(case.gates.get(name), field, None)
-        for name in _GATED
-        for field in ("verdict", "over_bound")
-    }
-    return {
-        "trap": row.key,
-        **{name: getattr(row, name) for name in ("title", "cause", "documented", "script")},
-        "silent": "yes" if row.silent else "no",
-        "reports": case.said,
-        **{n: getattr(case, n) for n in ("case", "error", "driver", "driver_error", "steps")},
-        **gates,
-    }
 
 
 def worst(study: WorstStudy) -> str:

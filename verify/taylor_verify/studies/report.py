@@ -28,7 +28,6 @@ from taylor_verify.studies.reach import page as reach
 from taylor_verify.studies.tradeoff import page as tradeoff
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
-from taylor_verify.studies.traps import page as traps
 from taylor_verify.studies.worst import page as worst
 
 TABLES = "tables"
@@ -63,7 +62,6 @@ def publish(folder: Path | str) -> list[Path]:
             growth.pages(place),
             worst.pages(place),
             reach.pages(place),
-            traps.pages(place),
             extremes.pages(place),
         ),
     )

@@ -1,19 +1,20 @@
-"""All traps in the order in which they are told, and the rows that the published table is made of."""
+"""All traps in the order of the page, and the rows that the published table is made of."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from typing import Final
 
-from taylor_verify.judge.provenance import command, packages, processor
+from taylor_verify.judge.provenance import packages, processor
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.studies.traps.bodies import BODIES
-from taylor_verify.studies.traps.clock import CLOCK
-from taylor_verify.studies.traps.document import TrapsStudy
-from taylor_verify.studies.traps.numbers import NUMBERS
-from taylor_verify.studies.traps.outcomes import OUTCOMES
-from taylor_verify.studies.traps.trap import Trap
+from traps.bodies import BODIES
+from traps.clock import CLOCK
+from traps.document import TrapsStudy
+from traps.numbers import NUMBERS
+from traps.outcomes import OUTCOMES
+from traps.stored_code import STORED_CODE
+from traps.trap import Trap
 
 
 def _place(trap: Trap) -> tuple[str, int, str]:
@@ -22,7 +23,7 @@ def _place(trap: Trap) -> tuple[str, int, str]:
     return {"T": "0", "S": "1"}[trap.key[0]], int(number), trap.key
 
 
-TRAPS: Final = tuple(sorted((*BODIES, *NUMBERS, *CLOCK, *OUTCOMES), key=_place))
+TRAPS: Final = tuple(sorted((*BODIES, *NUMBERS, *CLOCK, *OUTCOMES, *STORED_CODE), key=_place))
 
 
 def study(
@@ -34,5 +35,5 @@ def study(
         rows.append(trap.row())
         if finished is not None:
             finished(trap.title)
-    made_on = Machine(processor=processor(), command=command())
+    made_on = Machine(processor=processor(), command="make traps")
     return TrapsStudy(packages(), made_on, GATE_FACTOR, tuple(rows))

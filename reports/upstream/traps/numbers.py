@@ -2,19 +2,58 @@
 
 from __future__ import annotations
 
+import math
 import random
 from fractions import Fraction
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Final
 
+import heyoka as hy
+import numpy as np
 from mpmath import mp
 
 from taylor_verify.scenes.precision import exact_value, held_exactly, power_of_two
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
-from taylor_verify.solvers.taylor.plain import numbers as plain
-from taylor_verify.studies.traps.document import TrapCase
-from taylor_verify.studies.traps.trap import Cause, Trap
+from traps.document import TrapCase
+from traps.trap import Cause, Trap
+
+# The calls.
+
+
+def norm(vector: Any) -> Any:
+    """The length of a vector of reals, as of any other array."""
+    return np.linalg.norm(vector)
+
+
+def root(number: Any) -> Any:
+    """The square root from Python's own library."""
+    return math.sqrt(number)
+
+
+def printed(number: Any, form: str = "%.40e") -> Any:
+    """Forty digits, as of any other number; format() would have raised."""
+    return form % number
+
+
+def to_real128(number: Any) -> Any:
+    """A real of more bits made a real128."""
+    return hy.real128(number)
+
+
+def equal(number: Any, other: Any) -> Any:
+    """Whether a real is the same number as one of another library."""
+    return number == other
+
+
+def from_sympy(digits: str) -> Any:
+    """A SymPy number of 50 digits as a heyoka expression; ImportError without SymPy."""
+    sympy = import_module("sympy")
+    return hy.from_sympy(sympy.Float(digits, 50) * sympy.Symbol("x"))
+
+
+# The cases.
 
 _WIDE: Final = "mp237"
 # What the truth is formed with: twice as many bits as any number here has.
@@ -41,13 +80,13 @@ def _norms() -> list[TrapCase]:
     vector = arithmetic(rung_named(_WIDE)).array(_VECTOR)
     number, tenth = vector[0], held_exactly(_TENTH)
     with mp.workprec(_BITS):
-        length, root = mp.sqrt(14) * tenth, mp.sqrt(tenth)
-    found = plain.norm(vector)
-    root_found = plain.root(number)
-    digits = plain.printed(number)
+        length, square_root = mp.sqrt(14) * tenth, mp.sqrt(tenth)
+    found = norm(vector)
+    root_found = root(number)
+    digits = printed(number)
     exact = tuple(arithmetic(rung_named(_WIDE)).exact(entry) for entry in vector)
     with mp.workprec(_BITS):
-        printed = mp.mpf(digits)
+        read_back = mp.mpf(digits)
     driver = "numbers leave heyoka exactly, and mpmath computes with them"
     return [
         TrapCase(
@@ -60,14 +99,14 @@ def _norms() -> list[TrapCase]:
         TrapCase(
             "math.sqrt of a number of 237 bits",
             f"a number of type {type(root_found).__name__}",
-            _relative(held_exactly(exact_value(root_found)), root),
+            _relative(held_exactly(exact_value(root_found)), square_root),
             driver,
-            _relative(_root(exact[0]), root),
+            _relative(_root(exact[0]), square_root),
         ),
         TrapCase(
             "'%.40e' of a number of 237 bits",
             f"{len(digits.partition('e')[0]) - 1} digits",
-            _relative(printed, tenth),
+            _relative(read_back, tenth),
             driver,
             _relative(held_exactly(exact[0]), tenth),
         ),
@@ -92,7 +131,7 @@ def _to_real128() -> list[TrapCase]:
     for _ in range(_DRAWS):
         value = Fraction(draw.getrandbits(_DRAWN_BITS) | 1) * power_of_two(-_DRAWN_BITS)
         nearest = rung_named("f128").round(value)
-        found = narrow.exact(plain.to_real128(wide.number(value)))
+        found = narrow.exact(to_real128(wide.number(value)))
         driven = narrow.exact(narrow.number(nearest))
         wrong += found != nearest
         worst = max(worst, float(abs(found - value) / value))
@@ -113,7 +152,7 @@ def _sympy() -> list[TrapCase]:
     if find_spec("sympy") is None:
         return []
     digits = "0.1"
-    expression = str(plain.from_sympy(digits))
+    expression = str(from_sympy(digits))
     literal = expression.strip("()").partition(" ")[0]
     with mp.workdps(50):
         return [
@@ -130,7 +169,7 @@ def _sympy() -> list[TrapCase]:
 def _equality() -> list[TrapCase]:
     half = Fraction(1, 2)
     number = arithmetic(rung_named(_WIDE)).number(half)
-    found = plain.equal(number, held_exactly(half))
+    found = equal(number, held_exactly(half))
     driven = arithmetic(rung_named(_WIDE)).exact(number) == half
     return [
         TrapCase(
@@ -146,7 +185,7 @@ NUMBERS: Final = (
     Trap(
         "T4",
         "a norm, a root and a printout of wide numbers are doubles",
-        (plain.norm, plain.root, plain.printed),
+        (norm, root, printed),
         _norms,
         "asks NumPy, Python's math and a format for what they give of any number",
         "no number of heyoka is computed with: all leave it as rationals",
@@ -160,7 +199,7 @@ NUMBERS: Final = (
     Trap(
         "T5",
         "a real is cut off, not rounded, to a real128",
-        (plain.to_real128,),
+        (to_real128,),
         _to_real128,
         "makes a real128 of a real with more bits",
         "numbers are rounded to 113 bits as integers, then passed exactly",
@@ -173,7 +212,7 @@ NUMBERS: Final = (
     Trap(
         "T6",
         "a SymPy number of 50 digits arrives as a double",
-        (plain.from_sympy,),
+        (from_sympy,),
         _sympy,
         "converts a SymPy number; the precision is read from mpmath's global context and not from "
         "the number",
@@ -186,7 +225,7 @@ NUMBERS: Final = (
     Trap(
         "S2",
         "a real equals no number of mpmath",
-        (plain.equal,),
+        (equal,),
         _equality,
         "compares two equal numbers",
         "numbers are compared as rationals",

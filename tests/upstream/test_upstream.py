@@ -8,8 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-
-from taylor_verify.studies.traps.table import TRAPS
+from traps.table import TRAPS
 
 FOLDER = Path(__file__).resolve().parents[2] / "reports" / "upstream"
 SCRIPTS = sorted(FOLDER.glob("*.py"))

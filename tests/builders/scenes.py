@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.scene import Scene
@@ -43,6 +45,15 @@ def one_instant(body: Body, start: State, *track: str) -> Scene:
     return Scene("test", "test", model, frozenset(track), body, start, clock)
 
 
+def spun(omega: Sequence[float], end: float, samples: int) -> Scene:
+    """A free body of moments 1, 2, 3 from these doubles, at equally spaced times that are doubles."""
+    elapsed = (Fraction(end * (k / (samples - 1))) for k in range(samples))
+    body = RigidBody(tensors.diagonal(vector(1, 2, 3)))
+    clock = Clock(Fraction(0), tuple(elapsed))
+    spin = Spin(tuple(Fraction(value) for value in omega))
+    return Scene("spun", "spun", "euler", frozenset(), body, spin, clock)
+
+
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.
 THREE_INSTANTS = """
 title = "Three instants"
@@ -65,3 +76,19 @@ omega = [1, "0.4", "0.3"]
 [time]
 at = ["0.5", 1, 2]
 """
+
+
+def remus_inertia() -> Matrix:
+    """Momentum by velocity, rows X Y Z K M N and columns u v w p q r: inertia minus added terms."""
+    mass, roll, pitch = Fraction("30.48"), Fraction("0.177"), Fraction("3.45")
+    added = {
+        **{(0, 0): "-0.930", (1, 1): "-35.5", (2, 2): "-35.5"},  # Xu', Yv', Zw'
+        **{(3, 3): "-0.0704", (4, 4): "-4.88", (5, 5): "-4.88"},  # Kp', Mq', Nr'
+        **{(1, 5): "1.93", (2, 4): "-1.93"},  # Yr', Zq'
+        **{(4, 2): "-1.93", (5, 1): "1.93"},  # Mw', Nv'
+    }
+    solid = (mass, mass, mass, roll, pitch, pitch)
+    return tuple(
+        tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
+        for i in range(6)
+    )

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from trajectories import QUATERNION, VECTORS, Columns, named
 
+from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin

@@ -26,8 +26,8 @@ from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import exact_value, held_exactly
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.taylor.plain.body import Plain, euler_equations
-from taylor_verify.studies.traps.document import TrapCase, TrapGate
+from taylor_verify.solvers.taylor.plain import Plain, euler_equations
+from traps.document import TrapCase, TrapGate
 
 MOMENTS: Final = (1, 2, 3)
 # Dyadic in every format, and a spin about no axis.

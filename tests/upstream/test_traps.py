@@ -1,6 +1,7 @@
 """Plain calls of heyoka go wrong as published, in silence where it says so; the driver does not."""
 
 import ast
+import csv
 import json
 import re
 import signal
@@ -13,20 +14,23 @@ from pathlib import Path
 
 import heyoka as hy
 import pytest
+from interrupt import interrupted
+from traps import page as published
+from traps.document import TrapCase, TrapRow, TrapsStudy
+from traps.measured import GENERIC, free
+from traps.numbers import equal
+from traps.outcomes import tolerance_of_zero
+from traps.table import TRAPS, study
+from traps.trap import Trap, shown
 
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.plain import numbers, outcomes
-from taylor_verify.solvers.taylor.plain.body import Plain
+from taylor_verify.solvers.taylor.plain import Plain
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.traps import page as published
-from taylor_verify.studies.traps.document import TrapCase, TrapRow, TrapsStudy
-from taylor_verify.studies.traps.measured import GENERIC, free
-from taylor_verify.studies.traps.table import TRAPS, study
-from taylor_verify.studies.traps.trap import Trap, shown
 
+REPORTS = Path(__file__).resolve().parents[2] / "reports"
 NAMED = {trap.key: trap for trap in TRAPS}
 U = float(rung("f64").unit_roundoff)
 
@@ -210,7 +214,7 @@ def test_equal_numbers_of_two_libraries_are_unequal() -> None:
     """A real of 1/2 is not equal to mpmath's 1/2, as it is to a double of 1/2."""
     (found,) = cases("S2")
     assert found.said == "equal: False"
-    assert numbers.equal(hy.real("0.5", 237), 0.5)
+    assert equal(hy.real("0.5", 237), 0.5)
 
 
 # Time.
@@ -302,7 +306,7 @@ def test_stored_code_is_found_without_naming_a_processor() -> None:
 def test_interruption_leaves_no_handler_and_no_timer() -> None:
     """What is changed to interrupt a run is put back."""
     before = signal.getsignal(signal.SIGALRM)
-    outcomes.interrupted(10.0, 1.0)
+    interrupted(10.0, 1.0)
     assert signal.getsignal(signal.SIGALRM) is before
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
@@ -370,8 +374,8 @@ def test_shown_code_is_python_without_hints() -> None:
 def test_shown_code_does_what_was_measured() -> None:
     """Run as it is shown, a call gives what the function itself gives."""
     names = {"hy": hy}
-    exec(shown(outcomes.tolerance_of_zero), names)
-    assert names["tolerance_of_zero"]() == outcomes.tolerance_of_zero()
+    exec(shown(tolerance_of_zero), names)
+    assert names["tolerance_of_zero"]() == tolerance_of_zero()
 
 
 def test_keys_are_unique_and_in_order() -> None:
@@ -422,3 +426,59 @@ def test_rows_that_are_no_rows_are_refused(tmp_path: Path) -> None:
         ValueError, match=r"expected a key title, got none @ traps\[0\] @ .*traps\.json"
     ):
         published.load(tmp_path)
+
+
+# The sheet, and what is published.
+
+
+def measured_report(folder: Path) -> Path:
+    """A report with two traps of more than one case, and with gates on each."""
+    some = [replace(NAMED[key], cases=as_measured(key)) for key in ("T1", "T3")]
+    published.publish(folder, study(some))
+    return folder
+
+
+def number(cell: str) -> float | None:
+    return float(cell) if cell else None
+
+
+def test_sheet_has_a_row_for_every_case(tmp_path: Path) -> None:
+    """A row has heyoka's report, the error, and the verdict of each gate; its headings are unique."""
+    rows = published.load(measured_report(tmp_path)).traps
+    headings, *lines = csv.reader(published.sheet(rows).splitlines())
+    assert len(set(headings)) == len(headings)
+    found = [dict(zip(headings, line, strict=True)) for line in lines]
+    cases = [(row, case) for row in rows for case in row.cases]
+    assert len(found) == len(cases)
+    for cells, (row, case) in zip(found, cases, strict=True):
+        assert (cells["trap"], cells["reports"]) == (row.key, " ".join(case.said.split()))
+        assert number(cells["error"]) == case.error
+        for name, gate in case.gates.items():
+            assert cells[f"{name}_verdict"] == gate.verdict
+            assert number(cells[f"{name}_over_bound"]) == gate.over_bound
+
+
+def test_remade_files_are_page_and_sheet(tmp_path: Path) -> None:
+    """The end of the page names the command and the versions that made it."""
+    found = published.pages(measured_report(tmp_path))
+    assert set(found) == {published.PAGE, published.SHEET}
+    end = found[published.PAGE].rpartition("\n## ")[2]
+    assert "heyoka 7." in end
+    assert "`make traps`" in end
+
+
+def test_published_files_are_those_of_the_stored_rows() -> None:
+    """The page and the sheet of reports/tables are what reports/data/traps.json gives, to the letter."""
+    for path, text in published.pages(REPORTS).items():
+        assert (REPORTS / path).read_text(encoding="utf-8") == text
+
+
+def test_published_traps_are_those_measured_now() -> None:
+    """Words, code, cases and verdicts are equal; the digits of an error may differ by processor."""
+    stored_rows, measured_rows = published.load(REPORTS).traps, fresh().traps
+    assert [replace(t, cases=()) for t in stored_rows] == [
+        replace(t, cases=()) for t in measured_rows
+    ]
+    known = judged(stored_rows)
+    # A rung or a library that is not here has no case here.
+    assert {name: known.get(name) for name in judged(measured_rows)} == judged(measured_rows)

@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import Any, Final
 
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
-from taylor_verify.studies.traps.document import TrapCase, TrapRow
+from traps.document import TrapCase, TrapRow
 
 DOCS: Final = "https://bluescarni.github.io/heyoka.py"
 

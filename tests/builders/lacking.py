@@ -37,7 +37,6 @@ _OF_UNIX = {
     ),
 }
 _MODULES_OF_UNIX = ("fcntl", "grp", "posix", "pty", "pwd", "resource", "syslog", "termios", "tty")
-
 WITHOUT_UNIX = f"""
 import asyncio, ctypes, flint, gmpy2, importlib, json, logging, mpmath, multiprocessing, numpy, pathlib
 import platformdirs, rich.console, rich.table, selectors, shutil, socket, subprocess, sys, tempfile

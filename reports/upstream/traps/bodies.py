@@ -6,10 +6,10 @@ from math import log
 from typing import Final
 
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.taylor.plain.body import Plain, euler_equations, free_body
-from taylor_verify.studies.traps.document import TrapCase
-from taylor_verify.studies.traps.measured import GENERIC, compared, free
-from taylor_verify.studies.traps.trap import Cause, Trap
+from taylor_verify.solvers.taylor.plain import Plain, euler_equations, free_body
+from traps.document import TrapCase
+from traps.measured import GENERIC, compared, free
+from traps.trap import Cause, Trap
 
 # The rate at which a spin about axis 2 of this body is left: sqrt((I2 - I1)(I3 - I2)/(I1 I3)).
 _RATE: Final = 3**-0.5

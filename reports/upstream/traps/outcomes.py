@@ -2,20 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import exp
-from typing import Final
+from typing import Any, Final
 
+import heyoka as hy
 import numpy as np
+from batch_lane import lanes
+from clamped_steps import decay
+from interrupt import interrupted, swung
 
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.taylor.driver import at_tolerance
-from taylor_verify.solvers.taylor.plain import body
-from taylor_verify.solvers.taylor.plain import outcomes as plain
-from taylor_verify.studies.traps.document import TrapCase
-from taylor_verify.studies.traps.measured import GENERIC, driver_on, error_at, free, typed_equations
-from taylor_verify.studies.traps.trap import Cause, Trap
+from traps.document import TrapCase
+from traps.measured import GENERIC, driver_on, error_at, free, typed_equations
+from traps.trap import Cause, Trap
+
+Array = np.ndarray[Any, Any]
+
+# The calls that no script of upstream has.
+
+
+def blow_up(x0: float, end: float) -> tuple[Any, Any]:
+    """x' = x^2, which is infinite at t = 1/x0."""
+    x = hy.make_vars("x")
+    ta = hy.taylor_adaptive([(x, x * x)], [x0])
+    return ta, ta.propagate_until(end)
+
+
+def tolerance_of_zero() -> Any:
+    """The tolerance of an integrator that was asked for none."""
+    x = hy.make_vars("x")
+    ta = hy.taylor_adaptive([(x, -x)], [1.0], tol=0.0)
+    return ta.tol
+
+
+def unset(w: Sequence[float], end: float) -> tuple[Any, Array]:
+    """The same body with parameters in place of numbers, which are then forgotten."""
+    w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
+    equations = [
+        (w1, hy.par[0] * (w2 * w3)),
+        (w2, hy.par[1] * (w3 * w1)),
+        (w3, hy.par[2] * (w1 * w2)),
+    ]
+    ta = hy.taylor_adaptive(equations, w)
+    outcome, *_ = ta.propagate_until(end)
+    return outcome, ta.state
+
+
+# The cases.
 
 _ADAPTIVE: Final = "notebooks/The%20adaptive%20integrator.html"
 _LANES: Final = 4
@@ -48,7 +85,7 @@ def _refusal(text: str) -> str:
 def _lanes() -> list[TrapCase]:
     w = np.array([[value] * _LANES for value in GENERIC])
     w[0, -1] = np.nan
-    outcomes, times, states = plain.lanes(typed_equations(), w, _END)
+    outcomes, times, states = lanes(typed_equations(), w, _END)
     driver, driver_error = driver_on(free("", GENERIC, _END))
     healthy = [
         TrapCase(
@@ -67,20 +104,20 @@ def _lanes() -> list[TrapCase]:
 
 
 def _not_finite() -> list[TrapCase]:
-    ta, (outcome, *_) = plain.decay(float("nan"), 1.0)
+    ta, (outcome, *_) = decay(float("nan"), 1.0)
     said = f"{outcome.name}; time {ta.time}, state {ta.state[0]}"
     return [TrapCase("x' = -x from NaN", said, None, _refusal(_NAN_SCENE))]
 
 
 def _blown_up() -> list[TrapCase]:
-    ta, (outcome, min_h, _, steps, *_) = plain.blow_up(1.0, 2.0)
+    ta, (outcome, min_h, _, steps, *_) = blow_up(1.0, 2.0)
     said = f"{outcome.name} at t = {ta.time:.17g} after steps down to {min_h:.2g}"
     driver = "no such equation: energy bounds every omega and impulse, and loads are constant"
     return [TrapCase("x' = x^2 from 1, until 2", said, None, driver, steps=steps)]
 
 
 def _stopped() -> list[TrapCase]:
-    ta, (outcome, _, _, steps, *_) = plain.decay(1.0, _END, max_steps=3)
+    ta, (outcome, _, _, steps, *_) = decay(1.0, _END, max_steps=3)
     driver, _ = driver_on(free("", GENERIC, 1e12))
     return [
         TrapCase(
@@ -94,7 +131,7 @@ def _stopped() -> list[TrapCase]:
 
 
 def _without_return() -> list[TrapCase]:
-    ta, (outcome, *_) = plain.decay(1.0, _END, callback=lambda ta: None)
+    ta, (outcome, *_) = decay(1.0, _END, callback=lambda ta: None)
     return [
         TrapCase(
             "a callback that returns nothing",
@@ -107,9 +144,9 @@ def _without_return() -> list[TrapCase]:
 
 def _truth_of_outcomes() -> list[TrapCase]:
     found = {}
-    _, (outcome, *_) = plain.decay(1.0, 1.0)
+    _, (outcome, *_) = decay(1.0, 1.0)
     found[outcome.name] = bool(outcome)
-    _, (outcome, *_) = plain.decay(float("nan"), 1.0)
+    _, (outcome, *_) = decay(float("nan"), 1.0)
     found[outcome.name] = bool(outcome)
     said = ", ".join(f"{name} is {value}" for name, value in found.items())
     driver = "each outcome is looked up, and an unknown one is no success"
@@ -117,7 +154,7 @@ def _truth_of_outcomes() -> list[TrapCase]:
 
 
 def _clamped() -> list[TrapCase]:
-    _, (outcome, min_h, max_h, steps, *_) = plain.decay(1.0, 1.0, max_delta_t=0.125)
+    _, (outcome, min_h, max_h, steps, *_) = decay(1.0, 1.0, max_delta_t=0.125)
     said = f"{outcome.name}; smallest step {min_h:g}, largest {max_h:g}"
     return [TrapCase("steps of at most 0.125, until 1", said, None, "reads neither", steps=steps)]
 
@@ -127,38 +164,28 @@ def _zero_tolerance() -> list[TrapCase]:
         driver = at_tolerance("0").setting
     except ValueError as refusal:
         driver = f"refused: {refusal}"
-    return [TrapCase("tol=0.0", f"tol = {plain.tolerance_of_zero():.3g}", None, driver)]
+    return [TrapCase("tol=0.0", f"tol = {tolerance_of_zero():.3g}", None, driver)]
 
 
 def _held_back() -> list[TrapCase]:
-    at = plain.interrupted(_SOON, _LONG)
+    at = interrupted(_SOON, _LONG)
     case = f"Ctrl-C after {_SOON:g} s of a run until {_LONG:g}"
     driver = "returns to Python between its stretches, at most 24 of a run"
     return [TrapCase(case, f"KeyboardInterrupt at t = {at:g}", None, driver)]
 
 
 def _forgotten() -> list[TrapCase]:
-    outcome, state = body.unset(GENERIC, _END)
+    outcome, state = unset(GENERIC, _END)
     driver, driver_error = driver_on(free("", GENERIC, _END))
     error = error_at(state, Fraction(_END))
     return [TrapCase("three parameters, none given", outcome.name, error, driver, driver_error)]
-
-
-def _stored_code() -> list[TrapCase]:
-    driver = "one folder for each type of processor"
-    return [TrapCase("what compiled code is stored under", plain.cache_key(), None, driver)]
-
-
-def _never_found() -> list[TrapCase]:
-    found = f"{plain.stored_by(processes=3)} pieces of code on disk"
-    return [TrapCase("one system in MPFR, compiled by three processes", found, None, "none")]
 
 
 OUTCOMES: Final = (
     Trap(
         "T9",
         "one lane that is not finite stops all lanes of a batch",
-        (plain.lanes,),
+        (lanes,),
         _lanes,
         "integrates four bodies side by side, one of them from NaN; the sound ones stop after one "
         "step and report success",
@@ -174,7 +201,7 @@ OUTCOMES: Final = (
     Trap(
         "S4",
         "a state that is not finite takes the time with it",
-        (plain.decay,),
+        (decay,),
         _not_finite,
         "integrates from NaN; the outcome says so, and neither time nor state can be used again "
         "until both are set",
@@ -189,7 +216,7 @@ OUTCOMES: Final = (
     Trap(
         "S5",
         "a solution that ends before its time",
-        (plain.blow_up,),
+        (blow_up,),
         _blown_up,
         "integrates x' = x^2 across its pole; it is told, at the pole",
         "has no such equations",
@@ -201,7 +228,7 @@ OUTCOMES: Final = (
     Trap(
         "S6",
         "a bound on the steps returns what there is",
-        (plain.decay,),
+        (decay,),
         _stopped,
         "reads the state of a run that was stopped by max_steps",
         "an outcome other than success has no rows and no score",
@@ -211,7 +238,7 @@ OUTCOMES: Final = (
     Trap(
         "S7",
         "a callback that returns nothing stops the run",
-        (plain.decay,),
+        (decay,),
         _without_return,
         "passes a callback that only looks",
         "passes no callback",
@@ -224,7 +251,7 @@ OUTCOMES: Final = (
     Trap(
         "S8",
         "every outcome is true",
-        (plain.decay,),
+        (decay,),
         _truth_of_outcomes,
         "asks whether an outcome is true",
         "outcomes are compared, never tested for truth",
@@ -233,7 +260,7 @@ OUTCOMES: Final = (
     Trap(
         "S9",
         "steps that were cut are not counted among the smallest and largest",
-        (plain.decay,),
+        (decay,),
         _clamped,
         "bounds the step and asks which steps were taken",
         "reads the number of steps alone",
@@ -245,7 +272,7 @@ OUTCOMES: Final = (
     Trap(
         "S10",
         "a tolerance of zero is the default one",
-        (plain.tolerance_of_zero,),
+        (tolerance_of_zero,),
         _zero_tolerance,
         "asks for no error at all",
         "a tolerance that is not positive is refused",
@@ -254,7 +281,7 @@ OUTCOMES: Final = (
     Trap(
         "S11",
         "Ctrl-C is heard at the end",
-        (plain.swung,),
+        (swung,),
         _held_back,
         "is interrupted during a long run without a callback",
         "a long run is done in stretches",
@@ -262,22 +289,9 @@ OUTCOMES: Final = (
         script="interrupt",
     ),
     Trap(
-        "S12",
-        "stored code does not know its processor",
-        (plain.stored_key,),
-        _stored_code,
-        "stores compiled code under a key in which no processor occurs; that code carried to "
-        "another type of processor may not run there is inferred, not reproduced",
-        "keeps a folder for each type of processor",
-        Cause.PARTLY,
-        documented="Network file systems (e.g., NFS, SMB/CIFS) are not supported",
-        where="notebooks/jit_caching.html",
-        remark="Nothing is said of processors.",
-    ),
-    Trap(
         "S13",
         "parameters that are not given are zero",
-        (body.unset,),
+        (unset,),
         _forgotten,
         "leaves out the parameters; the body keeps its omega, as one would that nothing turns",
         "every parameter of a problem is set, in the order in which its equations name them",
@@ -285,16 +299,5 @@ OUTCOMES: Final = (
         documented="heyoka.py detected that ode_sys contains one parameter, and set its value to "
         "zero",
         where="notebooks/ODEs%20with%20parameters.html",
-    ),
-    Trap(
-        "S14",
-        "stored code for MPFR numbers is never found again",
-        (plain.stored_by,),
-        _never_found,
-        "compiles one system in several processes with the cache on disk; each stores it anew, under "
-        "a key that addresses enter, and whoever next opens the cache reads all of it",
-        "stores no code for MPFR numbers, and opens the cache once in a process",
-        Cause.FAULT,
-        script="real_is_never_found",
     ),
 )

@@ -1,6 +1,6 @@
 """The table of traps: plain calls of heyoka beside this suite's driver, from stored rows alone.
 
-TrapsStudy in data/traps.json: words, the code that was run, and what was measured in each case.
+``TrapsStudy`` in data/traps.json: words, the code that was run, and what was measured in each case.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, prose, table
@@ -16,18 +16,23 @@ from taylor_verify.publish.page import traced
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain, read
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import measured
-from taylor_verify.studies.traps.document import TrapCase, TrapRow, TrapsStudy
+from taylor_verify.studies.accuracy import sheet as sheets
+from traps.document import TrapCase, TrapRow, TrapsStudy
 
 TRAPS: Final = f"{store.FOLDER}/traps.json"
 PAGE: Final = "tables/traps.md"
 SHEET: Final = "tables/traps.csv"
 SCRIPTS: Final = "upstream"
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
-_MAKER: Final = "<!-- made by taylor-verify publish --controls; do not edit -->"
+_MADE_BY: Final = {"made_by": "make traps; do not edit"}
+_MAKER: Final = "<!-- made by make traps; do not edit -->"
 # The quantities that a free body has gates for.
 _GATES: Final = {"omega": "state", "T": "T", "H2": "H²"}
+_SHEET: Final = (
+    *("trap", "title", "case", "reports", "silent", "error", "driver", "driver_error", "steps"),
+    *(f"{name}_{field}" for name in _GATES for field in ("verdict", "over_bound")),
+    *("cause", "documented", "script"),
+)
 _STATE: Final = "omega"
 # Below the roundoff of every format that is shown.
 _NO_ERROR: Final = 1e-80
@@ -73,7 +78,7 @@ def pages(folder: Path) -> dict[str, str]:
     if not (folder / TRAPS).exists():
         return {}
     study = load(folder)
-    return {PAGE: page(study), SHEET: measured.traps(study.traps)}
+    return {PAGE: page(study), SHEET: sheet(study.traps)}
 
 
 def load(folder: Path) -> TrapsStudy:
@@ -104,7 +109,7 @@ def page(stored: TrapsStudy) -> str:
         "## One by one",
         *_entries(traps),
         "## To remake this",
-        f"`taylor-verify publish --controls` makes all of these calls again and writes "
+        f"`make traps` makes all of these calls again and writes "
         f"[traps.json](../{TRAPS}), from which this page and its [CSV](traps.csv) are made. "
         f"{traced({'versions': stored.versions, **plain(stored.machine)})}",
     ]
@@ -328,3 +333,27 @@ def _seen_by_state(traps: Iterable[TrapRow]) -> str:
         }
     )
     return f"The gate of the state sees {', '.join(seen)}, from some size on." if seen else ""
+
+
+# The sheet.
+
+
+def sheet(traps: Iterable[TrapRow]) -> str:
+    """Return a row for every case of every trap, with the verdict of each gate that was asked."""
+    return sheets.sheet(_SHEET, (_cells(trap, case) for trap in traps for case in trap.cases))
+
+
+def _cells(trap: TrapRow, case: TrapCase) -> dict[str, Any]:
+    gates = {
+        f"{name}_{field}": getattr(case.gates.get(name), field, None)
+        for name in _GATES
+        for field in ("verdict", "over_bound")
+    }
+    return {
+        "trap": trap.key,
+        **{name: getattr(trap, name) for name in ("title", "cause", "documented", "script")},
+        "silent": "yes" if trap.silent else "no",
+        "reports": case.said,
+        **{n: getattr(case, n) for n in ("case", "error", "driver", "driver_error", "steps")},
+        **gates,
+    }

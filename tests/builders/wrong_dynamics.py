@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from trajectories import QUATERNION, VECTORS, Columns, named
 
+from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.records.reason import Cause, stated

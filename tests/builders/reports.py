@@ -14,12 +14,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Final
 
-from test_claims_command import STUDY
-from test_extremes_page import study as extremes_study
-from test_hunt import found_of
-from test_reach_page import study as reach_study
-from test_trade_page import NUMBERS_MADE, TIMES_MADE
-
+from builders.studies.claims import STUDY
+from builders.studies.extremes import study as extremes_study
+from builders.studies.reach import study as reach_study
+from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
+from builders.studies.worst import worst_of
 from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
@@ -119,7 +118,7 @@ def small() -> Path:
     report.publish_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
     reach.write(place, reach_study())
     growth.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
-    worst.write(place, hunt.study([found_of("euler-a", 1.5)], 60.0, 3))
+    worst.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
     extremes.write(place, extremes_study())
     claims.write(place, STUDY)
     report.publish(place)

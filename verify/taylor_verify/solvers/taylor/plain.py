@@ -58,21 +58,6 @@ def free_body(I: Sequence[Any], w: Array, times: Array, fp_type: Any = float) ->
     return Ran(outcome, steps, rows)
 
 
-def unset(w: Sequence[float], end: float) -> tuple[Any, Array]:
-    """The same body with parameters in place of numbers, which are then forgotten."""
-    import heyoka as hy
-
-    w1, w2, w3 = hy.make_vars("w1", "w2", "w3")
-    equations = [
-        (w1, hy.par[0] * (w2 * w3)),
-        (w2, hy.par[1] * (w3 * w1)),
-        (w3, hy.par[2] * (w1 * w2)),
-    ]
-    ta = hy.taylor_adaptive(equations, w)
-    outcome, *_ = ta.propagate_until(end)
-    return outcome, ta.state
-
-
 @final
 @dataclass(frozen=True)
 class Plain(Solver):

@@ -1,0 +1,1 @@
+"""Shared builders of the tests: what more than one test module makes, reads or compares."""

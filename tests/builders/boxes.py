@@ -1,0 +1,123 @@
+"""Enclosures of all motions that begin in a box of starts, and sharper runs from its corners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+from flint import arb, ctx
+
+from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, vector
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.enclosure.course import Course, Row
+from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin, State
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import diagonal
+
+WIDE = Fraction(1, 10**6)
+
+CASES = {
+    "euler": (
+        one_instant(
+            RigidBody(diagonal(vector(1, 2, 3))),
+            Spin(vector("0.3", 1, "0.2"), QUATERNION),
+            "attitude",
+        ),
+        6,
+    ),
+    "one axis": (
+        one_instant(
+            RigidBody(diagonal(vector(2, 1, 1))), Spin(vector(0, 0, 1), QUATERNION), "attitude"
+        ),
+        2,
+    ),
+    "kirchhoff": (
+        one_instant(
+            GENERAL,
+            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
+            "attitude",
+            "centre",
+        ),
+        4,
+    ),
+    "loaded": (
+        one_instant(
+            LOADED,
+            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
+            "attitude",
+            "centre",
+        ),
+        -3,
+    ),
+}
+
+
+def moved(start: State, signs: Sequence[int], size: Fraction) -> State:
+    """The start with each component of the momenta moved by the size, in the direction of its sign."""
+    if isinstance(start, Spin):
+        return replace(
+            start, omega=tuple(w + s * size for w, s in zip(start.omega, signs, strict=True))
+        )
+    both = zip(start.linear + start.angular, signs, strict=True)
+    z = tuple(value + sign * size for value, sign in both)
+    return replace(start, linear=z[:3], angular=z[3:])
+
+
+def enclosed(asked: Scene, time: Fraction, size: Fraction, bits: int) -> Row:
+    """The row at a time, of all starts within the size of the scene's own."""
+    system = posed(asked)
+    with ctx.workprec(bits):
+        start = [ball(value) + arb(0, ball(size).upper()) for value in system.start]
+        initial = asked.initial
+        centre = initial.centre if isinstance(initial, Impulse) else None
+        place = Place.of(rotation_matrix(initial.attitude), centre)
+        run = Course.of(system, start, place, bits, 10_000)
+        (row,) = (row for _, row in run.rows([time]))
+    return row
+
+
+def corners(asked: Scene) -> list[Sequence[int]]:
+    size = 3 if isinstance(asked.body, RigidBody) else 6
+    every = [tuple(signs) for signs in product((-1, 1), repeat=size)]
+    return every if size == 3 else every[::9]
+
+
+def is_contained(name: str, bits: int = 80, size: Fraction = WIDE) -> bool:
+    """Return True if the balls of a box contain the motions from its corners, by far sharper runs."""
+    asked, end = CASES[name]
+    time = Fraction(end)
+    row = enclosed(asked, time, size, bits)
+    for signs in corners(asked):
+        truth = TRUTHS[name, tuple(signs), size]
+        with ctx.workprec(200):
+            for got, exact in (
+                (row.state, truth[0]),
+                (row.turn, truth[1]),
+                (row.centre or [], truth[2]),
+            ):
+                if not all(g.overlaps(e) for g, e in zip(got, exact, strict=True)):
+                    return False
+    return True
+
+
+class _Truths(dict[tuple[str, tuple[int, ...], Fraction], tuple[list[arb], list[arb], list[arb]]]):
+    """Motions from corners, each computed once, before anything is broken."""
+
+    def __missing__(
+        self, key: tuple[str, tuple[int, ...], Fraction]
+    ) -> tuple[list[arb], list[arb], list[arb]]:
+        name, signs, size = key
+        asked, end = CASES[name]
+        corner = replace(asked, initial=moved(asked.initial, signs, size))
+        row = enclosed(corner, Fraction(end), Fraction(0), 160)
+        self[key] = (row.state, row.turn, row.centre or [])
+        return self[key]
+
+
+TRUTHS = _Truths()

@@ -1,0 +1,1 @@
+"""Small stored studies, as the pages and pictures of each study need them."""

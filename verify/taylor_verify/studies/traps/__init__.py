@@ -1,1 +1,0 @@
-"""A plain call of heyoka beside the driver of this suite."""
