@@ -13,7 +13,7 @@ from taylor_verify.publish.paper import html, latex
 from taylor_verify.publish.paper.parsed import FOLDER, Page
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.records.replacement import first_line, replace_files
-from taylor_verify.studies import drawings, figures
+from taylor_verify.studies import figures, registry
 
 PAPER: Final = f"paper{latex.SUFFIX}"
 _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's equations"
@@ -56,7 +56,7 @@ def _drawn(place: Path) -> list[Path]:
     target = place / figures.FOLDER
     there = {file.stem for file in target.glob("*.svg")}
     pictures = (
-        [picture for picture in drawings.pictures(place) if picture.stem in there] if there else []
+        [picture for picture in registry.pictures(place) if picture.stem in there] if there else []
     )
     return save(pictures, target, ("pdf",)) if pictures else []
 

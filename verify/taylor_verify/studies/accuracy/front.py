@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from statistics import median
+from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
@@ -12,7 +13,9 @@ from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.contents import Page
+
+if TYPE_CHECKING:
+    from taylor_verify.studies.contents import Page
 
 _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "

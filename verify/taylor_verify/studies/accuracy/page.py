@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import (
     NOTHING,
@@ -27,7 +28,9 @@ from taylor_verify.records.runs import (
 )
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.contents import Page
+
+if TYPE_CHECKING:
+    from taylor_verify.studies.contents import Page
 
 _MEANINGS = {
     Status.PASS: "the error of every sample is within its bound",

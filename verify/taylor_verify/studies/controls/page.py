@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
-from taylor_verify.studies.accuracy import sheet as sheets
 from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Sight
 from taylor_verify.studies.controls.proof import (
     MAIN,
@@ -24,8 +25,9 @@ from taylor_verify.studies.controls.proof import (
 )
 from taylor_verify.studies.controls.stored import CONTROLS
 
+PAGE: Final = "tables/controls.md"
 # Where the short table stands in a page that is otherwise written by hand.
-BEGIN: Final = "<!-- controls: made by taylor-verify publish --controls; do not edit -->"
+BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
 
 _NOT_SEEN: Final = NOTHING
@@ -67,6 +69,12 @@ _HOW: Final = (
 )
 
 
+def texts(study: ControlsStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below a folder."""
+    del folder
+    return {PAGE: page(study), "tables/controls.csv": sheet(study)}
+
+
 def page(study: ControlsStudy) -> str:
     """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
     sights = study.sights
@@ -87,8 +95,8 @@ def page(study: ControlsStudy) -> str:
         "step included: what fails here is not a step that is too long.",
         _twins(sights),
         "## To remake this",
-        f"`taylor-verify publish --controls` runs every defect and its twin, and writes "
-        f"[controls.json](../{CONTROLS}); this page, its [CSV](controls.csv) and the table in the "
+        f"`taylor-verify publish controls` runs every defect and its twin, and writes "
+        f"[controls.json](../{CONTROLS.name}); this page, its [CSV](controls.csv) and the table in the "
         f"README of the project are made from that alone. "
         f"{traced({'versions': study.versions, **plain(study.machine)})}",
     ]
@@ -264,7 +272,7 @@ _FIELDS: Final = (
 
 def sheet(study: ControlsStudy) -> str:
     """Return a row for every defect and gate, with every digit."""
-    return sheets.sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
+    return csv_sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
 
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
