@@ -22,18 +22,10 @@ _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's 
 # thousands of verdicts, with its reason in words, is for searching, and gates.csv is for that.
 PAGES: Final = (
     "tables/README.md",
-    "tables/accuracy.md",
-    "tables/attainable.md",
-    "tables/conserved.md",
-    "tables/growth.md",
-    "tables/reach.md",
-    "tables/tradeoff.md",
-    "tables/prices.md",
-    "tables/extremes.md",
-    "tables/worst.md",
-    "tables/controls.md",
+    *("tables/accuracy.md", "tables/attainable.md", "tables/conserved.md"),
+    # The README of another folder is an index of files, and no page to be read.
+    *(study.page for study in registry.STUDIES if study.page and "README" not in study.page),
     "tables/traps.md",
-    "claims.md",
 )
 
 
