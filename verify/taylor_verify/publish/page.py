@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any, Final
 
 from taylor_verify.publish.cells import figure, instant, judged, reason
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
 from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
@@ -27,7 +27,7 @@ def counts(verdicts: Iterable[Verdict]) -> str:
     """The number of verdicts of each kind, the largest error over attainable, and what judged them."""
     found = list(verdicts)
     by_status = summary(found)
-    columns = [Column(status, to_right=True) for status in by_status]
+    columns = [f"{status}:" for status in by_status]
     row = [_standing_out(Status(status), count) for status, count in by_status.items()]
     return "\n\n".join(filter(None, [table(columns, [row]), _worst(found), _tolerated(found)]))
 

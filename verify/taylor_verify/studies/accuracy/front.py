@@ -7,7 +7,7 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts
 from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
 from taylor_verify.records.runs import Run, gravest, runs
@@ -69,7 +69,7 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "pass in any of its quantities.",
         _by_scene(found),
         "## What else is here",
-        table([Column("file"), Column("what it has")], contents),
+        table(["file", "what it has"], contents),
         _remake(verdicts),
     ]
     return "\n\n".join(block for block in blocks if block) + "\n"
@@ -94,8 +94,8 @@ def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
 
 def _by_rung(found: Sequence[Run]) -> str:
     """A line a rung: its roundoff, the median and the worst state error, the worst over attainable."""
-    headings = ("u", "runs", "all pass", "median error, u", "largest error, u", "over attainable")
-    columns = [Column("rung"), *(Column(heading, True) for heading in headings), Column("where")]
+    errors = ("median error, u:", "largest error, u:", "over attainable:")
+    columns = ["rung", "u:", "runs:", "all pass:", *errors, "where"]
     rungs = sorted({run.rung for run in found}, key=place_of_rung)
     return table(columns, [_rung_row([r for r in found if r.rung == rung]) for rung in rungs])
 
@@ -131,7 +131,7 @@ def _by_scene(found: Sequence[Run]) -> str:
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
     for run in found:
         lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
-    columns = [Column("scene"), *([Column("solver")] if len(solvers) > 1 else [])]
+    columns = ["scene", *(["solver"] if len(solvers) > 1 else [])]
     rows = [
         [
             code(scene),
@@ -140,7 +140,7 @@ def _by_scene(found: Sequence[Run]) -> str:
         ]
         for (scene, solver, setting), by_rung in lines.items()
     ]
-    return table([*columns, *(Column(rung, True) for rung in rungs)], rows)
+    return table([*columns, *(f"{rung}:" for rung in rungs)], rows)
 
 
 def _cell(run: Run | None) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.claims.document import ClaimRow, ClaimsStudy, Verdict
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
@@ -85,7 +85,7 @@ def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
 def _counts(rows: Sequence[ClaimRow]) -> str:
     verdicts = [row.verdict.value for row in rows]
     found = list(dict.fromkeys(verdicts))
-    columns = [Column(verdict, to_right=True) for verdict in found]
+    columns = [f"{verdict}:" for verdict in found]
     return table(columns, [[str(verdicts.count(verdict)) for verdict in found]])
 
 
@@ -141,7 +141,7 @@ def _neither(rows: Sequence[ClaimRow]) -> str:
 def _restored(rows: Sequence[ClaimRow]) -> str:
     """What the scan lost, where the equation is true once that is put back."""
     lost = [[code(row.id), prose(row.lost or "")] for row in _of(rows, Verdict.RESTORED)]
-    return table([Column("equation"), Column("what the scan lost")], lost)
+    return table(["equation", "what the scan lost"], lost)
 
 
 def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
@@ -151,9 +151,7 @@ def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
 def _ledger(rows: Sequence[ClaimRow]) -> list[str]:
     """One table of verdicts for each text, and below it the statements with domain and check."""
     blocks: list[str] = []
-    columns = [
-        Column(heading) for heading in ("claim", "verdict", "residual", "mutations rejected")
-    ]
+    columns = ["claim", "verdict", "residual", "mutations rejected"]
     for text in dict.fromkeys(_text_of(row) for row in rows):
         own = [row for row in rows if _text_of(row) == text]
         cells = [

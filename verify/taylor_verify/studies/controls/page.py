@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
@@ -115,12 +115,7 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
         for name_of, names in _COLUMNS
         if any(name in sight.quantities for sight in found for name in names)
     ]
-    columns = [
-        Column("defect"),
-        *(Column(name, True) for name, _ in shown),
-        Column("time shift", True),
-        Column("outcome"),
-    ]
+    columns = ["defect", *(f"{name}:" for name, _ in shown), "time shift:", "outcome"]
     rows = [
         [
             title(sight),
@@ -174,16 +169,11 @@ def _by_gate(sights: Sequence[Sight]) -> str:
     finished = [sight for sight in sights if sight.is_finished]
     stopped = len(sights) - len(finished)
     rows.append(["outcome", f"{stopped} of {len(sights)}", "every defect that claims success"])
-    return table([Column("gate"), Column("sees", True), Column("misses")], rows)
+    return table(["gate", "sees:", "misses"], rows)
 
 
 def _in_words(sights: Sequence[Sight]) -> str:
-    columns = [
-        Column("defect"),
-        Column("scene"),
-        Column("what is wrong"),
-        Column("why it shows so"),
-    ]
+    columns = ["defect", "scene", "what is wrong", "why it shows so"]
     return table(columns, [[title(sight), *_words(sight.defect)] for sight in sights])
 
 
@@ -193,12 +183,7 @@ def _words(defect: DefectRow) -> list[str]:
 
 def _twins(sights: Sequence[Sight]) -> str:
     """Each twin once, with the gate that it comes closest to failing."""
-    columns = [
-        Column("sound solver"),
-        Column("scene"),
-        Column("passes", True),
-        Column("largest error over bound", True),
-    ]
+    columns = ["sound solver", "scene", "passes:", "largest error over bound:"]
     rows = {}
     for sight in sights:
         judged = list(sight.sound.values())
@@ -220,10 +205,10 @@ def short(study: ControlsStudy) -> str:
     """Return some fifteen rows and four columns, between the marks BEGIN and END."""
     shown = [s for s in _blindest_first(study.sights) if s.defect.told and s.is_finished]
     columns = [
-        Column("what was broken"),
-        Column("energy", True),
-        Column("other conserved quantities", True),
-        Column("compared with the exact motion", True),
+        "what was broken",
+        "energy:",
+        "other conserved quantities:",
+        "compared with the exact motion:",
     ]
     rows = [
         [

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
@@ -108,11 +108,8 @@ def _held(found: ExtremesStudy) -> str:
 
 
 def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
-    columns = [
-        *(Column("scene"), Column("rung"), Column("what it is")),
-        *(Column("state", True), Column("over attainable", True)),
-        *(Column("verdict"), Column("as expected", True)),
-    ]
+    numbers = ("state:", "over attainable:")
+    columns = ["scene", "rung", "what it is", *numbers, "verdict", "as expected:"]
     rows = [_cells(found, run) for run in own]
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
@@ -151,10 +148,7 @@ def _worst(run: Run) -> str:
 
 def _not_passed(found: ExtremesStudy) -> str:
     """A line for every answer that is no pass, as the solver's run has it and as it was foreseen."""
-    columns = [
-        *(Column("scene"), Column("quantity"), Column("verdict"), Column("expected")),
-        *(Column("bound", True), Column("why")),
-    ]
+    columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
     rows = [_told(found, verdict) for verdict in found.verdicts if _is_told(found, verdict)]
     return table(columns, rows) if rows else "Every answer is a pass."
 

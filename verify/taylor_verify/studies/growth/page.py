@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
@@ -129,11 +129,8 @@ def _section(run: Ensemble) -> list[str]:
         f"{run.lanes} starts from {_count(run.counts[0])} to {_count(run.counts[-1])} periods of "
         f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}"
     )
-    columns = [
-        Column("quantity"),
-        *(Column(heading, True) for heading in ("rms, first", "rms, last", "walks", "exponent")),
-        *(Column(heading) for heading in ("word", "late", "no worse than a walk")),
-    ]
+    numbers = ("rms, first:", "rms, last:", "walks:", "exponent:")
+    columns = ["quantity", *numbers, "word", "late", "no worse than a walk"]
     return [
         f"## {_name(run)}",
         f"{prose(run.why.capitalize())}. {told}",

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bullets, code, prose, table
+from taylor_verify.publish.markdown import bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
@@ -83,7 +83,7 @@ def page(study: PricesStudy, folder: Path) -> str:
 def _three_questions(rows: Iterable[PriceRow]) -> str:
     by_place = {(row.variant, row.rung): row for row in rows}
     rungs = list(dict.fromkeys(rung for _, rung in by_place))
-    columns = [Column("what is followed"), *(Column(rung, True) for rung in rungs)]
+    columns = ["what is followed", *(f"{rung}:" for rung in rungs)]
     lines = []
     for name, words in _ASKED:
         cells = []
@@ -126,13 +126,9 @@ def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> li
 
 def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
     on_f64 = rows[0].rung == "f64"
-    columns = [
-        Column("variant"),
-        *(Column(heading, True) for heading in ("states", "operations", "a step")),
-        *(Column(heading, True) for heading in ("a unit of time", "error")),
-        *([Column("at equal error", True)] if on_f64 else []),
-        Column("what it is"),
-    ]
+    numbers = ("states:", "operations:", "a step:", "a unit of time:", "error:")
+    at_equal = ("at equal error:",) if on_f64 else ()
+    columns = ["variant", *numbers, *at_equal, "what it is"]
     return table(columns, [_cells(row, equal, on_f64) for row in rows])
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bullets, code, prose, table
+from taylor_verify.publish.markdown import bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
@@ -128,10 +128,10 @@ def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
 
 def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     columns = [
-        Column("rung"),
-        Column("periods", True),
-        *(Column(f"{one.symbol}, {n} digits", True) for n in DIGITS),
-        *(Column(f"attainable, {n}", True) for n in DIGITS),
+        "rung",
+        "periods:",
+        *(f"{one.symbol}, {n} digits:" for n in DIGITS),
+        *(f"attainable, {n}:" for n in DIGITS),
     ]
     lines = []
     for rung in one.rungs:
@@ -157,12 +157,12 @@ def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     """Return a line for each value with three numbers for every rung; a single value is turned round."""
     by_place = {(row.value, row.rung): row for row in rows}
     if len(one.values) == 1:
-        heads = (*(f"{n} digits" for n in DIGITS), *(f"attainable, {n}" for n in DIGITS))
-        columns = [Column("rung"), *(Column(head, True) for head in heads)]
+        digits = (f"{n} digits:" for n in DIGITS)
+        columns = ["rung", *digits, *(f"attainable, {n}:" for n in DIGITS)]
         (value,) = one.values
         found = [(rung, by_place[value, rung]) for rung in one.rungs]
         return table(columns, [[rung, *_turned(row)] for rung, row in found])
-    columns = [Column(one.symbol, True), *(Column(f"{r}: 3, 6, 12", True) for r in one.rungs)]
+    columns = [f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)]
     return table(
         columns,
         [[value, *(_three(by_place[value, rung]) for rung in one.rungs)] for value in one.values],

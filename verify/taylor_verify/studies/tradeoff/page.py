@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
@@ -117,11 +117,7 @@ def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
 
 
 def _by_digits(found: Trades) -> str:
-    columns = [
-        Column("scene"),
-        Column("solver"),
-        *(Column(f"{digits} digits", True) for digits in DIGITS),
-    ]
+    columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
     for trade in found.trades:
         rows.append(
@@ -187,7 +183,7 @@ def _by_rung(found: Trades) -> str:
         p.rung for trade in found.trades for p in trade.points if _is_own_tolerance(p)
     )
     ladder = sorted(rungs, key=lambda rung: (rung.startswith("mp"), int(rung.lstrip("fmp"))))
-    columns = [Column("scene"), *(Column(rung, True) for rung in ladder)]
+    columns = ["scene", *(f"{rung}:" for rung in ladder)]
     rows = []
     for trade in found.trades:
         own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
@@ -213,11 +209,7 @@ def _rung_cell(row: TimedPoint) -> str:
 
 
 def _by_request(found: Trades) -> str:
-    columns = [
-        Column("scene"),
-        Column("solver"),
-        *(Column(f"{-log10(asked):.0f} asked for", True) for asked in _ASKED),
-    ]
+    columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
     for trade in found.trades:
         families = dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance")
@@ -269,11 +261,8 @@ def _front_line(row: TimedPoint) -> str:
 
 
 def _geometric(found: Trades) -> str:
-    columns = [
-        *(Column("scene"), Column("integrator"), Column("step", True)),
-        *(Column("time", True), Column("largest error", True), Column("drift", True)),
-        Column("of"),
-    ]
+    numbers = ("step:", "time:", "largest error:", "drift:")
+    columns = ["scene", "integrator", *numbers, "of"]
     rows = [
         [
             code(trade.scene),
@@ -292,7 +281,7 @@ def _geometric(found: Trades) -> str:
 
 
 def _failures(found: Trades) -> str:
-    columns = [Column("scene"), Column("setting"), Column("what it is"), Column("because")]
+    columns = ["scene", "setting", "what it is", "because"]
     rows = [
         [code(trade.scene), code(p.label), prose(_standing(p)), prose(p.because)]
         for trade in found.trades

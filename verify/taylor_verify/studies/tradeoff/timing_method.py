@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, Trades
 
 _WHAT_IS_TIMED: Final = (
@@ -43,7 +43,7 @@ _WHAT_IS_TIMED: Final = (
 
 def what_is_timed(found: Trades) -> str:
     del found
-    columns = [Column("solver"), Column("in the time"), Column("not in it")]
+    columns = ["solver", "in the time", "not in it"]
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.publish.page import MADE_BY, traced
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
@@ -68,13 +68,13 @@ def page(study: WorstStudy) -> str:
 
 def _table(families: Sequence[WorstOfFamily]) -> str:
     columns = [
-        Column("family"),
-        Column("scenes", True),
-        Column("error over attainable", True),
-        Column("in"),
-        Column("its error", True),
-        Column("verdict"),
-        Column("kept as"),
+        "family",
+        "scenes:",
+        "error over attainable:",
+        "in",
+        "its error:",
+        "verdict",
+        "kept as",
     ]
     rows = [
         [
