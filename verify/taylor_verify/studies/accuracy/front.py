@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, counts
+from taylor_verify.publish.page import counts, whole
 from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.store import versions
@@ -54,8 +54,8 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
     """The page of a report, with links to what else there is."""
     found = runs(verdicts)
     contents = [*_CONTENTS, *(page.row() for page in others)]
-    blocks = [
-        f"{MADE_BY}\n# How accurate it is",
+    return whole(
+        "How accurate it is",
         _WHAT,
         "## In short",
         _in_short(found, verdicts),
@@ -71,8 +71,7 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "## What else is here",
         table(["file", "what it has"], contents),
         _remake(verdicts),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from taylor_verify.claims.document import ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.page import whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
@@ -49,8 +49,8 @@ _REMAKE: Final = (
 def page(study: ClaimsStudy) -> str:
     """Return the whole page."""
     rows = study.claims
-    blocks = [
-        f"{MADE_BY}\n# What the two texts claim",
+    return whole(
+        "What the two texts claim",
         _INTRODUCTION,
         _counts(rows),
         "## Errata",
@@ -68,8 +68,7 @@ def page(study: ClaimsStudy) -> str:
         bullets(f"{code(number)}: {prose(what)}" for number, what in study.cited.items()),
         "## To remake this",
         _REMAKE,
-    ]
-    return "\n\n".join(blocks) + "\n"
+    )
 
 
 def texts(study: ClaimsStudy, folder: Path) -> dict[str, str]:

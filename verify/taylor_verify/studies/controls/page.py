@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.publish.page import traced, whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
@@ -78,8 +78,8 @@ def texts(study: ControlsStudy, folder: Path) -> dict[str, str]:
 def page(study: ControlsStudy) -> str:
     """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
     sights = study.sights
-    blocks = [
-        f"{MADE_BY}\n# What each gate sees",
+    return whole(
+        "What each gate sees",
         _WHAT,
         "## What it proves",
         bullets(proven(sights)),
@@ -99,8 +99,7 @@ def page(study: ControlsStudy) -> str:
         f"[controls.json](../{CONTROLS.name}); this page, its [CSV](controls.csv) and the table in the "
         f"README of the project are made from that alone. "
         f"{traced({'versions': study.versions, **plain(study.machine)})}",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 # The tables.

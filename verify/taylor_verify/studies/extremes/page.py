@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
+from taylor_verify.publish.page import counts, roundoffs, traced, whole
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.runs import Run, gravest, runs
@@ -72,8 +72,8 @@ def texts(study: ExtremesStudy, folder: Path) -> dict[str, str]:
 def page(found: ExtremesStudy) -> str:
     """The counts, a line a scene, and every answer that is no pass with its reason."""
     own = runs(found.verdicts)
-    blocks = [
-        f"{MADE_BY}\n# The extremes",
+    return whole(
+        "The extremes",
         _WHAT,
         counts(found.verdicts),
         _held(found),
@@ -88,8 +88,7 @@ def page(found: ExtremesStudy) -> str:
         "quantity. `taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it "
         "runs them on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
         traced({"versions": found.versions, **plain(found.machine)}),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _models(own: Iterable[Run]) -> list[str]:

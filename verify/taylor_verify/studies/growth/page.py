@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
@@ -89,8 +89,8 @@ def find(folder: Path) -> GrowthStudy | None:
 def page(study: GrowthStudy, folder: Path) -> str:
     """Return the whole page, with the picture if it is in ``folder``/figures."""
     runs = study.runs
-    blocks = [
-        f"{MADE_BY}\n# How errors grow with time",
+    return whole(
+        "How errors grow with time",
         _WHAT,
         _gates(runs),
         bullets(prose(f"Left out: {one}.") for one in study.left_out),
@@ -103,8 +103,7 @@ def page(study: GrowthStudy, folder: Path) -> str:
         _NO_CONSERVATION,
         "## To remake this",
         bullets(_remake(study.provenance)),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def pictures(study: GrowthStudy) -> list[Picture]:
@@ -183,7 +182,6 @@ def _gate_told(runs: Sequence[Ensemble]) -> str:
 
 
 def _remake(provenance: Provenance) -> list[str]:
-    versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
     return [
         "`taylor-verify publish growth` follows the ensembles anew, writes "
         f"[growth.json](../{GROWTH.name}), the picture and this page: minutes, all cores. "
@@ -192,7 +190,7 @@ def _remake(provenance: Provenance) -> list[str]:
         "a thousand pieces of some seconds.",
         "Roundings are other draws on another processor, and so are the last digits here; the exponents "
         "are the same within their intervals.",
-        f"Machine: {prose(provenance.processor)}; {versions}. Made by {code(provenance.command)}.",
+        made_on(provenance),
     ]
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.markdown import bullets, prose, table
+from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.sheet import sheet as csv_sheet
@@ -61,8 +61,8 @@ def pictures(study: PricesStudy) -> list[Picture]:
 
 def page(study: PricesStudy, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# What each thing costs",
+    return whole(
+        "What each thing costs",
         _WHAT,
         "## Three questions",
         "Processor time of one step of the Taylor integrator at the rung's own tolerance, in "
@@ -76,8 +76,7 @@ def page(study: PricesStudy, folder: Path) -> str:
         "## To remake this",
         f"`taylor-verify publish prices` measures anew, writes [prices.json](../{PRICES.name}) and this "
         "page; nothing is ever compared with these times.",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _three_questions(rows: Iterable[PriceRow]) -> str:
@@ -152,14 +151,13 @@ def _ratio(interval: Interval) -> str:
 def _method(study: PricesStudy) -> list[str]:
     method, given = study.method, study.provenance
     rounds = ", ".join(f"{rung} {count}" for rung, count in method.rounds.items())
-    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
     return [
         f"One process, processor time, rounds in which every variant has its turn in an order drawn "
         f"anew (seed {method.seed}): {rounds}. Each turn lasts at least "
         f"{figure(method.least_seconds)} s and is as many runs of the same stretch as that takes.",
         "Compiling, sampling and the exact solution are not in a price. The errors are those of runs "
         "of the suite's own driver, compared with the exact motion.",
-        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+        made_on(given),
     ]
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.markdown import bullets, prose, table
+from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
@@ -63,8 +63,8 @@ def pictures(study: ReachStudy) -> list[Picture]:
 
 def page(study: ReachStudy, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# How far each precision carries",
+    return whole(
+        "How far each precision carries",
         _WHAT,
         bullets(_LEGEND),
         *(block for one in study.families for block in _section(study, one, folder)),
@@ -73,8 +73,7 @@ def page(study: ReachStudy, folder: Path) -> str:
         "## To remake this",
         f"`taylor-verify publish reach` measures anew, in some minutes, and writes "
         f"[reach.json](../{REACH.name}), this page and its pictures.",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
@@ -220,7 +219,6 @@ def _stopped(rows: Sequence[ReachRow]) -> list[str]:
 
 def _method(study: ReachStudy) -> list[str]:
     given, rows = study.provenance, study.rows
-    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
     lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
     blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
     return [
@@ -232,7 +230,7 @@ def _method(study: ReachStudy) -> list[str]:
         "as on f64.",
         _over_attainable(rows),
         *_stopped(rows),
-        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+        made_on(given),
     ]
 
 

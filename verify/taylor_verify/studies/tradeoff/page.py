@@ -9,7 +9,7 @@ from typing import Final
 
 from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.page import whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.sheet import sheet as csv_sheet
@@ -42,8 +42,8 @@ _WHAT: Final = (
 
 def page(found: Trades, folder: Path) -> str:
     """The whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# Speed against accuracy",
+    return whole(
+        "Speed against accuracy",
         _WHAT,
         "## What so many digits cost",
         "The cheapest measured setting whose error leaves at least so many digits: its time over that "
@@ -83,8 +83,7 @@ def page(found: Trades, folder: Path) -> str:
         bullets(how_it_was_timed(found)),
         "## To remake this",
         remake(found),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def texts(found: Trades, folder: Path) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import Final
 
 from taylor_verify.publish.cells import figure
 from taylor_verify.publish.markdown import code, prose, table
-from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.publish.page import traced, whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
@@ -49,8 +49,8 @@ def page(study: WorstStudy) -> str:
     factor, rung = f"{study.factor:g}", study.rung
     families = sorted(study.families, key=lambda row: -row.ratio)
     judged = sum(row.judged for row in families)
-    blocks = [
-        f"{MADE_BY}\n# The worst that a search has found",
+    return whole(
+        "The worst that a search has found",
         _WHAT.format(factor=factor, rung=code(rung)),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
@@ -62,8 +62,7 @@ def page(study: WorstStudy) -> str:
         "find worse ones: the scenes that were found are the fact, and not that there are no others. "
         f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
-    ]
-    return "\n\n".join(blocks) + "\n"
+    )
 
 
 def _table(families: Sequence[WorstOfFamily]) -> str:
