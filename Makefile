@@ -48,15 +48,10 @@ bench: $(INSTALLED)  ## Time the exact solutions and check, in ratios within one
 	@$(BIN)/python tests/bench.py
 
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
-	@$(BIN)/taylor-verify publish --controls > /dev/null
+	@$(BIN)/taylor-verify publish controls extremes > /dev/null
 	@$(MAKE) --no-print-directory traps > /dev/null
-	@$(BIN)/taylor-verify publish --extremes > /dev/null
 	@$(BIN)/taylor-verify run --out reports
-	@$(BIN)/taylor-verify publish --reference > /dev/null
-	@$(BIN)/taylor-verify publish --portraits > /dev/null
-	@$(BIN)/taylor-verify publish --enclosure > /dev/null
-	@$(BIN)/taylor-verify publish --gallery > /dev/null
-	@$(BIN)/taylor-verify publish --claims > /dev/null
+	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null
 
 # A report to heyoka's authors, beside its minimal scripts; no part of the package.
@@ -70,7 +65,7 @@ release-data: $(INSTALLED)  ## Pack everything published, what is not committed 
 
 # Apart from the reports: a time is another one in every run, and nothing is ever compared with it.
 tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew (minutes, on a quiet machine)
-	@$(BIN)/taylor-verify publish --tradeoff
+	@$(BIN)/taylor-verify publish tradeoff
 
 # The rungs of hardware: they differ most between processors, and the wider ones take longer.
 check-reports: $(INSTALLED)  ## Run part of what is published anew: has a number left its rounding class?

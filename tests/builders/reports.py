@@ -24,19 +24,23 @@ from taylor_verify.run import run
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import report
-from taylor_verify.studies.claims import page as claims
+from taylor_verify.studies.claims.page import CLAIMS
 from taylor_verify.studies.controls import measure as sight
-from taylor_verify.studies.extremes import page as extremes
+from taylor_verify.studies.controls import study as controls
+from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.extremes.page import EXTREMES
 from taylor_verify.studies.gallery import page as gallery
-from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.growth.page import GROWTH
 from taylor_verify.studies.growth.published import Entry, followed
 from taylor_verify.studies.portraits import stored as portraits
 from taylor_verify.studies.portraits.measure import portrait
-from taylor_verify.studies.reach import page as reach
+from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.reference.measure import reference
+from taylor_verify.studies.registry import STUDIES
+from taylor_verify.studies.tradeoff.stored import write as write_tradeoff
 from taylor_verify.studies.worst import measure as hunt
-from taylor_verify.studies.worst import page as worst
+from taylor_verify.studies.worst.page import WORST
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.
@@ -78,7 +82,8 @@ def write_portraits(place: Path, scenes: Iterable[str]) -> None:
 def write_controls(place: Path) -> None:
     """Write what each gate sees of some solvers that are broken on purpose."""
     defects = [defect for defect in DEFECTS if defect.name in _BROKEN]
-    report.publish_controls(place, sight.study(sight.sights(defects)))
+    CONTROLS.write(place, sight.study(sight.sights(defects)))
+    controls.STUDY.publish(place)
 
 
 @cache
@@ -115,11 +120,13 @@ def small() -> Path:
     write_runs(place, product(SCENES, ("f64", "mp237")))
     write_portraits(place, SCENES)
     write_controls(place)
-    report.publish_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
-    reach.write(place, reach_study())
-    growth.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
-    worst.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
-    extremes.write(place, extremes_study())
-    claims.write(place, STUDY)
+    write_tradeoff(place, NUMBERS_MADE, TIMES_MADE)
+    REACH.write(place, reach_study())
+    GROWTH.write(place, followed([_ENSEMBLE], None, lambda label, done, of: None))
+    WORST.write(place, hunt.study([worst_of("euler-a", 1.5)], 60.0, 3))
+    EXTREMES.write(place, extremes_study())
+    CLAIMS.write(place, STUDY)
+    for study in STUDIES:
+        study.publish(place)
     report.publish(place)
     return place

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from builders.studies.claims import ROWS, STUDY
+from builders.studies.stored import publish_document
 
 from taylor_verify.claims import ledger
 from taylor_verify.claims.claim import Verdict
@@ -16,7 +17,8 @@ from taylor_verify.claims.ledger import claims
 from taylor_verify.claims.numbers import CITED
 from taylor_verify.cli import main
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.studies.claims.page import CLAIMS, PAGE, SHEET, load, page, pages, write
+from taylor_verify.studies.claims.page import CLAIMS, PAGE, SHEET, page
+from taylor_verify.studies.claims.study import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}
@@ -92,45 +94,50 @@ def test_the_page_has_the_errata_in_front() -> None:
 def test_the_page_is_put_in_place(tmp_path: Path) -> None:
     """The rows, the page and its sheet, in the folder given."""
     names = ("data/claims.json", "claims.md", "tables/claims.csv")
-    assert write(tmp_path / "new", STUDY) == [tmp_path / "new" / name for name in names]
+    assert publish_document(tmp_path / "new", PUBLISHED, CLAIMS, STUDY) == [
+        tmp_path / "new" / name for name in names
+    ]
 
 
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     """The ledger is read as it was written, and page and sheet are made of it anew."""
-    texts = {path: path.read_text(encoding="utf-8") for path in write(tmp_path, STUDY)}
-    assert load(tmp_path) == STUDY
-    again = pages(tmp_path)
+    texts = {
+        path: path.read_text(encoding="utf-8")
+        for path in publish_document(tmp_path, PUBLISHED, CLAIMS, STUDY)
+    }
+    assert CLAIMS.load(tmp_path) == STUDY
+    again = PUBLISHED.pages(tmp_path)
     assert {tmp_path / name: text for name, text in again.items()} == {
-        path: text for path, text in texts.items() if path != tmp_path / CLAIMS
+        path: text for path, text in texts.items() if path != tmp_path / CLAIMS.name
     }
     assert set(again) == {PAGE, SHEET}
-    write(tmp_path, load(tmp_path))
+    publish_document(tmp_path, PUBLISHED, CLAIMS, CLAIMS.load(tmp_path))
     assert {path: path.read_text(encoding="utf-8") for path in texts} == texts
 
 
 def test_a_number_that_is_not_finite_is_null(tmp_path: Path) -> None:
     """A residual that came to no number is null in the file and in words on the page, and never zero."""
     lost = replace(ROWS[0], bound=float("nan"), residual=ClaimResiduals(float("inf"), float("nan")))
-    write(tmp_path, replace(STUDY, claims=(lost,)))
-    (stored,) = json.loads((tmp_path / CLAIMS).read_text(encoding="utf-8"))["claims"]
+    publish_document(tmp_path, PUBLISHED, CLAIMS, replace(STUDY, claims=(lost,)))
+    (stored,) = json.loads((tmp_path / CLAIMS.name).read_text(encoding="utf-8"))["claims"]
     assert stored["bound"] is None
     assert stored["residual"] == {"statement": None, "transcribed": None}
-    ledger = pages(tmp_path)[PAGE].partition("## The ledger")[2]
+    ledger = PUBLISHED.pages(tmp_path)[PAGE].partition("## The ledger")[2]
     (line,) = (line for line in ledger.splitlines() if line.startswith(f"| `{lost.id}`"))
     assert "within not finite" in line
 
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
     """The message names the key, the entry and the file; so does a verdict that there is not."""
-    write(tmp_path, STUDY)
-    document = json.loads((tmp_path / CLAIMS).read_text(encoding="utf-8"))
+    publish_document(tmp_path, PUBLISHED, CLAIMS, STUDY)
+    document = json.loads((tmp_path / CLAIMS.name).read_text(encoding="utf-8"))
     document["claims"][2]["verdict"] = "plausible"
-    (tmp_path / CLAIMS).write_text(json.dumps(document), encoding="utf-8")
+    (tmp_path / CLAIMS.name).write_text(json.dumps(document), encoding="utf-8")
     with pytest.raises(ValueError, match=r"'plausible' @ claims\[2\]\.verdict @ .*claims\.json"):
-        pages(tmp_path)
-    (tmp_path / CLAIMS).write_text('{"provenance": {}}', encoding="utf-8")
+        PUBLISHED.pages(tmp_path)
+    (tmp_path / CLAIMS.name).write_text('{"provenance": {}}', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a key cited, got none.*claims\.json"):
-        pages(tmp_path)
+        PUBLISHED.pages(tmp_path)
 
 
 def test_a_ledger_that_lost_a_verdict_is_not_published(
@@ -139,6 +146,6 @@ def test_a_ledger_that_lost_a_verdict_is_not_published(
     """Exit status 1, and no page."""
     (quick,) = (c for c in claims() if c.id == QUICK)
     monkeypatch.setattr(ledger, "claims", lambda: (replace(quick, verdict=Verdict.HOLDS),))
-    assert main(["publish", "--claims", "--from", str(tmp_path)]) == 1
+    assert main(["publish", "claims", "--from", str(tmp_path)]) == 1
     assert f"@ {QUICK}" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.studies.stored import publish_document
 
 from taylor_verify.controls.answers import ANSWERS
 from taylor_verify.controls.defect import Defect
@@ -21,9 +22,10 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import report
 from taylor_verify.studies.controls import page as controls
 from taylor_verify.studies.controls import proof
-from taylor_verify.studies.controls import stored as stored
 from taylor_verify.studies.controls.document import ControlsStudy, Sight
 from taylor_verify.studies.controls.measure import RUNG, Twins, sights, study
+from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.study import STUDY
 
 NAMED = {defect.name: defect for defect in DEFECTS}
 STATE = {"omega", "impulse", "attitude", "centre"}
@@ -44,8 +46,8 @@ def read_back() -> ControlsStudy:
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder:
-        stored.write(Path(folder), study(sight_of(defect.name) for defect in DEFECTS))
-        return stored.load(Path(folder))
+        CONTROLS.write(Path(folder), study(sight_of(defect.name) for defect in DEFECTS))
+        return CONTROLS.load(Path(folder))
 
 
 def rows() -> tuple[Sight, ...]:
@@ -227,21 +229,21 @@ def test_rows_come_back_as_they_were_stored() -> None:
 
 def test_table_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """A number changed in controls.json is changed in the tables, and no solver runs for it."""
-    report.publish_controls(tmp_path, study([sight_of("energy-restored")]))
+    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("energy-restored")]))
     file = tmp_path / "data" / "controls.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     for row in content["verdicts"]:
         if row["solver"] == "energy-restored" and row["quantity"] == "omega":
             row["ratio"] = 1.25e7 * content["factor"]
     file.write_text(json.dumps(content), encoding="utf-8")
-    changed = stored.load(tmp_path)
+    changed = CONTROLS.load(tmp_path)
     assert "**1.2e7**" in controls.page(changed)
     assert ",12500000.0," in controls.sheet(changed)
 
 
 def test_report_remakes_the_table_from_what_is_stored(tmp_path: Path) -> None:
     """`run --out` and `publish` keep the table of controls: it is remade, and linked in front."""
-    made = report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    made = publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
     assert [path.name for path in made] == ["controls.json", "controls.md", "controls.csv"]
     before = made[1].read_text(encoding="utf-8")
     report.write(tmp_path, sight_of("one-ulp-over").sound.values(), [])
@@ -253,19 +255,21 @@ def test_report_remakes_the_table_from_what_is_stored(tmp_path: Path) -> None:
 
 def test_stored_rows_that_are_none_are_refused(tmp_path: Path) -> None:
     """A file without the verdicts of a defect is a fault that names the file, not an empty table."""
-    report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
     file = tmp_path / "data" / "controls.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     file.write_text(json.dumps({**content, "verdicts": []}), encoding="utf-8")
     with pytest.raises(ValueError, match=r"one-ulp-over.*controls\.json"):
-        stored.load(tmp_path)
+        CONTROLS.load(tmp_path)
 
 
 def test_what_is_read_is_written_the_same(tmp_path: Path) -> None:
     """A stored run, read and stored again, is the same document."""
     study_of_one = study([sight_of("one-ulp-over")])
-    first = json.loads(stored.write(tmp_path, study_of_one).read_text(encoding="utf-8"))
-    again = json.loads(stored.write(tmp_path, stored.load(tmp_path)).read_text(encoding="utf-8"))
+    (file,) = CONTROLS.write(tmp_path, study_of_one)
+    first = json.loads(file.read_text(encoding="utf-8"))
+    CONTROLS.write(tmp_path, CONTROLS.load(tmp_path))
+    again = json.loads(file.read_text(encoding="utf-8"))
     assert again == first
     assert list(again) == list(first)
     assert [list(row) for row in again["verdicts"]] == [list(row) for row in first["verdicts"]]
@@ -275,14 +279,14 @@ def test_what_is_read_is_written_the_same(tmp_path: Path) -> None:
 
 def test_a_row_without_a_reason_has_its_sentence(tmp_path: Path) -> None:
     """In a file of an earlier version a row says its reason in a sentence alone; it is kept as a remark."""
-    report.publish_controls(tmp_path, study([sight_of("one-ulp-over")]))
+    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
     file = tmp_path / "data" / "controls.json"
     content = json.loads(file.read_text(encoding="utf-8"))
     sentences = [row["because"] for row in content["verdicts"]]
     for row in content["verdicts"]:
         del row["reason"]
     file.write_text(json.dumps(content), encoding="utf-8")
-    found = stored.load(tmp_path).verdicts
+    found = CONTROLS.load(tmp_path).verdicts
     assert [verdict.reason.conclusion for verdict in found] == sentences
 
 

@@ -138,6 +138,14 @@ def batch_stands_below_the_verbs(module: str, source: str) -> Iterator[str]:
             yield f"expected nothing of {room(target)}, got {target} @ {module}:{line}"
 
 
+def studies_stand_below_the_verbs(module: str, source: str) -> Iterator[str]:
+    """studies imports nothing of cli: a study is measured and published without a command line."""
+    if room(module) == "studies":
+        for target, line, _ in imports(source):
+            if within(target, "taylor_verify.cli"):
+                yield f"expected nothing of cli, got {target} @ {module}:{line}"
+
+
 def processes_have_their_place(module: str, source: str) -> Iterator[str]:
     """Executors and processes are made in batch; trade times a new process, heyoka has threads."""
     placed = within(
@@ -248,6 +256,7 @@ RULES: Final = (
     publish_reads_records,
     heyoka_has_its_place,
     batch_stands_below_the_verbs,
+    studies_stand_below_the_verbs,
     processes_have_their_place,
     imports_heyoka_late,
     is_silent,
@@ -456,6 +465,12 @@ PLANTED = [
         "taylor_verify.batch.judgements",
         "def f():\n from taylor_verify.publish import report",
         "publish",
+    ),
+    (
+        studies_stand_below_the_verbs,
+        "taylor_verify.studies.growth.study",
+        "def f():\n from taylor_verify.cli.streams import say",
+        "cli",
     ),
     (
         processes_have_their_place,

@@ -12,6 +12,7 @@ from builders.lacking import lacking
 
 import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
+from taylor_verify.studies.registry import STUDIES
 
 HEYOKA = ("heyoka",)
 # The environments of the other libraries have none of this package; `__main__` is a run.
@@ -124,20 +125,17 @@ def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
     assert done.stdout.splitlines()[-1] == f"nothing was judged: {expected}"
 
 
-@pytest.mark.parametrize(
-    "option",
-    ["portraits", "controls", "prices", "reach", "tradeoff", "extremes", "worst", "growth"],
-)
-def test_nothing_is_published_without_heyoka(option: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", [study.name for study in STUDIES if study.needs_heyoka])
+def test_nothing_is_published_without_heyoka(name: str, tmp_path: Path) -> None:
     """What was measured with it stays as it is: exit status 2, one sentence, and no file."""
     script = (
         "import sys\nfrom pathlib import Path\nfrom taylor_verify.cli import folders, main\n"
         "folders._checkout = lambda place: place\n"
-        f"sys.exit(main(['publish', '--{option}', '--from', 'reports']))"
+        f"sys.exit(main(['publish', '{name}', '--from', 'reports']))"
     )
     done = lacking(tmp_path, HEYOKA, "-c", script)
     assert done.returncode == 2
-    expected = f"expected heyoka, got no such package: {INSTALL} @ --{option}"
+    expected = f"expected heyoka, got no such package: {INSTALL} @ publish {name}"
     assert done.stderr.splitlines() == [f"taylor-verify: {expected}"]
     assert not (tmp_path / "reports").exists()
 

@@ -417,7 +417,7 @@ def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
     """Its first line names its maker, no stem comes twice, and every file of data that it names is one."""
     text = gallery.page(shown())
     stems = [one.picture.stem for one in shown()]
-    assert text.startswith("<!-- made by taylor-verify publish --gallery; do not edit -->\n")
+    assert text.startswith("<!-- made by taylor-verify publish; do not edit -->\n")
     assert len(set(stems)) == len(stems) >= 20
     assert re.findall(r"\]\(([\w-]+)\.svg\)", text) == stems
     named = re.findall(r"(?:\]\(\.\./|`)((?:data|reference)/[^)`]+)[)`]", text)
@@ -431,8 +431,8 @@ def test_the_command_asks_for_what_is_missing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A folder without portraits, or with a portrait that is none, is a wrong call and stays as it is."""
-    assert main(["publish", "--gallery", "--from", str(tmp_path)]) == 2
-    assert "publish --reference" in capsys.readouterr().err
+    assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2
+    assert "publish reference" in capsys.readouterr().err
     name = stored().portrait_name("euler/generic")
     for file in (name, stored().record_name("euler/generic", "f64")):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
@@ -440,6 +440,6 @@ def test_the_command_asks_for_what_is_missing(
     reference = stored().reference_name("euler/generic")
     (tmp_path / reference).parent.mkdir()
     (tmp_path / reference).write_text("t\n0\n", encoding="utf-8")
-    assert main(["publish", "--gallery", "--from", str(tmp_path)]) == 2
+    assert main(["publish", "gallery", "--from", str(tmp_path)]) == 2
     assert "w1" in capsys.readouterr().err
     assert not (tmp_path / "figures").exists()

@@ -7,17 +7,19 @@ import hashlib
 import json
 import shutil
 import tarfile
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from builders import reports
 
 from taylor_verify.cli import main
-from taylor_verify.cli import missing as command
+from taylor_verify.cli import publishing as command
 from taylor_verify.records import store
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import archive, bulk, drawings
+from taylor_verify.studies import archive, bulk, registry
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]
@@ -37,9 +39,17 @@ def missing(place: Path) -> bulk.Missing:
     return bulk.missing(place, {name: load(name).digest for name in names()})
 
 
+def lacking(place: Path, what: str) -> Sequence[Any]:
+    """Return what is missing of one kind of files."""
+    found = {kind.what: lacking for kind, lacking in missing(place).lacking}
+    return found.get(what, ())
+
+
 def without_bulk(place: Path) -> dict[str, bytes]:
     """Remove what no clone has, and return it by its path."""
-    files = [f for pattern in bulk.FILES for f in place.glob(pattern + "*" * pattern.endswith("/"))]
+    files = [
+        f for pattern in bulk.patterns() for f in place.glob(pattern + "*" * pattern.endswith("/"))
+    ]
     removed = {file.relative_to(place).as_posix(): file.read_bytes() for file in files}
     for file in files:
         file.unlink()
@@ -50,12 +60,15 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
     """Records, portraits, JSON and tables of gates come back byte for byte, and nothing else changes."""
     removed = without_bulk(report)
     assert missing(report).data == (
-        "4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
+        "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
     )
     committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
     assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
     out, said = capsys.readouterr()
-    assert "4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON" in said
+    assert (
+        "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
+        in said
+    )
     assert {Path(name) for name in json.loads(out)["written"]} == {report / n for n in removed}
     assert {name: (report / name).read_bytes() for name in removed} == removed
     assert {file: file.read_bytes() for file in committed} == committed
@@ -67,28 +80,28 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     an earlier version, which do not say whose they are, are taken for those of the verdicts."""
     stamp = report / "data" / store.STAMP
     line = stamp.read_bytes()
-    assert missing(report).runs == ()
+    assert lacking(report, "records of runs") == ()
     stamp.unlink()
-    assert missing(report).runs == ()
+    assert lacking(report, "records of runs") == ()
     stamp.write_bytes(line)
     file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["verdicts"][0]["max"] = 0.5
     file.write_text(store.laid_out(stored), encoding="utf-8")
-    assert len(missing(report).runs) == 4
+    assert len(lacking(report, "records of runs")) == 4
     mine, gone = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))
     mine.write_text("{}\n", encoding="utf-8")
     shutil.copy(next(file.parent.glob("records/euler-rest*")), gone)
     store.add_records(report, [])
     assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
-    assert len(missing(report).runs) == 4
+    assert len(lacking(report, "records of runs")) == 4
 
 
 def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> None:
     """Portrait and exact trajectory have the digest of their scene; with another one they are missing."""
     digests = {name: load(name).digest for name in SCENES} | {"euler/rest": "another"}
-    found = bulk.missing(report, digests)
-    assert found.portraits == found.references == ("euler/rest",)
+    found = [scenes for _, scenes in bulk.missing(report, digests).lacking]
+    assert found == [("euler/rest",), ("euler/rest",)]
 
 
 def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
@@ -98,7 +111,7 @@ def test_a_run_that_was_never_judged_has_no_record(report: Path) -> None:
     for row in stored["verdicts"]:
         row["verdict"] = "refused" if row["rung"] == "f32" else row["verdict"]
     file.write_text(store.laid_out(stored), encoding="utf-8")
-    assert {run.rung for run in missing(report).runs} == {"f64"}
+    assert {run.rung for run in lacking(report, "records of runs")} == {"f64"}
 
 
 @pytest.mark.slow
@@ -161,4 +174,4 @@ def test_the_paper_draws_the_pictures_that_are_there() -> None:
     stems = {file.stem for file in (place / "figures").glob("*.svg")}
     assert len(stems) >= 5
     assert {file.stem for file in (place / "figures").glob("*.pdf")} == stems
-    assert stems <= {picture.stem for picture in drawings.pictures(place)}
+    assert stems <= {picture.stem for picture in registry.pictures(place)}

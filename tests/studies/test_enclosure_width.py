@@ -15,8 +15,7 @@ from taylor_verify.scenes.motion import Impulse
 from taylor_verify.studies.enclosure import picture as pictures
 from taylor_verify.studies.enclosure.document import EnclosureStudy, WidthRow
 from taylor_verify.studies.enclosure.measure import widths
-from taylor_verify.studies.enclosure.page import load as load_study
-from taylor_verify.studies.enclosure.page import write
+from taylor_verify.studies.enclosure.study import ENCLOSURE
 
 MADE = EnclosureStudy(
     140,
@@ -54,8 +53,8 @@ def test_a_width_that_is_too_small_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_what_is_drawn_is_what_is_stored(tmp_path: Path) -> None:
     """Each panel has the width and the error of one motion, and two runs give one file."""
-    write(tmp_path, MADE)
-    stored = load_study(tmp_path)
+    ENCLOSURE.write(tmp_path, MADE)
+    stored = ENCLOSURE.load(tmp_path)
     assert stored == MADE
     motions = pictures.series(stored)
     assert list(motions) == ["a", "b"]

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from builders.studies.extremes import ALL, DRIFT, FORESEEN, MISMATCH, VACUOUS, WHY, study
+from builders.studies.stored import publish_document
 from builders.verdicts import passed
 
 from taylor_verify.cli import main
@@ -18,6 +19,7 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.status import Status
 from taylor_verify.studies.extremes import page as extremes
+from taylor_verify.studies.extremes.study import STUDY
 from taylor_verify.studies.report import publish, write
 
 
@@ -29,14 +31,14 @@ def lines(text: str, *words: str) -> list[str]:
 
 @pytest.fixture
 def page(tmp_path: Path) -> str:
-    extremes.write(tmp_path, study())
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
     return (tmp_path / extremes.PAGE).read_text(encoding="utf-8")
 
 
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     """Verdicts without their seconds, expectations, titles and what made them are the same again."""
-    extremes.write(tmp_path, study())
-    found = extremes.load(tmp_path)
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
+    found = extremes.EXTREMES.load(tmp_path)
     stored = [
         replace(v, seconds=None, provenance={"scene": f"digest of {v.scene}"})
         for v in study().verdicts
@@ -50,10 +52,10 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
 def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> None:
     """A rung that the machine lacks is expected to be nothing, in the file as on the page."""
     absent = passed("extremes/near", "f32", "omega", verdict=Status.UNAVAILABLE)
-    extremes.write(tmp_path, study((absent,), ()))
-    (row,) = store.read_document(tmp_path / extremes.EXTREMES)["verdicts"]
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study((absent,), ()))
+    (row,) = store.read_document(tmp_path / extremes.EXTREMES.name)["verdicts"]
     assert row["expected"] is None
-    found = extremes.load(tmp_path)
+    found = extremes.EXTREMES.load(tmp_path)
     assert found.expected(absent) is None
     assert found.is_met(absent)
 
@@ -61,15 +63,15 @@ def test_a_row_that_was_compared_with_nothing_is_no_mismatch(tmp_path: Path) -> 
 def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
     """A row with its reason in a sentence alone tells it on the page, and is written anew with it."""
     odd = passed("extremes/odd", "f64", "omega", verdict=Status.UNDECIDED)
-    extremes.write(tmp_path, study((odd,), ()))
-    file = tmp_path / extremes.EXTREMES
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study((odd,), ()))
+    file = tmp_path / extremes.EXTREMES.name
     document = store.read_document(file)
     (row,) = document["verdicts"]
     row["because"] = "the truth is wider than the bound"
     del row["reason"]
     file.write_text(json.dumps(document), encoding="utf-8")
-    assert "the truth is wider than the bound" in extremes.pages(tmp_path)[extremes.PAGE]
-    extremes.write(tmp_path, extremes.load(tmp_path))
+    assert "the truth is wider than the bound" in STUDY.pages(tmp_path)[extremes.PAGE]
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, extremes.EXTREMES.load(tmp_path))
     (again,) = store.read_document(file)["verdicts"]
     assert again["reason"]["remarks"][0]["text"] == row["because"] == again["because"]
 
@@ -104,7 +106,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
 def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
     """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
-    extremes.write(tmp_path, study((lucky,), ("a mismatch",)))
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study((lucky,), ("a mismatch",)))
     (_, reason) = lines((tmp_path / extremes.PAGE).read_text(encoding="utf-8"), "`long`")
     assert "| pass" in reason
     assert "**vacuous**" in reason
@@ -114,15 +116,15 @@ def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
     """A run that is left out has its reason; versions, processor and command end the page."""
     assert "`extremes/endless`, mp237: it takes a week" in page
     end = page.rpartition("## ")[2]
-    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "--extremes"):
+    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "extremes"):
         assert part in end
     assert page.splitlines()[0] == MADE_BY
 
 
 def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
-    extremes.write(tmp_path, study())
-    text = (tmp_path / extremes.SHEET).read_text(encoding="utf-8")
+    publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
+    text = (tmp_path / "tables/extremes.csv").read_text(encoding="utf-8")
     found = {(r["scene"], r["quantity"]): r for r in csv.DictReader(text.splitlines())}
     assert set(found) == {(v.scene, v.quantity) for v in ALL}
     assert float(found["extremes/near", "T"]["max"]) == DRIFT.max
@@ -136,7 +138,7 @@ def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
     write(tmp_path, [passed("euler/a", "f64", "omega")], [])
     publish(tmp_path)
     assert not (tmp_path / extremes.PAGE).exists()
-    paths = extremes.write(tmp_path, study())
+    paths = publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
     before = {path: path.read_bytes() for path in paths}
     for path in paths[1:]:
         path.unlink()
@@ -150,12 +152,12 @@ def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
 
 def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
     """A file with something else in it is a ValueError that names the file."""
-    file = tmp_path / extremes.EXTREMES
+    file = tmp_path / extremes.EXTREMES.name
     file.parent.mkdir()
     file.write_text('{"verdicts": [{"scene": "a"}], "versions": {}}', encoding="utf-8")
     fault = r"expected a key solver, got none @ verdicts\[0\] @ .*extremes\.json"
     with pytest.raises(ValueError, match=fault):
-        extremes.pages(tmp_path)
+        STUDY.pages(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -177,12 +179,12 @@ def test_the_command_fails_at_a_mismatch(
         found = passed(scene, "f64", "omega", verdict=verdict)
         return [SimpleNamespace(verdicts=(found,))]
 
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", answered)
-    call = ["publish", "--extremes", "--from", str(tmp_path), "--json"]
+    monkeypatch.setattr("taylor_verify.studies.extremes.measure.judge_all", answered)
+    call = ["publish", "extremes", "--from", str(tmp_path), "--json"]
     assert main(call) == status
     captured = capsys.readouterr()
     assert len(json.loads(captured.out)["written"]) == 3
     assert {scene, "extremes/worst/euler-gaps"} < set(asked)
-    stored = store.read_document(tmp_path / extremes.EXTREMES)
+    stored = store.read_document(tmp_path / extremes.EXTREMES.name)
     assert len(stored["mismatches"]) == status
     assert (f"got {verdict.value} @ {scene} f64 omega" in captured.err) == bool(status)

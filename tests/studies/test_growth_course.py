@@ -155,7 +155,7 @@ def test_one_changed_digit_is_found(tmp_path: Path) -> None:
     for broken in (text.replace("0x5p", "0x7p"), text[: len(text) // 2], "[]", "{}"):
         assert broken != text
         file.write_text(broken, encoding="utf-8")
-        with pytest.raises(ValueError, match="expected a checkpoint of `publish --growth`"):
+        with pytest.raises(ValueError, match="expected a checkpoint of `publish growth`"):
             checkpoint.read(file, {}, {})
 
 

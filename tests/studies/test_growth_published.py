@@ -17,18 +17,20 @@ from taylor_verify.cli import main
 from taylor_verify.publish.pictures.picture import plotting
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
 from taylor_verify.records.json_text import complete, converted
+from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.growth import page as pages
 from taylor_verify.studies.growth import picture as diagram
 from taylor_verify.studies.growth import published
-from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity
+from taylor_verify.studies.growth.document import Ensemble, GrowthOfQuantity, GrowthStudy
 from taylor_verify.studies.growth.errors import PHASE
 from taylor_verify.studies.growth.experiment import Experiment, Found, experiment
 from taylor_verify.studies.growth.fit import BIAS, Law, growth
 from taylor_verify.studies.growth.published import Entry
 from taylor_verify.studies.growth.question import Question
+from taylor_verify.studies.growth.study import STUDY
 
 SHORT = 10**3.5
 
@@ -136,21 +138,21 @@ def test_publish_writes_data_picture_and_page(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The page is made of the stored data alone, and no checkpoint is left behind."""
-    call = ["publish", "--growth", "--periods", "3163", "--from", str(tmp_path), "--json"]
+    call = ["publish", "growth", "--periods", "3163", "--from", str(tmp_path), "--json"]
     assert main(call) == 0
     written = [Path(name) for name in json.loads(capsys.readouterr().out)["written"]]
     assert {file.name for file in written} >= {"growth.json", "growth.md"}
     assert all(file.stat().st_size for file in written)
     assert not list((tmp_path / "local" / "growth").glob("*.json"))
     page = (tmp_path / pages.PAGE).read_text(encoding="utf-8")
-    sheet = (tmp_path / pages.SHEET).read_text(encoding="utf-8")
-    assert pages.pages(tmp_path) == {pages.PAGE: page, pages.SHEET: sheet}
+    sheet = (tmp_path / "tables/growth.csv").read_text(encoding="utf-8")
+    assert STUDY.pages(tmp_path) == {pages.PAGE: page, "tables/growth.csv": sheet}
     assert "euler/about-max-axis on f64, taylor" in page
     assert "](../figures/" in page
     # The long ensemble stands beside the others, and leaves them as they are.
-    before = (tmp_path / pages.GROWTH).read_bytes()
+    before = (tmp_path / pages.GROWTH.name).read_bytes()
     assert main([*call, "--long"]) == 0
-    assert (tmp_path / pages.GROWTH).read_bytes() == before
+    assert (tmp_path / pages.GROWTH.name).read_bytes() == before
     assert "euler/generic on f64, taylor" in (tmp_path / pages.PAGE).read_text(encoding="utf-8")
 
 
@@ -160,9 +162,9 @@ def test_a_run_that_was_stopped_goes_on(
 ) -> None:
     """Stopped between two pieces, the same command ends with the same numbers as one that was not."""
     monkeypatch.setattr("taylor_verify.studies.growth.question.PIECE_PERIODS", 500)
-    call = ["publish", "--growth", "--periods", "3163", "--from"]
+    call = ["publish", "growth", "--periods", "3163", "--from"]
     assert main([*call, str(tmp_path / "whole")]) == 0
-    say = "taylor_verify.cli.growth_publish._Progress.__call__"
+    say = "taylor_verify.studies.growth.study.Pieces.__call__"
 
     def stopped(_progress: object, _label: str, done: int, _of: int) -> None:
         if done == 5:
@@ -176,7 +178,7 @@ def test_a_run_that_was_stopped_goes_on(
     assert json.loads(file.read_text(encoding="utf-8"))["pieces"] == 5
     assert main([*call, str(tmp_path / "left")]) == 0
     runs = [
-        json.loads((tmp_path / place / pages.GROWTH).read_text(encoding="utf-8"))["runs"]
+        json.loads((tmp_path / place / pages.GROWTH.name).read_text(encoding="utf-8"))["runs"]
         for place in ("whole", "left")
     ]
     assert runs[0] == runs[1]
@@ -185,10 +187,10 @@ def test_a_run_that_was_stopped_goes_on(
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
-        (["--growth", "--periods", "many"], "expected a number of periods, got 'many'"),
-        (["--periods", "1e4"], "expected --periods and --long with --growth"),
-        (["--long"], "expected --periods and --long with --growth"),
+        (["growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
+        (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
+        (["--periods", "1e4"], "expected --periods with `publish growth`, got it without"),
+        (["prices", "--long"], "expected --long with `publish growth`, got it without"),
     ],
 )
 def test_a_wrong_call_is_refused(
@@ -207,7 +209,7 @@ def test_somebody_elses_checkpoint_is_refused(
     file = tmp_path / "local" / "growth" / ONE.file
     file.parent.mkdir(parents=True)
     file.write_text("{}", encoding="utf-8")
-    assert main(["publish", "--growth", "--periods", "3163", "--from", str(tmp_path)]) == 2
+    assert main(["publish", "growth", "--periods", "3163", "--from", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert "expected a checkpoint" in error
     assert str(file) in error
@@ -235,12 +237,12 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
 
 def test_a_file_of_something_else_is_named(tmp_path: Path) -> None:
     """Stored ensembles without their runs are a ValueError that names file and key."""
-    file = tmp_path / pages.GROWTH
+    file = tmp_path / pages.GROWTH.name
     file.parent.mkdir()
     file.write_text('{"runs": [{"scene": "euler/generic"}], "left_out": []}', encoding="utf-8")
     said = r"expected a key digest, got none @ runs\[0\] @ .*growth\.json"
     with pytest.raises(ValueError, match=said):
-        pages.pages(tmp_path)
+        STUDY.pages(tmp_path)
 
 
 # The picture
@@ -260,6 +262,10 @@ def run(scene: str, solver: str = "taylor", factor: float = 1.0) -> Ensemble:
     return Ensemble(scene, "", solver, "f64", counts[-1], 8, 1, 6.0, 0, counts, steps, quantities)
 
 
+def study_of(runs: list[Ensemble]) -> GrowthStudy:
+    return GrowthStudy(tuple(runs), (), Provenance())
+
+
 RUNS = [
     run("euler/about-max-axis"),
     run("euler/about-max-axis", "taylor?tol=1e-12", 1e3),
@@ -272,8 +278,7 @@ RUNS = [
 
 def test_each_ensemble_is_a_line_of_its_own() -> None:
     """Left and right, every ensemble is drawn once with its numbers; what is no number is left out."""
-    picture = pages.picture_of(RUNS)
-    assert picture is not None
+    (picture,) = pages.pictures(study_of(RUNS))
     with plotting():
         left, right = picture.figure().axes
     for axes, quantity in ((left, 0), (right, 1)):
@@ -286,8 +291,7 @@ def test_each_ensemble_is_a_line_of_its_own() -> None:
 
 def test_thin_lines_rise_as_they_are_named() -> None:
     """From the first point of a line on, each is a pure power of time, and stays in its panel."""
-    picture = pages.picture_of(RUNS)
-    assert picture is not None
+    (picture,) = pages.pictures(study_of(RUNS))
     with plotting():
         axes = picture.figure().axes
     for panel, powers in zip(axes, ({0.5, 1.0}, {1.5, 2.0}), strict=True):
@@ -303,8 +307,7 @@ def test_thin_lines_rise_as_they_are_named() -> None:
 
 def test_nothing_of_the_picture_is_cut_off() -> None:
     """Names of scenes that are long, and six of them, are on the page."""
-    picture = pages.picture_of(RUNS)
-    assert picture is not None
+    (picture,) = pages.pictures(study_of(RUNS))
     with plotting():
         figure = picture.figure()
         everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
@@ -327,4 +330,4 @@ def test_scenes_with_one_ending_keep_their_whole_names() -> None:
 
 def test_without_errors_there_is_no_picture() -> None:
     """Ensembles that are exact have nothing that a logarithmic axis can show."""
-    assert pages.picture_of([run("euler/rest", factor=0)]) is None
+    assert pages.pictures(study_of([run("euler/rest", factor=0)])) == []

@@ -22,6 +22,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.worst import measure as hunt
 from taylor_verify.studies.worst import page as worst
 from taylor_verify.studies.worst.measure import FAMILIES, Catch, Family
+from taylor_verify.studies.worst.study import STUDY
 
 KEPT = library.names(library.WORST)
 EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
@@ -146,26 +147,26 @@ def test_scene_file_says_why_it_is_there() -> None:
 def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
     rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60.0, 3)
-    worst.write(tmp_path, rows)
-    page = worst.pages(tmp_path)[worst.PAGE]
+    worst.WORST.write(tmp_path, rows)
+    page = STUDY.pages(tmp_path)[worst.PAGE]
     assert page.index("euler-b") < page.index("euler-a")
     assert "--seconds 60 --seed 3" in page
-    file = tmp_path / worst.WORST
+    file = tmp_path / worst.WORST.name
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["families"][0]["ratio"] = 7.75
     file.write_text(json.dumps(stored), encoding="utf-8")
-    changed = worst.pages(tmp_path)[worst.PAGE]
+    changed = STUDY.pages(tmp_path)[worst.PAGE]
     assert changed.index("euler-a") < changed.index("euler-b")
     assert "7.75" in changed or "7.8" in changed
 
 
 def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
     """A file without families is a fault that names the file."""
-    file = tmp_path / worst.WORST
+    file = tmp_path / worst.WORST.name
     file.parent.mkdir()
     file.write_text("{}", encoding="utf-8")
     with pytest.raises(ValueError, match=r"worst\.json"):
-        worst.pages(tmp_path)
+        STUDY.pages(tmp_path)
 
 
 def test_old_scenes_make_room(tmp_path: Path) -> None:
@@ -178,6 +179,6 @@ def test_old_scenes_make_room(tmp_path: Path) -> None:
 
 
 def test_no_time_is_no_hunt(capsys: pytest.CaptureFixture[str]) -> None:
-    """`publish --worst --seconds 0` is a wrong call and changes nothing."""
-    assert main(["publish", "--worst", "--seconds", "0"]) == 2
+    """`publish worst --seconds 0` is a wrong call and changes nothing."""
+    assert main(["publish", "worst", "--seconds", "0"]) == 2
     assert "expected a time in seconds above 0, got 0 @ --seconds" in capsys.readouterr().err

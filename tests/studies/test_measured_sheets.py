@@ -6,7 +6,6 @@ import csv
 import shutil
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
 from builders import reports
@@ -14,8 +13,9 @@ from builders.studies.prices import study as prices_study
 
 from taylor_verify.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.studies import contents, measured
+from taylor_verify.studies import contents, registry
 from taylor_verify.studies.accuracy import page as tables
+from taylor_verify.studies.claims import page as claims
 from taylor_verify.studies.growth import page as growth
 from taylor_verify.studies.prices import page as prices
 from taylor_verify.studies.reach import page as reach
@@ -27,7 +27,7 @@ def measured_report() -> Path:
     """A report with a document of every measurement, all of them short."""
     place = reports.folder()
     shutil.copytree(reports.small(), place, dirs_exist_ok=True)
-    prices.write(place, prices_study())
+    prices.PRICES.write(place, prices_study())
     return place
 
 
@@ -45,8 +45,8 @@ def number(cell: str) -> float | None:
 
 def test_growth_has_a_row_for_every_exponent() -> None:
     """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
-    runs = growth.load(measured_report()).runs
-    found = read(measured.growth(runs))
+    runs = growth.GROWTH.load(measured_report()).runs
+    found = read(growth.sheet(runs))
     asked = [(run, row) for run in runs for row in run.quantities]
     assert len(found) == len(asked)
     for cells, (run, row) in zip(found, asked, strict=True):
@@ -61,8 +61,8 @@ def test_growth_has_a_row_for_every_exponent() -> None:
 
 def test_reach_has_a_row_for_every_number_of_periods() -> None:
     """An error that is missing says `lost`; a run that was not made has one row with its reason."""
-    rows = reach.load(measured_report()).rows
-    found = read(measured.reach(rows))
+    stored = reach.REACH.load(measured_report())
+    rows, found = stored.rows, read(reach.sheet(stored))
     assert len(found) == sum(len(row.periods) if row.errors else 1 for row in rows)
     made = [cells for cells in found if cells["periods"]]
     assert {cells["lost"] for cells in made} == {"yes", "no"}
@@ -75,8 +75,8 @@ def test_reach_has_a_row_for_every_number_of_periods() -> None:
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
     """With both intervals; the price at equal error stands in the rows of f64 alone."""
-    study = prices.load(measured_report())
-    found = read(measured.prices(study))
+    study = prices.PRICES.load(measured_report())
+    found = read(prices.sheet(study))
     assert len(found) == len(study.rows)
     for cells, row in zip(found, study.rows, strict=True):
         ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
@@ -89,8 +89,8 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
 
 def test_worst_has_a_row_for_every_family() -> None:
     """With its scene and its ratio."""
-    study = worst.load(measured_report())
-    found = read(measured.worst(study))
+    study = worst.WORST.load(measured_report())
+    found = read(worst.sheet(study))
     assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [
         (row.name, row.ratio, row.scene) for row in study.families
     ]
@@ -110,19 +110,20 @@ def test_claims_have_a_row_for_every_entry() -> None:
         bound=1e-35,
         because="it is",
     )
-    (found,) = read(measured.claims(ClaimsStudy(Provenance(), {}, (row,))))
+    (found,) = read(claims.sheet(ClaimsStudy(Provenance(), {}, (row,))))
     assert (found["id"], found["statement"]) == (row.id, "a, b")
     assert (found["verdict"], found["remark"]) == ("false as transcribed", "")
     assert (found["residual"], found["residual_transcribed"]) == ("0.0", "4.3")
     assert found["mutations"] == "one; two"
 
 
-@pytest.mark.parametrize("module", [growth, prices, reach, worst])
-def test_what_is_remade_is_page_and_sheet(module: Any) -> None:
+@pytest.mark.parametrize("name", ["growth", "prices", "reach", "worst"])
+def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
-    found = module.pages(measured_report())
-    assert set(found) == {module.PAGE, module.SHEET}
-    end = "".join(found[module.PAGE].split("\n## ")[-2:])
+    (study,) = registry.find([name])
+    found = study.pages(measured_report())
+    assert set(found) == {study.page, f"tables/{name}.csv"}
+    end = "".join(found[study.page].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end
     assert "`taylor-verify publish" in end
 

@@ -313,9 +313,9 @@ def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
 def test_the_command_writes_one_file_a_scene(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`publish --portraits` tells each scene as it ends; in the file is all that `explain` says."""
+    """`publish portraits` tells each scene as it ends; in the file is all that `explain` says."""
     monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: ("euler/rest",))
-    assert main(["publish", "--portraits", "--from", str(tmp_path)]) == 0
+    assert main(["publish", "portraits", "--from", str(tmp_path)]) == 0
     out, err = capfd.readouterr()
     assert "1/1 euler/rest" in err
     assert out.split() == [str(tmp_path / portraits.FOLDER / "euler-rest.json")]

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from builders.studies.prices import named, study
+from builders.studies.stored import publish_document
 
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
@@ -19,6 +20,7 @@ from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices import measure as prices
 from taylor_verify.studies.prices import page as page
 from taylor_verify.studies.prices.document import PricesStudy
+from taylor_verify.studies.prices.study import STUDY
 from taylor_verify.studies.prices.variants import variants
 
 F64 = rung("f64")
@@ -100,16 +102,16 @@ def test_equal_error_is_read_between_two_tolerances() -> None:
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
     """Every row is on it, it is the same when made again, and without a measurement there is none."""
-    assert page.pages(tmp_path) == {}
-    stored, *drawn, made, flat = page.write(tmp_path, measured)
+    assert STUDY.pages(tmp_path) == {}
+    stored, *drawn, made, flat = publish_document(tmp_path, STUDY, page.PRICES, measured)
     assert {file.suffix for file in drawn} == {".svg", ".pdf"}
     text = made.read_text(encoding="utf-8")
     sheet = flat.read_text(encoding="utf-8")
-    assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
-    assert page.load(tmp_path) == measured
+    assert STUDY.pages(tmp_path) == {page.PAGE: text, "tables/prices.csv": sheet}
+    assert page.PRICES.load(tmp_path) == measured
     for row in measured.rows:
         assert f"| {row.variant} " in text
     assert "attitude and centre" in text
     stored.write_text('{"rows": 3}', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
-        page.pages(tmp_path)
+        STUDY.pages(tmp_path)

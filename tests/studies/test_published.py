@@ -37,37 +37,31 @@ from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.quantities import LADDER
 from taylor_verify.records.replacement import first_line
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.studies import drawings, measured, report
 from taylor_verify.studies import paper as paper
+from taylor_verify.studies import registry, report
 from taylor_verify.studies.accuracy.attainable import attainable
-from taylor_verify.studies.bulk import FILES
+from taylor_verify.studies.bulk import patterns
 from taylor_verify.studies.claims import page as claims_page
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls import stored as sights
-from taylor_verify.studies.enclosure import page as widths_page
-from taylor_verify.studies.enclosure.document import EnclosureStudy
+from taylor_verify.studies.controls.stored import CONTROLS
 from taylor_verify.studies.enclosure.measure import SCENES, widths
+from taylor_verify.studies.enclosure.study import ENCLOSURE
 from taylor_verify.studies.extremes import page as extremes
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth import page as growth
-from taylor_verify.studies.growth.document import GrowthStudy
-from taylor_verify.studies.prices import page as prices
-from taylor_verify.studies.prices.document import PricesStudy
-from taylor_verify.studies.reach import page as reach
-from taylor_verify.studies.reach.document import ReachStudy
+from taylor_verify.studies.prices.page import PRICES
+from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.site.builder import build
+from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.tradeoff import stored as trades
-from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
-from taylor_verify.studies.worst import page as worst
-from taylor_verify.studies.worst.document import WorstStudy
+from taylor_verify.studies.worst.page import WORST
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "reports"
@@ -86,7 +80,7 @@ def committed() -> tuple[str, ...]:
 def is_bulk(path: str) -> bool:
     return any(
         fnmatch(f"reports/{path}", f"reports/{pattern}{'*' if pattern.endswith('/') else ''}")
-        for pattern in FILES
+        for pattern in patterns()
     )
 
 
@@ -124,7 +118,7 @@ def test_a_repository_one_likes_to_receive() -> None:
 def test_git_leaves_out_what_is_made() -> None:
     """.gitignore lists the bulk of the reports, and .gitattributes calls the rest generated."""
     ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
-    assert {f"reports/{pattern}" for pattern in FILES} <= set(ignored)
+    assert {f"reports/{pattern}" for pattern in patterns()} <= set(ignored)
     attributes = (ROOT / ".gitattributes").read_text(encoding="utf-8").splitlines()
     assert "reports/** linguist-generated" in attributes
 
@@ -151,7 +145,7 @@ def dead_links(page: Path) -> Iterator[str]:
 
 
 def test_no_other_test_reads_what_is_published() -> None:
-    """Tests of code make their data; scripts of reports/upstream and pages of the site stay where they lie."""
+    """Tests of code make their data; scripts of reports/upstream and the built site lie there."""
     reading = {
         file.name
         for file in Path(__file__).parents[1].rglob("*.py")
@@ -175,9 +169,9 @@ def test_pages_and_tables_are_made_of_the_published_data(clone: Path) -> None:
 
 def test_the_ledger_is_made_of_the_published_rows() -> None:
     """claims.md and its sheet are those of data/claims.json, entry by entry as the ledger has them."""
-    stored = claims_page.load(REPORTS)
+    stored = claims_page.CLAIMS.load(REPORTS)
     assert text_of(claims_page.PAGE) == claims_page.page(stored)
-    assert text_of(claims_page.SHEET) == measured.claims(stored)
+    assert text_of(claims_page.SHEET) == claims_page.sheet(stored)
     assert stored.cited == dict(CITED)
     assert text_of(claims_page.PAGE).startswith(MADE_BY)
     told = {row.id: row.statement for row in stored.claims}
@@ -188,7 +182,7 @@ def test_the_ledger_is_made_of_the_published_rows() -> None:
 def test_the_published_ledger_can_be_remade() -> None:
     """The whole ledger, run anew, makes the page that is published."""
     rows = tuple(finding.row() for finding in examined(claims()))
-    stored = replace(claims_page.load(REPORTS), claims=rows)
+    stored = replace(claims_page.CLAIMS.load(REPORTS), claims=rows)
     assert claims_page.page(stored) == text_of(claims_page.PAGE)
 
 
@@ -201,23 +195,17 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "option", "kind"),
+    "stored",
     [
-        (growth.GROWTH, "growth", GrowthStudy),
-        (growth.LONG, "growth", GrowthStudy),
-        (reach.REACH, "reach", ReachStudy),
-        (prices.PRICES, "prices", PricesStudy),
-        (trades.NUMBERS, "tradeoff", TradeNumbers),
-        (trades.TIMINGS, "tradeoff", TradeTimings),
-        (worst.WORST, "worst", WorstStudy),
-        (widths_page.STORED, "enclosure", EnclosureStudy),
+        *(growth.GROWTH, growth.LONG, REACH, PRICES, WORST, ENCLOSURE, CONTROLS),
+        *(extremes.EXTREMES, claims_page.CLAIMS, trades.NUMBERS, trades.TIMINGS),
     ],
+    ids=lambda stored: stored.name,
 )
-def test_a_published_study_is_written_as_it_was(name: str, option: str, kind: type[Any]) -> None:
+def test_a_published_study_is_written_as_it_was(stored: Stored[Any], tmp_path: Path) -> None:
     """Keys, their order, lines and every digit are those of the committed file."""
-    made_by = {"made_by": f"taylor-verify publish --{option}; do not edit"}
-    text = store.laid_out({**made_by, **complete(read(REPORTS / name, kind))})
-    assert text == text_of(name)
+    (file,) = stored.write(tmp_path, stored.load(REPORTS))
+    assert file.read_text(encoding="utf-8") == text_of(stored.name)
 
 
 def test_every_scene_is_published_as_it_is_now() -> None:
@@ -229,8 +217,8 @@ def test_every_scene_is_published_as_it_is_now() -> None:
 
 def test_every_extreme_is_published_as_it_is_now() -> None:
     """Each extreme that is run is there with the digest of its text."""
-    published = {v.scene: v.provenance["scene"] for v in extremes.load(REPORTS).verdicts}
-    left_out = {row.scene for row in extremes.load(REPORTS).left_out}
+    published = {v.scene: v.provenance["scene"] for v in extremes.EXTREMES.load(REPORTS).verdicts}
+    left_out = {row.scene for row in extremes.EXTREMES.load(REPORTS).left_out}
     assert published == {name: load(name).digest for name in published}
     assert set(names(EXTREMES)) - left_out <= set(published)
 
@@ -256,7 +244,7 @@ def test_pictures_are_drawn_of_the_published_data(clone: Path, tmp_path: Path) -
         for one in gallery.shown(gallery.Stored(reports.for_gallery()))
         if not one.picture.stem.endswith(("-errors", "-polhode", "controls-shifts"))
     ]
-    pictures = [*drawings.pictures(clone), *motions]
+    pictures = [*registry.pictures(clone), *motions]
     assert len(pictures) > 25
     for file in save(pictures, tmp_path / "drawn", ("svg",)):
         assert file.read_bytes() == (REPORTS / "figures" / file.name).read_bytes(), file.name
@@ -266,7 +254,7 @@ def test_every_published_picture_can_be_drawn_again() -> None:
     """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
     folder = reports.for_gallery()
     gallery_stems = {one.picture.stem for one in gallery.shown(gallery.Stored(folder))}
-    drawn = gallery_stems | {picture.stem for picture in drawings.pictures(REPORTS)}
+    drawn = gallery_stems | {picture.stem for picture in registry.pictures(REPORTS)}
     assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
 
 
@@ -289,7 +277,7 @@ def test_the_readme_has_the_short_table_of_the_controls() -> None:
     """Between its marks the README has what the published rows give, to the letter."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     shown = readme[readme.index(controls.BEGIN) : readme.index(controls.END) + len(controls.END)]
-    assert shown == controls.short(sights.load(REPORTS))
+    assert shown == controls.short(CONTROLS.load(REPORTS))
 
 
 @pytest.mark.parametrize("row", results(), ids=lambda row: " ".join(row[:2]))
@@ -359,7 +347,7 @@ def test_published_rows_are_no_departures_from_themselves() -> None:
 
 def test_published_widths_are_above_the_true_errors() -> None:
     """No true error of an enclosure is larger than the width that is proven."""
-    study = widths_page.load(REPORTS)
+    study = ENCLOSURE.load(REPORTS)
     assert {row.scene for row in study.rows} == set(SCENES)
     assert all(row.error <= row.width for row in study.rows)
 
@@ -370,7 +358,7 @@ def test_published_widths_are_remade() -> None:
 
     The steps that lead to them do not know yet where the run ends.
     """
-    study = widths_page.load(REPORTS)
+    study = ENCLOSURE.load(REPORTS)
     for name in SCENES:
         rows = [row for row in study.rows if row.scene == name][:40]
         times = [Fraction(row.t) for row in rows]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from builders.studies.reach import AXIS, row, study
+from builders.studies.stored import publish_document
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
@@ -28,6 +29,7 @@ from taylor_verify.studies.reach import measure as reach
 from taylor_verify.studies.reach import page as page
 from taylor_verify.studies.reach import picture as digits_map
 from taylor_verify.studies.reach.document import ReachRow, ReachStudy
+from taylor_verify.studies.reach.study import STUDY
 
 # The page
 
@@ -66,13 +68,13 @@ def test_a_reach_is_of_all_that_is_easier(table: list[list[float]], digits: int)
 
 def test_page_is_made_of_what_was_stored(tmp_path: Path) -> None:
     """Made again it is the same; each answer is in its cell; without a measurement there is none."""
-    assert page.pages(tmp_path) == {}
-    paths = page.write(tmp_path, study())
+    assert STUDY.pages(tmp_path) == {}
+    paths = publish_document(tmp_path, STUDY, page.REACH, study())
     assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
     assert all(path.exists() for path in paths)
     text = (tmp_path / page.PAGE).read_text(encoding="utf-8")
-    sheet = (tmp_path / page.SHEET).read_text(encoding="utf-8")
-    assert page.pages(tmp_path) == {page.PAGE: text, page.SHEET: sheet}
+    sheet = (tmp_path / "tables/reach.csv").read_text(encoding="utf-8")
+    assert STUDY.pages(tmp_path) == {page.PAGE: text, "tables/reach.csv": sheet}
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()]
     assert ["f32", "1", "1e-2", "1e-1", NOTHING, "1e-2", "1e-1", NOTHING] in cells
     assert ["f64", "100", "1e-3 →", "1e-3 →", "1e-1", "1e-3 →", "1e-3 →", "1e-1"] in cells
@@ -83,35 +85,37 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path) -> None:
 
 def test_stored_data_that_are_none_are_refused(tmp_path: Path) -> None:
     """A file with something else in it is named, and no page is made."""
-    place = tmp_path / page.REACH
+    place = tmp_path / page.REACH.name
     place.parent.mkdir()
     place.write_text('{"families": 3}', encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a list, got 3 @ families @ .*reach\.json"):
-        page.pages(tmp_path)
+        STUDY.pages(tmp_path)
 
 
 def test_families_without_their_rows_are_refused(tmp_path: Path) -> None:
     """A typed document that lacks what its page needs is a ValueError with the file."""
-    replace_files(tmp_path, {page.REACH: store.laid_out(complete(replace(study(), rows=())))})
-    with pytest.raises(ValueError, match=r"expected a measured reach, .* @ .*reach\.json"):
-        page.pages(tmp_path)
+    replace_files(tmp_path, {page.REACH.name: store.laid_out(complete(replace(study(), rows=())))})
+    with pytest.raises(
+        ValueError, match=r"expected what `publish reach` writes, .* @ .*reach\.json"
+    ):
+        STUDY.pages(tmp_path)
 
 
 def test_the_verb_measures_and_writes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`publish --reach` stores what was measured, tells each member as it ends, and what it wrote."""
+    """`publish reach` stores what was measured, tells each member as it ends, and what it wrote."""
 
     def made(finished: Callable[[str], None]) -> ReachStudy:
         finished("axis d = 1e-1")
         return study()
 
     monkeypatch.setattr(reach, "study", made)
-    assert main(["publish", "--reach", "--from", str(tmp_path), "--json"]) == 0
+    assert main(["publish", "reach", "--from", str(tmp_path), "--json"]) == 0
     out, err = capsys.readouterr()
     assert str(tmp_path / page.PAGE) in json.loads(out)["written"]
     assert "axis d = 1e-1" in err
-    assert page.load(tmp_path) == study()
+    assert page.REACH.load(tmp_path) == study()
 
 
 # The map

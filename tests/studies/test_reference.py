@@ -313,13 +313,13 @@ def test_a_time_without_a_finite_decimal_is_the_decimal_that_is_printed(tmp_path
 def test_the_verb_writes_the_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`publish --reference` names each scene on stderr, prints what it wrote, and drops old scenes."""
+    """`publish reference` names each scene on stderr, prints what it wrote, and drops old scenes."""
     scenes = ("euler/rest", "euler/generic")
     reference_files.write(tmp_path, [reference(load("euler/generic")) | {"scene": "euler/gone"}])
     mine = tmp_path / "reference" / "mine.json"
     mine.write_text("{}\n", encoding="utf-8")
     monkeypatch.setattr("taylor_verify.scenes.library.names", lambda: scenes)
-    assert main(["publish", "--reference", "--from", str(tmp_path), "--json"]) == 0
+    assert main(["publish", "reference", "--from", str(tmp_path), "--json"]) == 0
     out, err = capsys.readouterr()
     assert all(f"/2 {scene}\n" in err for scene in scenes)
     folder = tmp_path / "reference"

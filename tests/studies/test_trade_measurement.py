@@ -271,7 +271,7 @@ def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
 def test_the_verb_writes_data_and_page(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """`publish --tradeoff` measures and writes; plain `publish` makes the page again from the data."""
+    """`publish tradeoff` measures and writes; plain `publish` makes the page again from the data."""
     few = (real_setting("taylor", _taylor()[1]),)  # type: ignore[arg-type]
     whole = measurement.measurement
     monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
@@ -281,7 +281,7 @@ def test_the_verb_writes_data_and_page(
         "measurement",
         lambda with_outside, finished: whole(["euler/generic"], 1, 1, with_outside, 1, finished),
     )
-    assert main(["publish", "--tradeoff", "--from", str(tmp_path), "--json"]) == 0
+    assert main(["publish", "tradeoff", "--from", str(tmp_path), "--json"]) == 0
     written = json.loads(capsys.readouterr().out)["written"]
     pictures = {name for name in written if Path(name).parent.name == "figures"}
     assert {Path(name).suffix for name in pictures} == {".svg", ".pdf"}

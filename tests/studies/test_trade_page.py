@@ -14,14 +14,15 @@ from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, p
 
 from taylor_verify.publish.cells import NOTHING
 from taylor_verify.publish.pictures.wording import floors_of
-from taylor_verify.studies.report import publish_tradeoff
 from taylor_verify.studies.tradeoff.page import front, page
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
+from taylor_verify.studies.tradeoff.study import STUDY
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    publish_tradeoff(tmp_path, NUMBERS_MADE, TIMES_MADE)
+    write(tmp_path, NUMBERS_MADE, TIMES_MADE)
+    STUDY.publish(tmp_path)
     return tmp_path
 
 
@@ -41,10 +42,10 @@ def line(text: str, *words: str) -> list[str]:
 
 def test_no_time_stands_with_the_numbers(folder: Path) -> None:
     """The file that can be compared between machines has no seconds and no machine in it."""
-    numbers = (folder / NUMBERS).read_text(encoding="utf-8")
+    numbers = (folder / NUMBERS.name).read_text(encoding="utf-8")
     assert "seconds" not in numbers
     assert "chip" not in numbers
-    assert "A chip" in (folder / TIMINGS).read_text(encoding="utf-8")
+    assert "A chip" in (folder / TIMINGS.name).read_text(encoding="utf-8")
 
 
 def test_what_was_stored_is_read_again(folder: Path) -> None:
@@ -90,7 +91,7 @@ def test_what_rounding_alone_leaves_stands_beside_it(
     """A line of digits on each rung where the measurement has them, none where it does not."""
     write(tmp_path, replace(NUMBERS_MADE, scenes=(replace(SCENE, attainable=floors),)), TIMES_MADE)
     if not floors:
-        without_key(tmp_path / NUMBERS, "attainable")
+        without_key(tmp_path / NUMBERS.name, "attainable")
     found = load(tmp_path)
     assert found is not None
     table = section(page(found, tmp_path), "What a wider number costs")
@@ -161,7 +162,8 @@ def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
     """The page says so, and shows no brackets."""
     method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
     bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
-    publish_tradeoff(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
+    write(tmp_path, NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
+    STUDY.publish(tmp_path)
     text = text_of(tmp_path)
     assert "No interval is given" in text
     assert "**12.0** @ 1e-09" in text
@@ -190,6 +192,6 @@ def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:
 
 def test_a_file_of_something_else_is_told(folder: Path) -> None:
     """With the file."""
-    (folder / NUMBERS).write_text("{}", encoding="utf-8")
+    (folder / NUMBERS.name).write_text("{}", encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
         load(folder)

@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Finding, examine
+from taylor_verify.claims.document import ClaimRow
 from taylor_verify.claims.numbers import in_order
 
 _FAMILIES: Final = (
@@ -77,3 +78,12 @@ def examined(
         finished(finding)
         found.append(finding)
     return found
+
+
+def missed(rows: Iterable[ClaimRow]) -> list[str]:
+    """Return a sentence for each entry whose checks no longer give the verdict of the ledger."""
+    return [
+        f"expected the verdict {row.recorded.value!r}, got {row.verdict.value!r} @ {row.id}"
+        for row in rows
+        if not row.is_as_recorded
+    ]

@@ -31,10 +31,14 @@ _NEGATIVE_TIME = re.compile(r"-[\d.]")
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
     """The options, ``act`` the function of the verb; SystemExit for --help and a wrong call."""
-    parser = _parser()
+    parser = _parser("publish" in arguments)
     options, left = parser.parse_known_args(_with_times_attached(arguments))
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
+    studies = getattr(options, "studies", None)
+    if studies is not None:
+        # An option that is none is named by the verb, beside what there is: `--growth` was one.
+        options.studies, left = [*studies, *left], []
     if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
         parser.error(f"unrecognized arguments: {' '.join(left)}")
     if scenes is not None:
@@ -80,7 +84,7 @@ class _Parser(argparse.ArgumentParser):
         super().exit(status, message and escaped(message))
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(is_publishing: bool) -> argparse.ArgumentParser:
     parser = _Parser(
         prog="taylor-verify",
         description="The reference that rigid-body and ideal-fluid simulations are measured "
@@ -101,7 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_explain(found)
     _add_tradeoff(found)
     _add_claims(found)
-    _add_publish(found)
+    _add_publish(found, is_publishing)
     return parser
 
 
@@ -297,7 +301,7 @@ def _add_claims(found: Any) -> None:
     )
 
 
-def _add_publish(found: Any) -> None:
-    what = "rebuild the tables from verdicts and records"
-    verb = _verb(found, "publish", what, "publish --from reports/local", publishing.publish)
-    publishing.add_options(verb)
+def _add_publish(found: Any, is_publishing: bool) -> None:
+    what = "measure and write what is published, or make its pages of what is stored"
+    verb = _verb(found, "publish", what, "publish growth --periods 1e4", publishing.publish)
+    publishing.add_options(verb, is_publishing)

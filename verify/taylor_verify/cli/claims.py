@@ -1,14 +1,13 @@
-"""The verb `claims`, and the page that `publish --claims` makes of it."""
+"""The verb `claims`."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from taylor_verify.cli.answer import FAIL, PASS, Answer, WrongCall, files_written
+from taylor_verify.cli.answer import FAIL, PASS, Answer, WrongCall
 
 if TYPE_CHECKING:
     from taylor_verify.claims.claim import Claim
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
 def claims(options: argparse.Namespace) -> Answer:
     """The ledger, or some of its entries."""
-    from taylor_verify.claims.ledger import UnknownClaim, find
+    from taylor_verify.claims.ledger import UnknownClaim, find, missed
     from taylor_verify.cli.claims_text import claims_text
 
     try:
@@ -25,27 +24,10 @@ def claims(options: argparse.Namespace) -> Answer:
     except UnknownClaim as error:
         raise WrongCall(str(error)) from error
     rows = _examined(asked)
-    missed = _missed(rows)
+    faults = missed(rows)
     text = partial(claims_text, rows, in_full=bool(options.ids))
     document = [row.document() for row in rows]
-    return Answer(FAIL if missed else PASS, document, text, missed)
-
-
-def publish_claims(folder: Path) -> Answer:
-    """The page of the whole ledger; one whose entries have left their verdicts is not written."""
-    from taylor_verify.claims.document import ClaimsStudy
-    from taylor_verify.claims.ledger import claims as ledger
-    from taylor_verify.claims.numbers import CITED
-    from taylor_verify.judge.provenance import command, processor, versions
-    from taylor_verify.records.provenance import Provenance
-    from taylor_verify.studies.claims.page import write
-
-    rows = _examined(ledger())
-    missed = _missed(rows)
-    if missed:
-        return Answer(FAIL, {"written": []}, lambda: "", missed)
-    made_by = Provenance(versions(), processor(), command())
-    return files_written(write(folder, ClaimsStudy(made_by, dict(CITED), tuple(rows))))
+    return Answer(FAIL if faults else PASS, document, text, faults)
 
 
 def _examined(asked: Sequence[Claim]) -> list[ClaimRow]:
@@ -54,11 +36,3 @@ def _examined(asked: Sequence[Claim]) -> list[ClaimRow]:
 
     with working(f"claims, {len(asked)} entries"):
         return [finding.row() for finding in examined(asked)]
-
-
-def _missed(rows: Sequence[ClaimRow]) -> list[str]:
-    return [
-        f"expected the verdict {row.recorded.value!r}, got {row.verdict.value!r} @ {row.id}"
-        for row in rows
-        if not row.is_as_recorded
-    ]

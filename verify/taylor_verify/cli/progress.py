@@ -55,18 +55,6 @@ def _say_progress(finished: int, total: int, job: Job | None) -> None:
         say(f"{finished}/{total} {job}")
 
 
-def counting(total: int) -> Callable[[str], None]:
-    """Return a function that names each thing as it ends, with its place among all."""
-    done = 0
-
-    def finished(name: str) -> None:
-        nonlocal done
-        done += 1
-        say(f"{done}/{total} {name}")
-
-    return finished
-
-
 @contextmanager
 def working(what: str) -> Iterator[None]:
     """Show a spinner with the latest news while one long thing is computed, and a bar of its share.

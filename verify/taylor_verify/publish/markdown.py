@@ -20,8 +20,12 @@ class Column:
     to_right: bool = False
 
 
-def table(columns: Sequence[Column], rows: Iterable[Sequence[str]]) -> str:
-    """A table whose source lines up too, but for its last column, which may be long."""
+def table(asked: Sequence[Column | str], rows: Iterable[Sequence[str]]) -> str:
+    """A table whose source lines up too, but for its last column, which may be long.
+
+    A column is given by its heading, a column of numbers by its heading and a colon.
+    """
+    columns = [column if isinstance(column, Column) else _column(column) for column in asked]
     headings = [column.heading for column in columns]
     body = [list(row) for row in rows]
     widths = [max(3, *(len(row[i]) for row in [headings, *body])) for i in range(len(columns))]
@@ -31,6 +35,10 @@ def table(columns: Sequence[Column], rows: Iterable[Sequence[str]]) -> str:
     ]
     rules[-1] = "--:" if columns[-1].to_right else "---"
     return "\n".join(_line(row, columns, widths) for row in [headings, rules, *body])
+
+
+def _column(heading: str) -> Column:
+    return Column(heading.removesuffix(":"), heading.endswith(":"))
 
 
 def _line(row: Sequence[str], columns: Sequence[Column], widths: Sequence[int]) -> str:

@@ -7,7 +7,8 @@ from itertools import groupby
 from typing import Any, Final
 
 from taylor_verify.publish.cells import figure, instant, judged, reason
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
 from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
@@ -17,17 +18,21 @@ from taylor_verify.records.verdict import Verdict, summary
 MADE_BY: Final = "<!-- made by taylor-verify publish; do not edit -->"
 
 
+def whole(title: str, *blocks: str) -> str:
+    """Return a page: its maker, its title, and the blocks that are not empty, one below the other."""
+    return "\n\n".join(filter(None, [f"{MADE_BY}\n# {title}", *blocks])) + "\n"
+
+
 def page(title: str, verdicts: Sequence[Verdict], *parts: str) -> str:
-    """The parts, one below the other, between the maker's name and how to remake them."""
-    blocks = [f"{MADE_BY}\n# {title}", *parts, _remake(verdicts)]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    """Return a page of verdicts, which ends with what made them and how to remake them."""
+    return whole(title, *parts, _remake(verdicts))
 
 
 def counts(verdicts: Iterable[Verdict]) -> str:
     """The number of verdicts of each kind, the largest error over attainable, and what judged them."""
     found = list(verdicts)
     by_status = summary(found)
-    columns = [Column(status, to_right=True) for status in by_status]
+    columns = [f"{status}:" for status in by_status]
     row = [_standing_out(Status(status), count) for status, count in by_status.items()]
     return "\n\n".join(filter(None, [table(columns, [row]), _worst(found), _tolerated(found)]))
 
@@ -98,6 +103,14 @@ def traced(provenance: Mapping[str, Any]) -> str:
     if "processor" not in provenance or "command" not in provenance:
         return told
     return f"{told} Machine: {prose(provenance['processor'])}. By {code(provenance['command'])}."
+
+
+def made_on(provenance: Provenance) -> str:
+    """Return the machine, the packages and the command of a measurement."""
+    packages = ", ".join(f"{name} {found}" for name, found in provenance.versions.items())
+    return (
+        f"Machine: {prose(provenance.processor)}; {packages}. Made by {code(provenance.command)}."
+    )
 
 
 def _remake(verdicts: Sequence[Verdict]) -> str:

@@ -1,4 +1,4 @@
-"""What else lies in a report folder, beside the tables that every run makes: named where it is there."""
+"""What lies in a report folder beside the tables that every run makes, named where it is there."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from taylor_verify.publish.cells import NOTHING
+from taylor_verify.studies.registry import STUDIES
 
 
 @dataclass(frozen=True)
@@ -39,19 +40,10 @@ class Page:
         return [link, f"[csv]({name})" if self.has_sheet else NOTHING, what]
 
 
-_PAGES: Final = (
-    Page("tables/controls.md", "what each gate sees of solvers that were broken on purpose"),
+# Pages that no study makes.
+_BESIDES: Final = (
     Page("tables/traps.md", "a plain heyoka call against the driver of this suite"),
-    Page("tables/tradeoff.md", "speed against accuracy, every solver, measured once"),
-    Page("tables/prices.md", "what each thing costs that a scene may ask for"),
-    Page("tables/reach.md", "how far each precision carries, and where it ends"),
-    Page("tables/growth.md", "how drift and phase grow over decades of time"),
-    Page("tables/extremes.md", "what becomes of the hardest scenes, and what was expected of each"),
-    Page("tables/worst.md", "the worst that a search has found, family by family"),
-    Page("claims.md", "every numbered equation of the two source texts, checked; errata in front"),
-    Page("figures/README.md", "pictures of some motions, and of their errors"),
     Page("upstream/README.md", "what to report to heyoka's authors, each in a few lines that run"),
-    Page("reference/README.md", "exact motions in digits, to test other programs with"),
 )
 
 
@@ -61,4 +53,5 @@ def others(folder: Path, made: Collection[str] = ()) -> list[Page]:
     def is_there(path: str) -> bool:
         return path in made or (folder / path).exists()
 
-    return [replace(page, has_sheet=is_there(page.sheet)) for page in _PAGES if is_there(page.path)]
+    pages = (*(Page(study.page, study.title) for study in STUDIES if study.page), *_BESIDES)
+    return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]

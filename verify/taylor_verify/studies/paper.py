@@ -13,7 +13,7 @@ from taylor_verify.publish.paper import html, latex
 from taylor_verify.publish.paper.parsed import FOLDER, Page
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.records.replacement import first_line, replace_files
-from taylor_verify.studies import drawings, figures
+from taylor_verify.studies import figures, registry
 
 PAPER: Final = f"paper{latex.SUFFIX}"
 _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's equations"
@@ -22,18 +22,10 @@ _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's 
 # thousands of verdicts, with its reason in words, is for searching, and gates.csv is for that.
 PAGES: Final = (
     "tables/README.md",
-    "tables/accuracy.md",
-    "tables/attainable.md",
-    "tables/conserved.md",
-    "tables/growth.md",
-    "tables/reach.md",
-    "tables/tradeoff.md",
-    "tables/prices.md",
-    "tables/extremes.md",
-    "tables/worst.md",
-    "tables/controls.md",
+    *("tables/accuracy.md", "tables/attainable.md", "tables/conserved.md"),
+    # The README of another folder is an index of files, and no page to be read.
+    *(study.page for study in registry.STUDIES if study.page and "README" not in study.page),
     "tables/traps.md",
-    "claims.md",
 )
 
 
@@ -56,7 +48,7 @@ def _drawn(place: Path) -> list[Path]:
     target = place / figures.FOLDER
     there = {file.stem for file in target.glob("*.svg")}
     pictures = (
-        [picture for picture in drawings.pictures(place) if picture.stem in there] if there else []
+        [picture for picture in registry.pictures(place) if picture.stem in there] if there else []
     )
     return save(pictures, target, ("pdf",)) if pictures else []
 

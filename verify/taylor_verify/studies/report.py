@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from taylor_verify.batch.judgements import Judgements
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies import figures
-from taylor_verify.studies.accuracy import attainable, quoted
-from taylor_verify.studies.accuracy import page as tables
-from taylor_verify.studies.accuracy import sheet as sheets
+from taylor_verify.studies.accuracy import page, quoted
 from taylor_verify.studies.accuracy.front import front
 from taylor_verify.studies.contents import others
-from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls import stored as sights
-from taylor_verify.studies.controls.document import ControlsStudy
-from taylor_verify.studies.extremes import page as extremes
-from taylor_verify.studies.growth import page as growth
-from taylor_verify.studies.prices import page as prices
-from taylor_verify.studies.reach import page as reach
-from taylor_verify.studies.tradeoff import page as tradeoff
-from taylor_verify.studies.tradeoff import stored as trades
-from taylor_verify.studies.tradeoff.document import TradeNumbers, TradeTimings
-from taylor_verify.studies.worst import page as worst
+from taylor_verify.studies.registry import STUDIES
+
+if TYPE_CHECKING:
+    from taylor_verify.batch.judgements import Judgements
 
 TABLES = "tables"
 FRONT = "README.md"
@@ -56,31 +46,17 @@ def publish(folder: Path | str) -> list[Path]:
     """
     place = Path(folder)
     verdicts = load(place)
-    measured = (
-        *(_controls(place), tradeoff.pages(place), prices.pages(place)),
-        *(
-            growth.pages(place),
-            worst.pages(place),
-            reach.pages(place),
-            extremes.pages(place),
-        ),
-    )
-    texts = {name: text for pages in measured for name, text in pages.items()}
-    besides = others(place, texts)
-    texts |= {
-        f"{TABLES}/README.md": tables.readme(verdicts, besides),
-        f"{TABLES}/accuracy.md": tables.accuracy(verdicts),
-        f"{TABLES}/accuracy.csv": sheets.accuracy(verdicts),
-        f"{TABLES}/attainable.md": attainable.attainable(verdicts),
-        f"{TABLES}/attainable.csv": sheets.attainable(verdicts),
-        f"{TABLES}/conserved.md": tables.conserved(verdicts),
-        f"{TABLES}/conserved.csv": sheets.conserved(verdicts),
-        **_gates(verdicts),
-    }
-    if _is_ours_or_new(place / FRONT):
-        texts[FRONT] = front(verdicts, besides)
-    written = replace_files(place, texts, stale=_own_tables(place / TABLES))
-    return [*written, *replace_files(place.resolve().parent, quoted.requoted(place, verdicts))]
+    texts = {name: text for study in STUDIES for name, text in study.pages(place).items()}
+    index = _index(place, verdicts, texts)
+    written = replace_files(place, {**texts, **index}, stale=_own_tables(place / TABLES))
+    return [*written, *_requote(place, verdicts)]
+
+
+def publish_index(folder: Path | str) -> list[Path]:
+    """Make the front page, the index of the tables and what other pages quote; the rest stays."""
+    place = Path(folder)
+    verdicts = load(place)
+    return [*replace_files(place, _index(place, verdicts)), *_requote(place, verdicts)]
 
 
 def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
@@ -93,51 +69,17 @@ def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]
     return [*stored, *publish(fspath(folder))]
 
 
-def publish_gates(folder: Path | str) -> list[Path]:
-    """Make the tables of the gates alone from ``folder``/data. The errors are those of `publish`."""
-    return list(replace_files(Path(folder), _gates(load(folder))))
+def _index(
+    place: Path, verdicts: Sequence[Verdict], made: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """Return the pages that name all others: those that are there, and those about to be ``made``."""
+    besides = others(place, made or {})
+    texts = {f"{TABLES}/README.md": page.readme(verdicts, besides)}
+    return texts | ({FRONT: front(verdicts, besides)} if _is_ours_or_new(place / FRONT) else {})
 
 
-def publish_controls(folder: Path | str, study: ControlsStudy) -> list[Path]:
-    """Store a controls run in ``folder``/data and make ``folder``/tables/controls of it.
-
-    Raises OSError for a folder that cannot be written.
-    """
-    place = Path(folder)
-    stored = sights.write(place, study)
-    return [stored, *replace_files(place, _controls(place))]
-
-
-def publish_tradeoff(folder: Path | str, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:
-    """Store a measurement of speed and accuracy in ``folder``/data, draw it and make its page.
-
-    Raises OSError for a folder that cannot be written, ImportError without matplotlib.
-    """
-    place = Path(folder)
-    stored = list(trades.write(place, numbers, times))
-    found = trades.load(place)
-    if found is not None:
-        pictures = [one for trade in found.trades for one in figures.of_trade(trade)]
-        stored += figures.draw(place, [*pictures, *figures.of_rungs(found.trades)])
-    return [*stored, *replace_files(place, tradeoff.pages(place))]
-
-
-def _gates(verdicts: Sequence[Verdict]) -> dict[str, str]:
-    return {
-        f"{TABLES}/gates.md": tables.gates(verdicts),
-        f"{TABLES}/gates.csv": sheets.gates(verdicts),
-    }
-
-
-def _controls(place: Path) -> dict[str, str]:
-    """The table of what each gate sees, in Markdown and as a sheet; nothing without stored rows."""
-    if not (place / sights.CONTROLS).exists():
-        return {}
-    study = sights.load(place)
-    return {
-        f"{TABLES}/controls.md": controls.page(study),
-        f"{TABLES}/controls.csv": controls.sheet(study),
-    }
+def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:
+    return replace_files(place.resolve().parent, quoted.requoted(place, verdicts))
 
 
 def _is_ours_or_new(file: Path) -> bool:

@@ -7,7 +7,7 @@ from statistics import median
 from typing import Final
 
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, ratio, word
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
 from taylor_verify.records.runs import Run, runs
@@ -53,8 +53,8 @@ def attainable(verdicts: Sequence[Verdict]) -> str:
 
 
 def _by_rung(shown: Sequence[Verdict]) -> str:
-    headings = ("u", "errors", "median ratio", "ratio at most 1", "largest ratio")
-    columns = [Column("rung"), *(Column(heading, True) for heading in headings), Column("where")]
+    ratios = ("median ratio:", "ratio at most 1:", "largest ratio:")
+    columns = ["rung", "u:", "errors:", *ratios, "where"]
     rungs = sorted({verdict.rung for verdict in shown}, key=place_of_rung)
     return table(columns, [_rung_row(rung, [v for v in shown if v.rung == rung]) for rung in rungs])
 
@@ -89,7 +89,7 @@ def _section(group: Sequence[Run]) -> str:
     for run in group:
         for verdict in run.state:
             lines.setdefault((run.scene, verdict.quantity), {})[run.rung] = verdict
-    columns = [Column("scene"), Column("quantity"), *(Column(rung, True) for rung in rungs)]
+    columns = ["scene", "quantity", *(f"{rung}:" for rung in rungs)]
     rows = [
         [code(scene), code(quantity), *(_cell(by_rung.get(rung)) for rung in rungs)]
         for (scene, quantity), by_rung in lines.items()

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from statistics import median
+from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, counts
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import counts, whole
 from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.contents import Page
+
+if TYPE_CHECKING:
+    from taylor_verify.studies.contents import Page
 
 _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
@@ -51,8 +54,8 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
     """The page of a report, with links to what else there is."""
     found = runs(verdicts)
     contents = [*_CONTENTS, *(page.row() for page in others)]
-    blocks = [
-        f"{MADE_BY}\n# How accurate it is",
+    return whole(
+        "How accurate it is",
         _WHAT,
         "## In short",
         _in_short(found, verdicts),
@@ -66,10 +69,9 @@ def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
         "pass in any of its quantities.",
         _by_scene(found),
         "## What else is here",
-        table([Column("file"), Column("what it has")], contents),
+        table(["file", "what it has"], contents),
         _remake(verdicts),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
@@ -91,8 +93,8 @@ def _in_short(found: Sequence[Run], verdicts: Sequence[Verdict]) -> str:
 
 def _by_rung(found: Sequence[Run]) -> str:
     """A line a rung: its roundoff, the median and the worst state error, the worst over attainable."""
-    headings = ("u", "runs", "all pass", "median error, u", "largest error, u", "over attainable")
-    columns = [Column("rung"), *(Column(heading, True) for heading in headings), Column("where")]
+    errors = ("median error, u:", "largest error, u:", "over attainable:")
+    columns = ["rung", "u:", "runs:", "all pass:", *errors, "where"]
     rungs = sorted({run.rung for run in found}, key=place_of_rung)
     return table(columns, [_rung_row([r for r in found if r.rung == rung]) for rung in rungs])
 
@@ -128,7 +130,7 @@ def _by_scene(found: Sequence[Run]) -> str:
     lines: dict[tuple[str, str, str], dict[str, Run]] = {}
     for run in found:
         lines.setdefault((run.scene, run.solver, run.setting), {})[run.rung] = run
-    columns = [Column("scene"), *([Column("solver")] if len(solvers) > 1 else [])]
+    columns = ["scene", *(["solver"] if len(solvers) > 1 else [])]
     rows = [
         [
             code(scene),
@@ -137,7 +139,7 @@ def _by_scene(found: Sequence[Run]) -> str:
         ]
         for (scene, solver, setting), by_rung in lines.items()
     ]
-    return table([*columns, *(Column(rung, True) for rung in rungs)], rows)
+    return table([*columns, *(f"{rung}:" for rung in rungs)], rows)
 
 
 def _cell(run: Run | None) -> str:

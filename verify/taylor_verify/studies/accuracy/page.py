@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from taylor_verify.publish.cells import (
     NOTHING,
@@ -16,7 +17,7 @@ from taylor_verify.publish.cells import (
     ratio,
     reason,
 )
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
 from taylor_verify.records.runs import (
     Run,
@@ -27,7 +28,9 @@ from taylor_verify.records.runs import (
 )
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.contents import Page
+
+if TYPE_CHECKING:
+    from taylor_verify.studies.contents import Page
 
 _MEANINGS = {
     Status.PASS: "the error of every sample is within its bound",
@@ -64,7 +67,7 @@ _RENDERED = (
     "publish --missing` makes the tables of the gates. The gates are left to their CSV: a line for every "
     "verdict with its reason is for searching and not for reading."
 )
-_RUN = (Column("scene"), Column("rung"))
+_RUN = ("scene", "rung")
 
 
 def accuracy(verdicts: Sequence[Verdict]) -> str:
@@ -91,12 +94,10 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
 
 
 def _accuracy_section(group: Sequence[Run]) -> str:
-    numbers = ("max", "mean", "at t", "max, u", "mean, u", "over attainable", "bound", "steps")
-    columns = [*_RUN, Column("quantity"), *(Column(name, True) for name in numbers)]
+    numbers = ("max:", "mean:", "at t:", "max, u:", "mean, u:", "over attainable:", "bound:")
+    columns = [*_RUN, "quantity", *numbers, "steps:", "verdict"]
     rows = [_accuracy_row(verdict) for run in group for verdict in run.state]
-    return "\n\n".join(
-        part for part in (table([*columns, Column("verdict")], rows), unscored(group)) if part
-    )
+    return "\n\n".join(part for part in (table(columns, rows), unscored(group)) if part)
 
 
 def _accuracy_row(verdict: Verdict) -> list[str]:
@@ -142,8 +143,8 @@ def conserved(verdicts: Sequence[Verdict]) -> str:
 
 def _conserved_section(group: Sequence[Run]) -> str:
     quantities = conserved_quantities(group)
-    cells = [Column(code(name), True) for name in quantities]
-    columns = [*_RUN, *cells, Column("over attainable", True), Column("verdict")]
+    cells = [f"{code(name)}:" for name in quantities]
+    columns = [*_RUN, *cells, "over attainable:", "verdict"]
     return table(columns, [_conserved_row(run, group, quantities) for run in group])
 
 
@@ -192,10 +193,10 @@ def gates(verdicts: Sequence[Verdict]) -> str:
 
 
 def _gates_section(group: Sequence[Run]) -> str:
-    numbers = ("max", "at t", "bound", "attainable", "over attainable")
-    columns = [*_RUN, Column("quantity"), *(Column(name, True) for name in numbers)]
+    numbers = ("max:", "at t:", "bound:", "attainable:", "over attainable:")
+    columns = [*_RUN, "quantity", *numbers, "verdict", "because"]
     rows = [_gate_row(verdict) for run in group for verdict in run.verdicts]
-    return table([*columns, Column("verdict"), Column("because")], rows)
+    return table(columns, rows)
 
 
 def _gate_row(verdict: Verdict) -> list[str]:
@@ -229,22 +230,22 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
     return page(
         "Tables",
         verdicts,
-        table([Column("table"), Column("every digit"), Column("what it has")], _CONTENTS),
+        table(["table", "every digit", "what it has"], _CONTENTS),
         _besides(others),
         counts(verdicts),
         "## How to read a cell",
         bullets(how),
-        table([Column("verdict"), Column("meaning")], meanings),
+        table(["verdict", "meaning"], meanings),
         "## In LaTeX and HTML",
         _RENDERED,
         "## Scenes",
-        table([Column("scene"), Column("rungs"), Column("SHA-256")], _scenes(verdicts)),
+        table(["scene", "rungs", "SHA-256"], _scenes(verdicts)),
     )
 
 
 def _besides(others: Iterable[Page]) -> str:
     rows = [other.row_with_sheet() for other in others]
-    columns = [Column("besides"), Column("every digit"), Column("what it has")]
+    columns = ["besides", "every digit", "what it has"]
     return table(columns, rows) if rows else ""
 
 

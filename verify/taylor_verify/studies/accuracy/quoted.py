@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.publish.cells import in_roundoffs
-from taylor_verify.publish.markdown import Column, code, table
+from taylor_verify.publish.markdown import code, table
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls import stored as sights
+from taylor_verify.studies.controls.stored import CONTROLS
 
 BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of accuracy -->"
@@ -44,8 +44,8 @@ def requoted(folder: Path, verdicts: Sequence[Verdict]) -> dict[str, str]:
     blocks: dict[tuple[str, str], Callable[[], str]] = {
         (BEGIN, END): lambda: accuracy(verdicts),
     }
-    if (folder / sights.CONTROLS).exists():
-        blocks[controls.BEGIN, controls.END] = lambda: controls.short(sights.load(folder))
+    if (folder / CONTROLS.name).exists():
+        blocks[controls.BEGIN, controls.END] = lambda: controls.short(CONTROLS.load(folder))
     pages = {name: place.parent / name for name in _PAGES}
     texts = {n: page.read_text(encoding="utf-8") for n, page in pages.items() if page.is_file()}
     return {
@@ -59,7 +59,7 @@ def accuracy(verdicts: Iterable[Verdict]) -> str:
     """Largest errors of chosen scenes by rung, in u and over what is attainable, between the marks."""
     found = {(v.scene, v.quantity, v.rung): v for v in verdicts if v.solver == "taylor"}
     rungs = sorted({rung for _, _, rung in found}, key=place_of_rung)
-    columns = [Column("scene"), Column("what is compared"), *(Column(r, True) for r in rungs)]
+    columns = ["scene", "what is compared", *(f"{r}:" for r in rungs)]
     rows = [
         [code(scene), quantity, *(_cell(found.get((scene, quantity, rung))) for rung in rungs)]
         for scene, quantity in _SHOWN

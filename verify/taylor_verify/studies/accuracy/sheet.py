@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 from taylor_verify.publish.cells import in_roundoffs, word
+from taylor_verify.publish.sheet import sheet
 from taylor_verify.records.runs import (
     Run,
     conserved_quantities,
@@ -18,8 +17,6 @@ from taylor_verify.records.runs import (
 )
 from taylor_verify.records.verdict import Verdict
 
-# What a spreadsheet begins a formula with; a tab has gone with the line ends.
-_FORMULA: Final = ("=", "+", "-", "@")
 _RUN: Final = ("scene", "solver", "setting", "rung")
 _ACCURACY: Final = (
     *_RUN,
@@ -90,32 +87,3 @@ def _fields(verdict: Verdict) -> dict[str, Any]:
         return row | {"max": word(verdict), "max_u": word(verdict)}
     ratio = math.inf if verdict.ratio is None and verdict.is_compared else verdict.ratio
     return row | {"max_u": in_roundoffs(verdict, verdict.max), "ratio": ratio}
-
-
-def sheet(names: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    """A line for every row: the columns of these names, empty where a row has none.
-
-    A text that a spreadsheet would take for a formula has an apostrophe before it: the name of a scene
-    is a path, and may be anybody's.
-    """
-    text = io.StringIO()
-    writer = csv.DictWriter(text, names, extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
-    return text.getvalue()
-
-
-def _cell(value: Any) -> Any:
-    """A text without line ends, which readers take differently, and without the force of a formula."""
-    if not isinstance(value, str):
-        return value
-    text = " ".join(value.split())
-    return f"'{text}" if text.startswith(_FORMULA) and not _is_number(text) else text
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -9,21 +9,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.claims.document import ClaimRow, ClaimsStudy, Verdict
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import whole
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
-from taylor_verify.records.json_text import read
-from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import measured
+from taylor_verify.records.json_text import complete
+from taylor_verify.studies.stored import Stored
 
 PAGE: Final = "claims.md"
 SHEET: Final = "tables/claims.csv"
-CLAIMS: Final = f"{store.FOLDER}/claims.json"
-
-_MADE_BY: Final = {"made_by": "taylor-verify publish --claims; do not edit"}
+CLAIMS: Final = Stored(
+    f"{store.FOLDER}/claims.json", ClaimsStudy, "claims", lambda study: study.document()
+)
 
 _INTRODUCTION: Final = (
     "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
@@ -41,16 +41,16 @@ _HOW: Final = (
 _REMAKE: Final = (
     "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "
     '`taylor-verify claims "hydromechanics 49 (17)"` shows one in full, and `--json` the same as data. '
-    f"`taylor-verify publish --claims` rewrites this page, its [CSV]({SHEET}) and [claims.json]({CLAIMS}), "
-    "which also names the versions, the processor and the command."
+    f"`taylor-verify publish claims` rewrites this page, its [CSV]({SHEET}) and "
+    f"[claims.json]({CLAIMS.name}), which also names the versions, the processor and the command."
 )
 
 
 def page(study: ClaimsStudy) -> str:
     """Return the whole page."""
     rows = study.claims
-    blocks = [
-        f"{MADE_BY}\n# What the two texts claim",
+    return whole(
+        "What the two texts claim",
         _INTRODUCTION,
         _counts(rows),
         "## Errata",
@@ -68,34 +68,13 @@ def page(study: ClaimsStudy) -> str:
         bullets(f"{code(number)}: {prose(what)}" for number, what in study.cited.items()),
         "## To remake this",
         _REMAKE,
-    ]
-    return "\n\n".join(blocks) + "\n"
+    )
 
 
-def write(folder: Path, study: ClaimsStudy) -> list[Path]:
-    """Store the ledger below ``folder``, with its page and sheet. Raises OSError."""
-    stored = store.laid_out({**_MADE_BY, **study.document()})
-    return list(replace_files(folder, {CLAIMS: stored, **_pages(study)}))
-
-
-def load(folder: Path) -> ClaimsStudy:
-    """Return the ledger that is stored below ``folder``.
-
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    return read(folder / CLAIMS, ClaimsStudy)
-
-
-def pages(folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below ``folder``; none where nothing is stored.
-
-    Raises OSError and ValueError as `load` does.
-    """
-    return _pages(load(folder)) if (folder / CLAIMS).exists() else {}
-
-
-def _pages(study: ClaimsStudy) -> dict[str, str]:
-    return {PAGE: page(study), SHEET: measured.claims(study)}
+def texts(study: ClaimsStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below a folder."""
+    del folder
+    return {PAGE: page(study), SHEET: sheet(study)}
 
 
 def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
@@ -105,7 +84,7 @@ def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:
 def _counts(rows: Sequence[ClaimRow]) -> str:
     verdicts = [row.verdict.value for row in rows]
     found = list(dict.fromkeys(verdicts))
-    columns = [Column(verdict, to_right=True) for verdict in found]
+    columns = [f"{verdict}:" for verdict in found]
     return table(columns, [[str(verdicts.count(verdict)) for verdict in found]])
 
 
@@ -161,7 +140,7 @@ def _neither(rows: Sequence[ClaimRow]) -> str:
 def _restored(rows: Sequence[ClaimRow]) -> str:
     """What the scan lost, where the equation is true once that is put back."""
     lost = [[code(row.id), prose(row.lost or "")] for row in _of(rows, Verdict.RESTORED)]
-    return table([Column("equation"), Column("what the scan lost")], lost)
+    return table(["equation", "what the scan lost"], lost)
 
 
 def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
@@ -171,9 +150,7 @@ def _entry(row: ClaimRow, lines: Sequence[str]) -> str:
 def _ledger(rows: Sequence[ClaimRow]) -> list[str]:
     """One table of verdicts for each text, and below it the statements with domain and check."""
     blocks: list[str] = []
-    columns = [
-        Column(heading) for heading in ("claim", "verdict", "residual", "mutations rejected")
-    ]
+    columns = ["claim", "verdict", "residual", "mutations rejected"]
     for text in dict.fromkeys(_text_of(row) for row in rows):
         own = [row for row in rows if _text_of(row) == text]
         cells = [
@@ -220,3 +197,28 @@ def _residual(row: ClaimRow) -> str:
 
 def _short(size: float | None) -> str:
     return "not finite" if size is None or not isfinite(size) else f"{size:.2g}"
+
+
+# The sheet.
+
+
+_SHEET: Final = (
+    *("id", "verdict", "statement", "correction", "condition", "counterexample"),
+    *("residual", "residual_transcribed", "bound", "because", "domain", "method", "mutations"),
+    *("lost", "open", "void", "remark"),
+)
+
+
+def sheet(study: ClaimsStudy) -> str:
+    """Return a row for every entry of the ledger."""
+    return csv_sheet(_SHEET, (_claimed(row) for row in study.claims))
+
+
+def _claimed(row: ClaimRow) -> dict[str, Any]:
+    residual = complete(row.residual)
+    return {
+        **complete(row),
+        "residual": residual["statement"],
+        "residual_transcribed": residual["transcribed"],
+        "mutations": "; ".join(row.mutations),
+    }

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import traced, whole
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
-from taylor_verify.studies.accuracy import sheet as sheets
 from taylor_verify.studies.controls.document import ControlsStudy, DefectRow, Sight
 from taylor_verify.studies.controls.proof import (
     MAIN,
@@ -24,8 +25,9 @@ from taylor_verify.studies.controls.proof import (
 )
 from taylor_verify.studies.controls.stored import CONTROLS
 
+PAGE: Final = "tables/controls.md"
 # Where the short table stands in a page that is otherwise written by hand.
-BEGIN: Final = "<!-- controls: made by taylor-verify publish --controls; do not edit -->"
+BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
 
 _NOT_SEEN: Final = NOTHING
@@ -67,11 +69,17 @@ _HOW: Final = (
 )
 
 
+def texts(study: ControlsStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below a folder."""
+    del folder
+    return {PAGE: page(study), "tables/controls.csv": sheet(study)}
+
+
 def page(study: ControlsStudy) -> str:
     """Return the whole page: what it proves, a table for each kind of body, every defect in words."""
     sights = study.sights
-    blocks = [
-        f"{MADE_BY}\n# What each gate sees",
+    return whole(
+        "What each gate sees",
         _WHAT,
         "## What it proves",
         bullets(proven(sights)),
@@ -87,12 +95,11 @@ def page(study: ControlsStudy) -> str:
         "step included: what fails here is not a step that is too long.",
         _twins(sights),
         "## To remake this",
-        f"`taylor-verify publish --controls` runs every defect and its twin, and writes "
-        f"[controls.json](../{CONTROLS}); this page, its [CSV](controls.csv) and the table in the "
+        f"`taylor-verify publish controls` runs every defect and its twin, and writes "
+        f"[controls.json](../{CONTROLS.name}); this page, its [CSV](controls.csv) and the table in the "
         f"README of the project are made from that alone. "
         f"{traced({'versions': study.versions, **plain(study.machine)})}",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 # The tables.
@@ -107,12 +114,7 @@ def _section(sights: Sequence[Sight], quantity: str, heading: str) -> str:
         for name_of, names in _COLUMNS
         if any(name in sight.quantities for sight in found for name in names)
     ]
-    columns = [
-        Column("defect"),
-        *(Column(name, True) for name, _ in shown),
-        Column("time shift", True),
-        Column("outcome"),
-    ]
+    columns = ["defect", *(f"{name}:" for name, _ in shown), "time shift:", "outcome"]
     rows = [
         [
             title(sight),
@@ -166,16 +168,11 @@ def _by_gate(sights: Sequence[Sight]) -> str:
     finished = [sight for sight in sights if sight.is_finished]
     stopped = len(sights) - len(finished)
     rows.append(["outcome", f"{stopped} of {len(sights)}", "every defect that claims success"])
-    return table([Column("gate"), Column("sees", True), Column("misses")], rows)
+    return table(["gate", "sees:", "misses"], rows)
 
 
 def _in_words(sights: Sequence[Sight]) -> str:
-    columns = [
-        Column("defect"),
-        Column("scene"),
-        Column("what is wrong"),
-        Column("why it shows so"),
-    ]
+    columns = ["defect", "scene", "what is wrong", "why it shows so"]
     return table(columns, [[title(sight), *_words(sight.defect)] for sight in sights])
 
 
@@ -185,12 +182,7 @@ def _words(defect: DefectRow) -> list[str]:
 
 def _twins(sights: Sequence[Sight]) -> str:
     """Each twin once, with the gate that it comes closest to failing."""
-    columns = [
-        Column("sound solver"),
-        Column("scene"),
-        Column("passes", True),
-        Column("largest error over bound", True),
-    ]
+    columns = ["sound solver", "scene", "passes:", "largest error over bound:"]
     rows = {}
     for sight in sights:
         judged = list(sight.sound.values())
@@ -212,10 +204,10 @@ def short(study: ControlsStudy) -> str:
     """Return some fifteen rows and four columns, between the marks BEGIN and END."""
     shown = [s for s in _blindest_first(study.sights) if s.defect.told and s.is_finished]
     columns = [
-        Column("what was broken"),
-        Column("energy", True),
-        Column("other conserved quantities", True),
-        Column("compared with the exact motion", True),
+        "what was broken",
+        "energy:",
+        "other conserved quantities:",
+        "compared with the exact motion:",
     ]
     rows = [
         [
@@ -264,7 +256,7 @@ _FIELDS: Final = (
 
 def sheet(study: ControlsStudy) -> str:
     """Return a row for every defect and gate, with every digit."""
-    return sheets.sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
+    return csv_sheet(_FIELDS, (row for sight in study.sights for row in _rows_of(sight)))
 
 
 def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:

@@ -7,33 +7,30 @@ from typing import Any, Final
 
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_study
 from taylor_verify.studies.controls.document import ControlsStudy
+from taylor_verify.studies.stored import Stored
 
-CONTROLS: Final = f"{store.FOLDER}/controls.json"
-
-_MADE_BY: Final = {"made_by": "taylor-verify publish --controls; do not edit"}
 _APART: Final = ("digits", "sentence", "seconds", "provenance")
 _SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
 
 
-def write(folder: Path, study: ControlsStudy) -> Path:
-    """Store a controls run below ``folder``. Raises OSError."""
-    rows = {"machine": plain(study.machine), "verdicts": [_row(each) for each in study.verdicts]}
-    text = store.laid_out({**_MADE_BY, **complete(study), **rows})
-    (file,) = replace_files(folder, {CONTROLS: text})
-    return file
+def _fields(study: ControlsStudy) -> dict[str, Any]:
+    """Return keys and values as they are stored: of a verdict what is the same in every run."""
+    rows = [_row(verdict) for verdict in study.verdicts]
+    return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
-def load(folder: Path) -> ControlsStudy:
-    """Return the controls run that is stored below ``folder``.
+def _row(verdict: Verdict) -> dict[str, Any]:
+    # Which way roundings push the time is another draw on every machine.
+    apart = _APART if verdict.verdict is Status.FAIL else (*_APART, *_SHIFT)
+    return {name: value for name, value in verdict.row().items() if name not in apart}
 
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    file = folder / CONTROLS
-    study = read_study(file, ControlsStudy)
+
+def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
+    """Return the document in a file. Raises ValueError for a defect without its verdicts too."""
+    study = read_study(file, kind)
     try:
         _ = study.sights
     except ValueError as error:
@@ -41,7 +38,6 @@ def load(folder: Path) -> ControlsStudy:
     return study
 
 
-def _row(verdict: Verdict) -> dict[str, Any]:
-    # Which way roundings push the time is another draw on every machine.
-    apart = _APART if verdict.verdict is Status.FAIL else (*_APART, *_SHIFT)
-    return {name: value for name, value in verdict.row().items() if name not in apart}
+CONTROLS: Final = Stored(
+    f"{store.FOLDER}/controls.json", ControlsStudy, "controls", _fields, _checked
+)

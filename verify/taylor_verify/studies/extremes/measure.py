@@ -1,12 +1,28 @@
-"""The extremes of a run beside what was expected of each, as the document that is published."""
+"""A run of all extremes beside what was expected of each, as the document that is published."""
 
 from __future__ import annotations
 
+from typing import Final
+
 from taylor_verify.batch.judgements import Judgements
+from taylor_verify.batch.judging import Progress, judge_all
+from taylor_verify.batch.selection import select
 from taylor_verify.records import store
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.status import Status
+from taylor_verify.scenes.library import EXTREMES
 from taylor_verify.studies.extremes.document import Expected, ExtremesStudy, ExtremeVerdict, Titled
+
+# The rung on which the extremes are published, as `make verify` runs them.
+_RUNG: Final = "f64"
+_SOLVER: Final = "taylor"
+
+
+def extremes(progress: Progress | None = None) -> Judgements:
+    """Solve and judge every extreme that is run on the published rung."""
+    selection = select([EXTREMES], [_RUNG])
+    judgements = judge_all(selection.jobs(_SOLVER), progress)
+    return Judgements(tuple(judgements), selection, _SOLVER)
 
 
 def extremes_study(results: Judgements) -> ExtremesStudy:

@@ -14,22 +14,19 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY, counts, roundoffs, traced
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import counts, roundoffs, traced, whole
 from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_study
 from taylor_verify.studies.accuracy import sheet as sheets
 from taylor_verify.studies.extremes.document import ExtremesStudy
+from taylor_verify.studies.stored import Stored
 
-EXTREMES: Final = f"{store.FOLDER}/extremes.json"
 PAGE: Final = "tables/extremes.md"
-SHEET: Final = "tables/extremes.csv"
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --extremes; do not edit"}
 _FOLDER: Final = "extremes/"
 
 _WHAT: Final = (
@@ -49,35 +46,24 @@ _LEGEND: Final = (
 )
 
 
-# The files.
+# The document.
 
 
-def write(folder: Path | str, study: ExtremesStudy) -> list[Path]:
-    """Store a run below ``folder``, without its seconds, and make its page. Raises OSError."""
-    place = Path(folder)
-    rows = {
-        "machine": plain(study.machine),
-        "verdicts": [store.row(verdict) for verdict in study.verdicts],
-    }
-    text = store.laid_out({**_MADE_BY, **complete(study), **rows})
-    stored = replace_files(place, {EXTREMES: text})
-    return [*stored, *replace_files(place, pages(place))]
+def _fields(study: ExtremesStudy) -> dict[str, Any]:
+    """Return keys and values as they are stored: the seconds of a run are nobody else's."""
+    rows = [store.row(verdict) for verdict in study.verdicts]
+    return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
-def pages(folder: Path) -> dict[str, str]:
-    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
-
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    if not (folder / EXTREMES).exists():
-        return {}
-    found = load(folder)
-    return {PAGE: page(found), SHEET: sheet(found)}
+EXTREMES: Final = Stored(
+    f"{store.FOLDER}/extremes.json", ExtremesStudy, "extremes", _fields, read_study
+)
 
 
-def load(folder: Path) -> ExtremesStudy:
-    """Return what is stored below ``folder``. Raises OSError and ValueError as `pages` does."""
-    return read_study(folder / EXTREMES, ExtremesStudy)
+def texts(study: ExtremesStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below a folder."""
+    del folder
+    return {PAGE: page(study), "tables/extremes.csv": sheet(study)}
 
 
 # The page.
@@ -86,8 +72,8 @@ def load(folder: Path) -> ExtremesStudy:
 def page(found: ExtremesStudy) -> str:
     """The counts, a line a scene, and every answer that is no pass with its reason."""
     own = runs(found.verdicts)
-    blocks = [
-        f"{MADE_BY}\n# The extremes",
+    return whole(
+        "The extremes",
         _WHAT,
         counts(found.verdicts),
         _held(found),
@@ -97,13 +83,12 @@ def page(found: ExtremesStudy) -> str:
         _not_passed(found),
         _left_out(found),
         "## To remake this",
-        f"`taylor-verify publish --extremes` runs all of them on float64 and writes "
-        f"[extremes.json](../{EXTREMES}), this page and its [CSV](extremes.csv), which has every quantity. "
-        "`taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it runs them "
-        "on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
+        f"`taylor-verify publish extremes` runs all of them on float64 and writes "
+        f"[extremes.json](../{EXTREMES.name}), this page and its [CSV](extremes.csv), which has every "
+        "quantity. `taylor-verify run extremes` prints the same and fails at a mismatch; with `--rung` it "
+        "runs them on others. The expectations are in `cases/extremes/EXPECTED.toml`.",
         traced({"versions": found.versions, **plain(found.machine)}),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _models(own: Iterable[Run]) -> list[str]:
@@ -122,11 +107,8 @@ def _held(found: ExtremesStudy) -> str:
 
 
 def _section(found: ExtremesStudy, own: Sequence[Run], model: str) -> str:
-    columns = [
-        *(Column("scene"), Column("rung"), Column("what it is")),
-        *(Column("state", True), Column("over attainable", True)),
-        *(Column("verdict"), Column("as expected", True)),
-    ]
+    numbers = ("state:", "over attainable:")
+    columns = ["scene", "rung", "what it is", *numbers, "verdict", "as expected:"]
     rows = [_cells(found, run) for run in own]
     return f"## {model or 'Without a state'}\n\n{table(columns, rows)}"
 
@@ -165,10 +147,7 @@ def _worst(run: Run) -> str:
 
 def _not_passed(found: ExtremesStudy) -> str:
     """A line for every answer that is no pass, as the solver's run has it and as it was foreseen."""
-    columns = [
-        *(Column("scene"), Column("quantity"), Column("verdict"), Column("expected")),
-        *(Column("bound", True), Column("why")),
-    ]
+    columns = ["scene", "quantity", "verdict", "expected", "bound:", "why"]
     rows = [_told(found, verdict) for verdict in found.verdicts if _is_told(found, verdict)]
     return table(columns, rows) if rows else "Every answer is a pass."
 

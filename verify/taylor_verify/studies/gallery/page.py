@@ -13,15 +13,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.markdown import code, prose
+from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS, place_of_rung
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies import figures
 from taylor_verify.studies.controls import picture as shifts
-from taylor_verify.studies.controls import stored as sights
+from taylor_verify.studies.controls.stored import CONTROLS
 from taylor_verify.studies.gallery.pictures import (
     axis_path,
     centre_path,
@@ -34,13 +34,12 @@ from taylor_verify.studies.reference import page as reference_files
 
 PAGE: Final = f"{figures.FOLDER}/README.md"
 
-_MAKER: Final = "<!-- made by taylor-verify publish --gallery; do not edit -->"
 _SOLVER: Final = "taylor"
 # The rung whose samples are marked on a polhode.
 _RUNG: Final = "f64"
 
 _WHAT: Final = (
-    "Every picture is drawn from the data beside this folder, by `taylor-verify publish --gallery`, as "
+    "Every picture is drawn from the data beside this folder, by `taylor-verify publish gallery`, as "
     "SVG and as PDF. Portraits, records and the PDF are made and not committed: `taylor-verify publish "
     "--missing` makes the data, `--paper` the PDF. Lengths, times and impulses are in the scene's own "
     "units. The motions are exact, to more digits than any picture shows; an error is that of the Taylor "
@@ -107,7 +106,7 @@ class Stored:
 
     def controls(self) -> tuple[Verdict, ...]:
         """The verdicts on solvers that were broken on purpose, and on their sound twins."""
-        return sights.load(self.folder).verdicts
+        return CONTROLS.load(self.folder).verdicts
 
     @staticmethod
     def portrait_name(scene: str) -> str:
@@ -122,16 +121,17 @@ class Stored:
         return f"{reference_files.FOLDER}/{of_scene(scene)}.csv"
 
 
-def write(folder: Path | str) -> list[Path]:
-    """Draw the gallery into ``folder``/figures, and its page; return the files written.
+def gallery(folder: Path) -> list[Shown]:
+    """Return every picture of the gallery. Raises FileNotFoundError and ValueError as `Stored` does."""
+    with store.expecting("data of the gallery", folder / store.FOLDER):
+        return list(shown(Stored(folder)))
 
-    Raises ImportError without matplotlib, FileNotFoundError and ValueError as `Stored` does, and OSError.
-    """
-    place = Path(folder)
-    with store.expecting("data of the gallery", place / store.FOLDER):
-        found = list(shown(Stored(place)))
-    drawn = figures.draw(place, [one.picture for one in found])
-    return [*drawn, *replace_files(place, {PAGE: page(found)})]
+
+def texts(found: Sequence[Shown], folder: Path) -> dict[str, str]:
+    """Return the page of those that are drawn below ``folder`` already, by its path."""
+    place = folder / figures.FOLDER
+    drawn = [one for one in found if (place / f"{one.picture.stem}.svg").exists()]
+    return {PAGE: page(drawn)} if drawn else {}
 
 
 def shown(stored: Stored) -> Iterator[Shown]:
@@ -145,7 +145,7 @@ def shown(stored: Stored) -> Iterator[Shown]:
 
 def page(found: Sequence[Shown]) -> str:
     """All of them below their headings."""
-    blocks = [f"{_MAKER}\n# Pictures of motions and of their errors", _WHAT]
+    blocks = [f"{MADE_BY}\n# Pictures of motions and of their errors", _WHAT]
     last = ""
     for one in found:
         if one.heading != last:
@@ -239,7 +239,7 @@ def _shifts(stored: Stored) -> Shown:
         "samples are late."
     )
     drawn = shifts.picture(stored.controls(), "controls")
-    return Shown("Errors split in lateness and the rest", drawn, caption, (sights.CONTROLS,))
+    return Shown("Errors split in lateness and the rest", drawn, caption, (CONTROLS.name,))
 
 
 Kind = Callable[[Stored, str], Shown]

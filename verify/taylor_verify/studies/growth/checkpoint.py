@@ -19,6 +19,7 @@ from taylor_verify.scenes.precision import hexadecimal
 from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.solvers.values import exact
+from taylor_verify.studies.stored import made_by
 
 # Another format would be another number.
 _FORMAT: Final = 1
@@ -45,7 +46,7 @@ def write(
 ) -> None:
     """Put the checkpoint in place of an earlier one, whole or not at all. Raises OSError."""
     content = {
-        "made_by": "taylor-verify publish --growth; do not edit",
+        **made_by("growth"),
         "format": _FORMAT,
         "question": dict(question),
         "versions": dict(versions),
@@ -88,7 +89,7 @@ def read(file: Path, question: Mapping[str, Any], versions: Mapping[str, str]) -
         raise
     except (AttributeError, LookupError, TypeError, ValueError) as fault:
         raise ValueError(
-            f"expected a checkpoint of `publish --growth`, got a fault, {fault}; remove the file to "
+            f"expected a checkpoint of `publish growth`, got a fault, {fault}; remove the file to "
             f"begin anew @ {file}"
         ) from fault
 

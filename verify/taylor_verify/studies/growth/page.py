@@ -8,18 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.status import Status
-from taylor_verify.studies import figures, measured
-from taylor_verify.studies.growth import picture as diagram
+from taylor_verify.studies import figures
 from taylor_verify.studies.growth.document import (
     Ensemble,
     GrowthGate,
@@ -27,14 +26,12 @@ from taylor_verify.studies.growth.document import (
     GrowthStudy,
     Number,
 )
+from taylor_verify.studies.growth.picture import picture
+from taylor_verify.studies.stored import Stored
 
-GROWTH: Final = f"{store.FOLDER}/growth.json"
-LONG: Final = f"{store.FOLDER}/growth-long.json"
+GROWTH: Final = Stored(f"{store.FOLDER}/growth.json", GrowthStudy, "growth")
+LONG: Final = Stored(f"{store.FOLDER}/growth-long.json", GrowthStudy, "growth")
 PAGE: Final = "tables/growth.md"
-SHEET: Final = "tables/growth.csv"
-
-_MADE_BY: Final = {"made_by": "taylor-verify publish --growth; do not edit"}
-_MAKER: Final = "<!-- made by taylor-verify publish --growth; do not edit -->"
 
 _WHAT: Final = (
     "If every rounding is independent of all others, what they do to a conserved quantity is a random "
@@ -72,49 +69,32 @@ _LEANING: Final = (
 )
 
 
-def write(folder: Path | str, study: GrowthStudy, long: bool = False) -> list[Path]:
-    """Store the ensembles below ``folder``, draw them where matplotlib is, and make the page.
-
-    Raises OSError.
-    """
-    place = Path(folder)
-    name = LONG if long else GROWTH
-    stored = list(replace_files(place, {name: store.laid_out({**_MADE_BY, **complete(study)})}))
-    return [*stored, *_drawn(place), *replace_files(place, pages(place))]
+def texts(study: GrowthStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``."""
+    return {PAGE: page(study, folder), "tables/growth.csv": sheet(study.runs)}
 
 
-def pages(folder: Path) -> dict[str, str]:
-    """Return the page of the ensembles stored below ``folder``; nothing where there are none.
-
-    Raises OSError for files that cannot be read and ValueError for files that hold something else.
-    """
-    study = load(folder)
-    if not study.runs:
-        return {}
-    with store.expecting("ensembles", folder / GROWTH):
-        return {PAGE: page(study, _shown(folder, study)), SHEET: measured.growth(study.runs)}
-
-
-def load(folder: Path) -> GrowthStudy:
-    """Return both files as one study: the published runs, then the long ones; without files, no runs."""
-    files = [folder / name for name in (GROWTH, LONG)]
-    stored = [read(file, GrowthStudy) for file in files if file.exists()]
+def find(folder: Path) -> GrowthStudy | None:
+    """Return both documents as one: the published runs, then the long ones; None without any."""
+    stored = [study for study in (GROWTH.find(folder), LONG.find(folder)) if study and study.runs]
+    if not stored:
+        return None
     return GrowthStudy(
         runs=tuple(run for study in stored for run in study.runs),
         left_out=tuple(one for study in stored for one in study.left_out),
-        provenance=stored[0].provenance if stored else Provenance(),
+        provenance=stored[0].provenance,
     )
 
 
-def page(study: GrowthStudy, pictures: str = "") -> str:
-    """Return the whole page."""
+def page(study: GrowthStudy, folder: Path) -> str:
+    """Return the whole page, with the picture if it is in ``folder``/figures."""
     runs = study.runs
-    blocks = [
-        f"{_MAKER}\n# How errors grow with time",
+    return whole(
+        "How errors grow with time",
         _WHAT,
         _gates(runs),
         bullets(prose(f"Left out: {one}.") for one in study.left_out),
-        pictures,
+        figures.shown(folder, pictures(study)),
         bullets(_LEGEND),
         *(block for run in runs for block in _section(run)),
         "## The gate",
@@ -123,32 +103,15 @@ def page(study: GrowthStudy, pictures: str = "") -> str:
         _NO_CONSERVATION,
         "## To remake this",
         bullets(_remake(study.provenance)),
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
-def picture_of(runs: Sequence[Ensemble]) -> Picture | None:
-    """Return all ensembles in one picture; None where there is nothing above zero to draw."""
+def pictures(study: GrowthStudy) -> list[Picture]:
+    """Return all ensembles in one picture; none where there is nothing above zero to draw."""
     try:
-        return diagram.picture(runs)
+        return [picture(study.runs)]
     except ValueError:
-        return None
-
-
-def _drawn(place: Path) -> list[Path]:
-    picture = picture_of(load(place).runs)
-    if picture is None:
         return []
-    try:
-        return figures.draw(place, [picture])
-    except ImportError:
-        # The page says everything in numbers; a picture is for those who have matplotlib.
-        return []
-
-
-def _shown(place: Path, study: GrowthStudy) -> str:
-    picture = picture_of(study.runs)
-    return figures.shown(place, [picture]) if picture else ""
 
 
 def _gates(runs: Iterable[Ensemble]) -> str:
@@ -165,11 +128,8 @@ def _section(run: Ensemble) -> list[str]:
         f"{run.lanes} starts from {_count(run.counts[0])} to {_count(run.counts[-1])} periods of "
         f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}"
     )
-    columns = [
-        Column("quantity"),
-        *(Column(heading, True) for heading in ("rms, first", "rms, last", "walks", "exponent")),
-        *(Column(heading) for heading in ("word", "late", "no worse than a walk")),
-    ]
+    numbers = ("rms, first:", "rms, last:", "walks:", "exponent:")
+    columns = ["quantity", *numbers, "word", "late", "no worse than a walk"]
     return [
         f"## {_name(run)}",
         f"{prose(run.why.capitalize())}. {told}",
@@ -222,15 +182,15 @@ def _gate_told(runs: Sequence[Ensemble]) -> str:
 
 
 def _remake(provenance: Provenance) -> list[str]:
-    versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
     return [
-        f"`taylor-verify publish --growth` follows the ensembles anew, writes [growth.json](../{GROWTH}), "
-        "the picture and this page: minutes, all cores. It may be stopped and goes on from where it was.",
-        "`taylor-verify publish --growth --long` follows the long run, 100 million periods, likewise: "
+        "`taylor-verify publish growth` follows the ensembles anew, writes "
+        f"[growth.json](../{GROWTH.name}), the picture and this page: minutes, all cores. "
+        "It may be stopped and goes on from where it was.",
+        "`taylor-verify publish growth --long` follows the long run, 100 million periods, likewise: "
         "a thousand pieces of some seconds.",
         "Roundings are other draws on another processor, and so are the last digits here; the exponents "
         "are the same within their intervals.",
-        f"Machine: {prose(provenance.processor)}; {versions}. Made by {code(provenance.command)}.",
+        made_on(provenance),
     ]
 
 
@@ -241,3 +201,41 @@ def _name(run: Ensemble) -> str:
 def _count(periods: float) -> str:
     """Half-decades: 100, 3.16e3, 1e6."""
     return f"{periods:.3g}".replace("e+0", "e")
+
+
+# The sheet.
+
+
+_SHEET: Final = (
+    *("scene", "solver", "rung", "quantity", "starts", "lost", "period"),
+    *("periods_first", "periods_last", "steps_last", "rms_first", "rms_last", "in_walks"),
+    *("exponent", "low", "high", "word", "late", "late_low", "late_high", "late_word"),
+    *("level", "gate", "law", "chance", "false_alarm", "scene_sha256"),
+)
+
+
+def sheet(runs: Iterable[Ensemble]) -> str:
+    """Return a row for every quantity of every ensemble: its exponent with the interval, and its gate."""
+    return csv_sheet(_SHEET, (_grown(run, row) for run in runs for row in run.quantities))
+
+
+def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
+    late, late_low, late_high = row.late
+    shared = ("scene", "solver", "rung", "lost", "period")
+    own = ("quantity", "in_walks", "exponent", "low", "high", "word", "late_word", "level")
+    return {
+        **{name: getattr(run, name) for name in shared},
+        **{name: getattr(row, name) for name in own},
+        "starts": run.lanes,
+        "periods_first": run.counts[0],
+        "periods_last": run.counts[-1],
+        "steps_last": run.steps[-1],
+        "rms_first": row.rms[0],
+        "rms_last": row.rms[-1],
+        "late": late,
+        "late_low": late_low,
+        "late_high": late_high,
+        "gate": row.gate.verdict.value if row.gate else None,
+        **{name: getattr(row.gate, name, None) for name in ("law", "chance", "false_alarm")},
+        "scene_sha256": run.digest,
+    }

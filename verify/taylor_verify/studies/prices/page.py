@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.markdown import bullets, prose, table
+from taylor_verify.publish.page import made_on, whole
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.ratio import Ratio
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
-from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import figures, measured
+from taylor_verify.records.json_text import complete
+from taylor_verify.studies import figures
 from taylor_verify.studies.prices.document import Interval, PriceRow, PricesStudy
+from taylor_verify.studies.prices.picture import picture
+from taylor_verify.studies.stored import Stored
 
-PRICES: Final = f"{store.FOLDER}/prices.json"
+PRICES: Final = Stored(f"{store.FOLDER}/prices.json", PricesStudy, "prices")
 PAGE: Final = "tables/prices.md"
-SHEET: Final = "tables/prices.csv"
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --prices; do not edit"}
 _ROOTS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
+_BAREST: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
 # The three questions: the barest form, its attitude, and all of a solid in a fluid.
 _ASKED: Final = (
     ("omega", "omega"),
@@ -37,61 +40,49 @@ _WHAT: Final = (
 )
 
 
-def write(folder: Path | str, study: PricesStudy) -> list[Path]:
-    """Store a measurement below ``folder``, draw it and make its page.
-
-    Raises ImportError without matplotlib, and OSError.
-    """
-    place = Path(folder)
-    drawn = figures.draw(place, figures.of_prices(study))
-    text = store.laid_out({**_MADE_BY, **complete(study)})
-    stored = replace_files(place, {PRICES: text})
-    return [*stored, *drawn, *replace_files(place, pages(place))]
+def texts(study: PricesStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``."""
+    return {PAGE: page(study, folder), "tables/prices.csv": sheet(study)}
 
 
-def pages(folder: Path) -> dict[str, str]:
-    """Return the page of the measurement stored below ``folder``; nothing where there is none.
-
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    file = folder / PRICES
-    if not file.exists():
-        return {}
-    study = load(folder)
-    with store.expecting("measured prices", file):
-        return {PAGE: page(study, folder), SHEET: measured.prices(study)}
-
-
-def load(folder: Path) -> PricesStudy:
-    """Return the measurement that is stored below ``folder``. Raises OSError and ValueError."""
-    return read(folder / PRICES, PricesStudy)
+def pictures(study: PricesStudy) -> list[Picture]:
+    """Return the price of each thing that a scene may ask for on f64, a picture for each model."""
+    found = []
+    for root, words in _BAREST.items():
+        rows = [
+            Ratio(row.variant, row.rung, *row.step_ratio)
+            for row in study.rows
+            if row.against == root and row.rung == "f64" and row.variant != root
+        ]
+        if rows:
+            found.append(picture(words, f"{root} alone", rows))
+    return found
 
 
 def page(study: PricesStudy, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# What each thing costs",
+    return whole(
+        "What each thing costs",
         _WHAT,
         "## Three questions",
         "Processor time of one step of the Taylor integrator at the rung's own tolerance, in "
         "microseconds; in brackets, as a multiple of a step of *omega* on the same rung.",
         _three_questions(study.rows),
         bullets(_legend()),
-        figures.shown(folder, figures.of_prices(study)),
+        figures.shown(folder, pictures(study)),
         *_sections(study.rows, {one.variant: one.ratio for one in study.equal}),
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish --prices` measures anew, writes [prices.json](../{PRICES}) and this "
+        f"`taylor-verify publish prices` measures anew, writes [prices.json](../{PRICES.name}) and this "
         "page; nothing is ever compared with these times.",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+    )
 
 
 def _three_questions(rows: Iterable[PriceRow]) -> str:
     by_place = {(row.variant, row.rung): row for row in rows}
     rungs = list(dict.fromkeys(rung for _, rung in by_place))
-    columns = [Column("what is followed"), *(Column(rung, True) for rung in rungs)]
+    columns = ["what is followed", *(f"{rung}:" for rung in rungs)]
     lines = []
     for name, words in _ASKED:
         cells = []
@@ -134,13 +125,9 @@ def _sections(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> li
 
 def _prices(rows: Sequence[PriceRow], equal: Mapping[str, float | None]) -> str:
     on_f64 = rows[0].rung == "f64"
-    columns = [
-        Column("variant"),
-        *(Column(heading, True) for heading in ("states", "operations", "a step")),
-        *(Column(heading, True) for heading in ("a unit of time", "error")),
-        *([Column("at equal error", True)] if on_f64 else []),
-        Column("what it is"),
-    ]
+    numbers = ("states:", "operations:", "a step:", "a unit of time:", "error:")
+    at_equal = ("at equal error:",) if on_f64 else ()
+    columns = ["variant", *numbers, *at_equal, "what it is"]
     return table(columns, [_cells(row, equal, on_f64) for row in rows])
 
 
@@ -164,12 +151,38 @@ def _ratio(interval: Interval) -> str:
 def _method(study: PricesStudy) -> list[str]:
     method, given = study.method, study.provenance
     rounds = ", ".join(f"{rung} {count}" for rung, count in method.rounds.items())
-    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
     return [
         f"One process, processor time, rounds in which every variant has its turn in an order drawn "
         f"anew (seed {method.seed}): {rounds}. Each turn lasts at least "
         f"{figure(method.least_seconds)} s and is as many runs of the same stretch as that takes.",
         "Compiling, sampling and the exact solution are not in a price. The errors are those of runs "
         "of the suite's own driver, compared with the exact motion.",
-        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+        made_on(given),
     ]
+
+
+# The sheet.
+
+
+_SHEET: Final = (
+    *("rung", "variant", "against", "states", "parameters", "sums", "products", "quotients"),
+    *("order", "steps_per_time", "microseconds", "step_ratio", "step_low", "step_high"),
+    *("time_ratio", "time_low", "time_high", "error", "ratio_at_equal_error", "what"),
+)
+
+
+def sheet(study: PricesStudy) -> str:
+    """Return a row for every variant and rung; the prices at equal error are those of f64."""
+    at_equal = {one.variant: one.ratio for one in study.equal}
+    return csv_sheet(_SHEET, (_priced(row, at_equal) for row in study.rows))
+
+
+def _priced(row: PriceRow, at_equal: Mapping[str, float | None]) -> dict[str, Any]:
+    step, step_low, step_high = row.step_ratio
+    time, time_low, time_high = row.time_ratio
+    intervals = {
+        **{"step_ratio": step, "step_low": step_low, "step_high": step_high},
+        **{"time_ratio": time, "time_low": time_low, "time_high": time_high},
+    }
+    equal = at_equal.get(row.variant) if row.rung == "f64" else None
+    return {**complete(row), **intervals, "ratio_at_equal_error": equal}

@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import takewhile
+from collections.abc import Iterator, Sequence
+from itertools import takewhile, zip_longest
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.markdown import bullets, prose, table
+from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
-from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import figures, measured
+from taylor_verify.studies import figures
 from taylor_verify.studies.reach import picture as digits_map
 from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
 from taylor_verify.studies.reach.picture import ACHIEVED, ATTAINABLE, numbers_of
+from taylor_verify.studies.stored import Stored
 
-REACH: Final = f"{store.FOLDER}/reach.json"
+REACH: Final = Stored(f"{store.FOLDER}/reach.json", ReachStudy, "reach")
 PAGE: Final = "tables/reach.md"
-SHEET: Final = "tables/reach.csv"
 DIGITS: Final = (3, 6, 12)
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --reach; do not edit"}
 # Of the numbers of periods, those that have a line of their own.
 _AFTER: Final = (1, 10, 100, 1000)
 # Behind the last that was tried, where it may go on.
@@ -51,34 +49,9 @@ _LEGEND: Final = (
 )
 
 
-def write(folder: Path | str, study: ReachStudy) -> list[Path]:
-    """Store a measurement below ``folder``, draw it and make its page.
-
-    Raises ImportError without matplotlib, and OSError.
-    """
-    place = Path(folder)
-    drawn = figures.draw(place, pictures(study))
-    text = store.laid_out({**_MADE_BY, **complete(study)})
-    stored = replace_files(place, {REACH: text})
-    return [*stored, *drawn, *replace_files(place, pages(place))]
-
-
-def pages(folder: Path) -> dict[str, str]:
-    """Return the page of the measurement stored below ``folder``; nothing where there is none.
-
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    file = folder / REACH
-    if not file.exists():
-        return {}
-    study = load(folder)
-    with store.expecting("a measured reach", file):
-        return {PAGE: page(study, folder), SHEET: measured.reach(study.rows)}
-
-
-def load(folder: Path) -> ReachStudy:
-    """Return the measurement that is stored below ``folder``. Raises OSError and ValueError."""
-    return read(folder / REACH, ReachStudy)
+def texts(study: ReachStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``."""
+    return {PAGE: page(study, folder), "tables/reach.csv": sheet(study)}
 
 
 def pictures(study: ReachStudy) -> list[Picture]:
@@ -90,18 +63,17 @@ def pictures(study: ReachStudy) -> list[Picture]:
 
 def page(study: ReachStudy, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# How far each precision carries",
+    return whole(
+        "How far each precision carries",
         _WHAT,
         bullets(_LEGEND),
         *(block for one in study.families for block in _section(study, one, folder)),
         "## How it was measured",
         bullets(_method(study)),
         "## To remake this",
-        f"`taylor-verify publish --reach` measures anew, in some minutes, and writes "
-        f"[reach.json](../{REACH}), this page and its pictures.",
-    ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
+        f"`taylor-verify publish reach` measures anew, in some minutes, and writes "
+        f"[reach.json](../{REACH.name}), this page and its pictures.",
+    )
 
 
 def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
@@ -155,10 +127,10 @@ def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
 
 def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     columns = [
-        Column("rung"),
-        Column("periods", True),
-        *(Column(f"{one.symbol}, {n} digits", True) for n in DIGITS),
-        *(Column(f"attainable, {n}", True) for n in DIGITS),
+        "rung",
+        "periods:",
+        *(f"{one.symbol}, {n} digits:" for n in DIGITS),
+        *(f"attainable, {n}:" for n in DIGITS),
     ]
     lines = []
     for rung in one.rungs:
@@ -184,12 +156,12 @@ def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     """Return a line for each value with three numbers for every rung; a single value is turned round."""
     by_place = {(row.value, row.rung): row for row in rows}
     if len(one.values) == 1:
-        heads = (*(f"{n} digits" for n in DIGITS), *(f"attainable, {n}" for n in DIGITS))
-        columns = [Column("rung"), *(Column(head, True) for head in heads)]
+        digits = (f"{n} digits:" for n in DIGITS)
+        columns = ["rung", *digits, *(f"attainable, {n}:" for n in DIGITS)]
         (value,) = one.values
         found = [(rung, by_place[value, rung]) for rung in one.rungs]
         return table(columns, [[rung, *_turned(row)] for rung, row in found])
-    columns = [Column(one.symbol, True), *(Column(f"{r}: 3, 6, 12", True) for r in one.rungs)]
+    columns = [f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)]
     return table(
         columns,
         [[value, *(_three(by_place[value, rung]) for rung in one.rungs)] for value in one.values],
@@ -247,7 +219,6 @@ def _stopped(rows: Sequence[ReachRow]) -> list[str]:
 
 def _method(study: ReachStudy) -> list[str]:
     given, rows = study.provenance, study.rows
-    packages = ", ".join(f"{name} {version}" for name, version in given.versions.items())
     lost = sum(bool(row.errors) and row.errors[-1] is None for row in rows)
     blurred = sum(row.why.startswith(_ROUNDED) for row in rows)
     return [
@@ -259,5 +230,37 @@ def _method(study: ReachStudy) -> list[str]:
         "as on f64.",
         _over_attainable(rows),
         *_stopped(rows),
-        f"Machine: {prose(given.processor)}; {packages}. Made by {code(given.command)}.",
+        made_on(given),
     ]
+
+
+# The sheet.
+
+
+_SHEET: Final = (
+    "family",
+    "value",
+    "rung",
+    "periods",
+    "error",
+    "attainable",
+    "lost",
+    "steps",
+    "why",
+)
+
+
+def sheet(study: ReachStudy) -> str:
+    """Return a row for every number of periods; one row, with the reason, where nothing was run."""
+    return csv_sheet(_SHEET, (found for row in study.rows for found in _reached(row)))
+
+
+def _reached(row: ReachRow) -> Iterator[dict[str, Any]]:
+    """Yield the rows of a run. An error that is missing stands for a motion that was lost."""
+    own = {name: getattr(row, name) for name in ("family", "value", "rung", "steps", "why")}
+    if not row.errors:
+        yield own
+        return
+    for periods, error, floor in zip_longest(row.periods, row.errors, row.floors):
+        lost = "yes" if error is None else "no"
+        yield {**own, "periods": periods, "error": error, "attainable": floor, "lost": lost}

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.publish.markdown import Column, code, table
+from taylor_verify.publish.markdown import code, table
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import file_names
 from taylor_verify.records.replacement import first_line, replace_files
@@ -77,8 +77,7 @@ def _laid_out(document: Document) -> str:
 
 
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
-    headings = ("scene", "regime", "route", "columns", "rows", "file")
-    columns = [Column(heading, heading == "rows") for heading in headings]
+    columns = ["scene", "regime", "route", "columns", "rows:", "file"]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
     filled = text.replace("{{scenes}}", table(columns, [_row(found) for found in documents]))
     for name, program in examples.items():

@@ -11,24 +11,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
-from taylor_verify.records import json_text, store
+from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene, of_solver
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.runs import Run, runs
-from taylor_verify.studies.controls import stored as sights
 from taylor_verify.studies.controls.document import Sight
-from taylor_verify.studies.growth import page as growth
+from taylor_verify.studies.controls.stored import CONTROLS
 from taylor_verify.studies.growth.document import GrowthStudy
+from taylor_verify.studies.growth.page import GROWTH
 from taylor_verify.studies.portraits import stored as portraits
-from taylor_verify.studies.reach import page as reach
 from taylor_verify.studies.reach.document import ReachStudy
+from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.stored import Trade, Trades
 
 Document = Mapping[str, Any]
-Study = TypeVar("Study")
 
 _SOLVER: Final = "taylor"
 
@@ -80,9 +79,8 @@ class Report:
     @cached_property
     def sights(self) -> tuple[Sight, ...]:
         """The solvers that were broken on purpose with their verdicts; none where none are stored."""
-        if not (self.folder / sights.CONTROLS).exists():
-            return ()
-        return sights.load(self.folder).sights
+        found = CONTROLS.find(self.folder)
+        return found.sights if found else ()
 
     @cached_property
     def trades(self) -> Trades | None:
@@ -95,19 +93,15 @@ class Report:
 
     @cached_property
     def growth(self) -> GrowthStudy | None:
-        return self._study(growth.GROWTH, GrowthStudy)
+        return GROWTH.find(self.folder)
 
     @cached_property
     def reach(self) -> ReachStudy | None:
-        return self._study(reach.REACH, ReachStudy)
+        return REACH.find(self.folder)
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
         return self._stored(f"{store.RECORDS}/{name}")
-
-    def _study(self, name: str, kind: type[Study]) -> Study | None:
-        file = self.folder / name
-        return json_text.read(file, kind) if file.exists() else None
 
     def _stored(self, name: str) -> Document | None:
         file = self.folder / store.FOLDER / name

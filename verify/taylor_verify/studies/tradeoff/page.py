@@ -8,17 +8,21 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.publish.cells import NOTHING, figure
-from taylor_verify.publish.markdown import Column, bold, bullets, code, prose, table
-from taylor_verify.publish.page import MADE_BY
-from taylor_verify.records import store
+from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.publish.page import whole
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.ratio import Ratio
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
-from taylor_verify.studies.accuracy import sheet as sheets
 from taylor_verify.studies.tradeoff.document import TradePoint
 from taylor_verify.studies.tradeoff.doubles_table import doubles_table
-from taylor_verify.studies.tradeoff.stored import NUMBERS, TimedPoint, Trade, Trades, load
+from taylor_verify.studies.tradeoff.pictures import time_by_rung
+from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
+from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades
 from taylor_verify.studies.tradeoff.timing_method import how_it_was_timed, remake, what_is_timed
 
+PAGE: Final = "tables/tradeoff.md"
 DIGITS: Final = (6, 9, 12)
 _NOT_REACHED: Final = "not reached"
 _TAYLOR: Final = "taylor f64"
@@ -38,8 +42,8 @@ _WHAT: Final = (
 
 def page(found: Trades, folder: Path) -> str:
     """The whole page, with the pictures that are in ``folder``/figures."""
-    blocks = [
-        f"{MADE_BY}\n# Speed against accuracy",
+    return whole(
+        "Speed against accuracy",
         _WHAT,
         "## What so many digits cost",
         "The cheapest measured setting whose error leaves at least so many digits: its time over that "
@@ -52,13 +56,13 @@ def page(found: Trades, folder: Path) -> str:
         "Taylor at each rung's own tolerance: time over that in float64, and the digits that are left. "
         "*attainable* are those that rounding the state once a sample, and nothing else, would leave.",
         _by_rung(found),
-        figures.shown(folder, figures.of_rungs(found.trades)),
+        figures.shown(folder, _of_rungs(found.trades)),
         "## Asked for and achieved",
         "A tolerance bounds the error of one step, or what the solver takes for it, and promises "
         "nothing of the answer. The digits that were left at each:",
         _by_request(found),
         "## In pictures",
-        *(figures.shown(folder, figures.of_trade(trade)) for trade in found.trades),
+        *(figures.shown(folder, _of_trade(one)) for one in found.trades),
         "## The front",
         "The settings in float64 that no other beats in both time and error, the fastest first.",
         *(_front(trade) for trade in found.trades),
@@ -79,34 +83,40 @@ def page(found: Trades, folder: Path) -> str:
         bullets(how_it_was_timed(found)),
         "## To remake this",
         remake(found),
+    )
+
+
+def texts(found: Trades, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below ``folder``."""
+    return {PAGE: page(found, folder), "tables/tradeoff.csv": sheet(found.trades)}
+
+
+def pictures(found: Trades) -> list[Picture]:
+    """Return the pictures of every scene, and that of all rungs."""
+    return [*(one for trade in found.trades for one in _of_trade(trade)), *_of_rungs(found.trades)]
+
+
+def _of_trade(found: Trade) -> list[Picture]:
+    """Error against time, evaluations and steps, and the digits asked for and left, of one scene."""
+    return of_one_scene.pictures(found.document()) if found.sound else []
+
+
+def _of_rungs(found: Sequence[Trade]) -> list[Picture]:
+    """Taylor's time at each rung's own tolerance, a line for each scene."""
+    rows = [
+        Ratio(one.scene, row.point.rung, row.timing.ratio, row.timing.low, row.timing.high)
+        for one in found
+        for row in one.sound
+        if row.point.solver == "taylor"
     ]
-    return "\n\n".join(block for block in blocks if block) + "\n"
-
-
-def pages(folder: Path) -> dict[str, str]:
-    """Return the page and its sheet by their paths below ``folder``; none where nothing is stored.
-
-    Raises OSError for files that cannot be read and ValueError for files that hold something else.
-    """
-    found = load(folder)
-    if found is None:
-        return {}
-    with store.expecting("a measurement of speed and accuracy", folder / NUMBERS):
-        return {
-            "tables/tradeoff.md": page(found, folder),
-            "tables/tradeoff.csv": sheet(found.trades),
-        }
+    return [time_by_rung.picture("published", rows)] if rows else []
 
 
 # What so many digits cost.
 
 
 def _by_digits(found: Trades) -> str:
-    columns = [
-        Column("scene"),
-        Column("solver"),
-        *(Column(f"{digits} digits", True) for digits in DIGITS),
-    ]
+    columns = ["scene", "solver", *(f"{digits} digits:" for digits in DIGITS)]
     rows = []
     for trade in found.trades:
         rows.append(
@@ -172,7 +182,7 @@ def _by_rung(found: Trades) -> str:
         p.rung for trade in found.trades for p in trade.points if _is_own_tolerance(p)
     )
     ladder = sorted(rungs, key=lambda rung: (rung.startswith("mp"), int(rung.lstrip("fmp"))))
-    columns = [Column("scene"), *(Column(rung, True) for rung in ladder)]
+    columns = ["scene", *(f"{rung}:" for rung in ladder)]
     rows = []
     for trade in found.trades:
         own = {row.point.rung: row for row in trade.sound if _is_own_tolerance(row.point)}
@@ -198,11 +208,7 @@ def _rung_cell(row: TimedPoint) -> str:
 
 
 def _by_request(found: Trades) -> str:
-    columns = [
-        Column("scene"),
-        Column("solver"),
-        *(Column(f"{-log10(asked):.0f} asked for", True) for asked in _ASKED),
-    ]
+    columns = ["scene", "solver", *(f"{-log10(asked):.0f} asked for:" for asked in _ASKED)]
     rows = []
     for trade in found.trades:
         families = dict.fromkeys(p.family for p in trade.points if p.asked == "tolerance")
@@ -254,11 +260,8 @@ def _front_line(row: TimedPoint) -> str:
 
 
 def _geometric(found: Trades) -> str:
-    columns = [
-        *(Column("scene"), Column("integrator"), Column("step", True)),
-        *(Column("time", True), Column("largest error", True), Column("drift", True)),
-        Column("of"),
-    ]
+    numbers = ("step:", "time:", "largest error:", "drift:")
+    columns = ["scene", "integrator", *numbers, "of"]
     rows = [
         [
             code(trade.scene),
@@ -277,7 +280,7 @@ def _geometric(found: Trades) -> str:
 
 
 def _failures(found: Trades) -> str:
-    columns = [Column("scene"), Column("setting"), Column("what it is"), Column("because")]
+    columns = ["scene", "setting", "what it is", "because"]
     rows = [
         [code(trade.scene), code(p.label), prose(_standing(p)), prose(p.because)]
         for trade in found.trades
@@ -311,4 +314,4 @@ _FIELDS: Final = (
 
 def sheet(trades: Sequence[Trade]) -> str:
     """A row for every scene and setting, with every digit."""
-    return sheets.sheet(_FIELDS, (row for trade in trades for row in trade.rows))
+    return csv_sheet(_FIELDS, (row for trade in trades for row in trade.rows))

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
-from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.standing import Standing
+from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.tradeoff.document import (
     TradeNumbers,
     TradePoint,
@@ -24,10 +24,9 @@ from taylor_verify.studies.tradeoff.document import (
     TradeTimings,
 )
 
-NUMBERS: Final = f"{store.FOLDER}/tradeoff.json"
-TIMINGS: Final = f"{store.FOLDER}/tradeoff-timings.json"
+NUMBERS: Final = Stored(f"{store.FOLDER}/tradeoff.json", TradeNumbers, "tradeoff")
+TIMINGS: Final = Stored(f"{store.FOLDER}/tradeoff-timings.json", TradeTimings, "tradeoff")
 
-_MADE_BY: Final = {"made_by": "taylor-verify publish --tradeoff; do not edit"}
 # What both files have of a setting.
 _NAMES: Final = ("scene", "solver", "rung")
 _TIMES: Final = tuple(f.name for f in fields(TradeTiming) if f.name not in _NAMES)
@@ -115,14 +114,9 @@ class Trades:
         return Trade(about, points, {(timing.solver, timing.rung): timing for timing in own})
 
 
-def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> tuple[Path, ...]:
-    """Store a measurement below ``folder``, both files or none. Raises OSError."""
-    documents = {NUMBERS: numbers, TIMINGS: times}
-    texts = {
-        name: store.laid_out({**_MADE_BY, **complete(document)})
-        for name, document in documents.items()
-    }
-    return replace_files(folder, texts)
+def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:
+    """Store both documents of a measurement below ``folder``. Raises OSError."""
+    return [*NUMBERS.write(folder, numbers), *TIMINGS.write(folder, times)]
 
 
 def load(folder: Path) -> Trades | None:
@@ -130,10 +124,8 @@ def load(folder: Path) -> Trades | None:
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """
-    file = folder / NUMBERS
-    if not file.exists():
-        return None
-    return Trades(read(file, TradeNumbers), read(folder / TIMINGS, TradeTimings))
+    numbers = NUMBERS.find(folder)
+    return None if numbers is None else Trades(numbers, TIMINGS.load(folder))
 
 
 def _spread(timing: TradeTiming | None) -> float | None:

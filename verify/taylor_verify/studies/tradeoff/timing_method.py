@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.markdown import Column, code, prose, table
+from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, Trades
 
 _WHAT_IS_TIMED: Final = (
@@ -43,7 +43,7 @@ _WHAT_IS_TIMED: Final = (
 
 def what_is_timed(found: Trades) -> str:
     del found
-    columns = [Column("solver"), Column("in the time"), Column("not in it")]
+    columns = ["solver", "in the time", "not in it"]
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 
 
@@ -85,9 +85,9 @@ def _brackets(found: Trades) -> str:
 def remake(found: Trades) -> str:
     packages = ", ".join(f"{name} {version}" for name, version in found.numbers.versions.items())
     return (
-        f"`make tradeoff`, which is `taylor-verify publish --tradeoff`, measures anew and writes "
-        f"[tradeoff.json](../{NUMBERS}) (errors, the same on any machine but for the rounding) and "
-        f"[tradeoff-timings.json](../{TIMINGS}) (times, which are this machine's and which nothing "
+        f"`make tradeoff`, which is `taylor-verify publish tradeoff`, measures anew and writes "
+        f"[tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine but for the rounding) and "
+        f"[tradeoff-timings.json](../{TIMINGS.name}) (times, which are this machine's and which nothing "
         "is ever compared with); this page and its [CSV](tradeoff.csv) are made from those alone. "
         "`make reports` and `make check-reports` leave the times as they are. `--outside` adds "
         "integrators of other libraries that are compiled as heyoka is. "

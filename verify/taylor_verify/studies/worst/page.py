@@ -7,19 +7,17 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.publish.cells import figure
-from taylor_verify.publish.markdown import Column, code, prose, table
-from taylor_verify.publish.page import MADE_BY, traced
+from taylor_verify.publish.markdown import code, prose, table
+from taylor_verify.publish.page import traced, whole
+from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.studies import measured
+from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-WORST: Final = f"{store.FOLDER}/worst.json"
+WORST: Final = Stored(f"{store.FOLDER}/worst.json", WorstStudy, "worst")
 PAGE: Final = "tables/worst.md"
-SHEET: Final = "tables/worst.csv"
-
-_MADE_BY: Final = {"made_by": "taylor-verify publish --worst; do not edit"}
 
 _WHAT: Final = (
     "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
@@ -34,34 +32,16 @@ _KEPT: Final = (
 )
 
 
-def write(folder: Path | str, study: WorstStudy) -> list[Path]:
-    """Store a search below ``folder``, and make its page. Raises OSError."""
-    place = Path(folder)
-    stored = replace_files(place, {WORST: store.laid_out({**_MADE_BY, **complete(study)})})
-    return [*stored, *replace_files(place, pages(place))]
-
-
 def keep(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
     """Write scene files, by their names, in place of those that are there. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
 
 
-def pages(folder: Path) -> dict[str, str]:
-    """The page of what is stored below ``folder``; nothing where there is none.
-
-    Raises OSError for a file that cannot be read and ValueError for one that holds something else.
-    """
-    file = folder / WORST
-    if not file.exists():
-        return {}
-    study = load(folder)
-    return {PAGE: page(study), SHEET: measured.worst(study)}
-
-
-def load(folder: Path) -> WorstStudy:
-    """Return the search that is stored below ``folder``. Raises OSError and ValueError."""
-    return read(folder / WORST, WorstStudy)
+def texts(study: WorstStudy, folder: Path) -> dict[str, str]:
+    """Return page and sheet by their paths below a folder."""
+    del folder
+    return {PAGE: page(study), "tables/worst.csv": sheet(study)}
 
 
 def page(study: WorstStudy) -> str:
@@ -69,32 +49,31 @@ def page(study: WorstStudy) -> str:
     factor, rung = f"{study.factor:g}", study.rung
     families = sorted(study.families, key=lambda row: -row.ratio)
     judged = sum(row.judged for row in families)
-    blocks = [
-        f"{MADE_BY}\n# The worst that a search has found",
+    return whole(
+        "The worst that a search has found",
         _WHAT.format(factor=factor, rung=code(rung)),
         f"Of {judged} scenes the worst is {code(families[0].scene)}: "
         f"{figure(families[0].ratio)} in {code(families[0].quantity)}.",
         _table(families),
         _KEPT,
         "## To remake this",
-        f"`taylor-verify publish --worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
+        f"`taylor-verify publish worst --seconds {study.seconds:g} --seed {study.seed}` hunts "
         "anew and replaces the scenes. A faster machine judges more scenes in the same time, and may "
         "find worse ones: the scenes that were found are the fact, and not that there are no others. "
-        f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST}).",
+        f"Every digit is in [worst.csv](worst.csv) and [worst.json](../{WORST.name}).",
         traced(complete(study.provenance)),
-    ]
-    return "\n\n".join(blocks) + "\n"
+    )
 
 
 def _table(families: Sequence[WorstOfFamily]) -> str:
     columns = [
-        Column("family"),
-        Column("scenes", True),
-        Column("error over attainable", True),
-        Column("in"),
-        Column("its error", True),
-        Column("verdict"),
-        Column("kept as"),
+        "family",
+        "scenes:",
+        "error over attainable:",
+        "in",
+        "its error:",
+        "verdict",
+        "kept as",
     ]
     rows = [
         [
@@ -109,3 +88,19 @@ def _table(families: Sequence[WorstOfFamily]) -> str:
         for row in families
     ]
     return table(columns, rows)
+
+
+# The sheet.
+
+
+_SHEET: Final = (
+    *("family", "what", "rung", "judged", "ratio", "quantity", "max", "verdict", "scene"),
+    "factor",
+)
+
+
+def sheet(study: WorstStudy) -> str:
+    """Return a row for every family."""
+    shared = {"rung": study.rung, "factor": study.factor}
+    rows = ({**complete(row), **shared, "family": row.name} for row in study.families)
+    return csv_sheet(_SHEET, rows)

@@ -32,7 +32,7 @@ from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.step import STEP_COLUMNS
 from taylor_verify.solvers.values import Value
 
-# Printed by `publish --reference` beside the motion, or a statement of the step: no part of the motion.
+# Printed by `publish reference` beside the motion, or a statement of the step: no part of the motion.
 _SILENT: Final = ("radius", *STEP_COLUMNS)
 _TWO_ATTITUDES: Final = ("quaternion", "attitude")
 

@@ -1,0 +1,291 @@
+"""A study that is registered is measured, listed, told, drawn and packed by what goes through the list."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import log
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from taylor_verify.cli import main
+from taylor_verify.publish.page import MADE_BY
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.records import store
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.studies import bulk, contents, paper, registry
+from taylor_verify.studies.registry import STUDIES, UnknownStudy, find
+from taylor_verify.studies.stored import Stored
+from taylor_verify.studies.study import (
+    Bulk,
+    Measured,
+    NotMeasured,
+    Option,
+    Progress,
+    Published,
+    Study,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Captured = pytest.CaptureFixture[str]
+
+
+# The smallest study: a document of one number, a page, a picture and a file that is not committed.
+
+
+@dataclass(frozen=True)
+class Sum:
+    terms: int
+    value: float
+
+
+SUM = Stored(f"{store.FOLDER}/smallest.json", Sum, "smallest")
+
+
+def measure(folder: Path, progress: Progress, terms: int = 3) -> Measured:
+    if terms == 13:
+        raise NotMeasured("expected another number than 13, got it")
+    finished = progress.counting(terms)
+    for k in range(terms):
+        finished(f"term {k}")
+    odd = terms % 2
+    return Measured(SUM.write(folder, Sum(terms, 0.5 * terms)), ["it is odd"] * odd, odd)
+
+
+def texts(document: Sum, folder: Path) -> dict[str, str]:
+    del folder
+    row = f"{document.terms},{log(document.terms)}"
+    return {
+        "tables/smallest.md": f"{MADE_BY}\n# {document.value}\n",
+        "tables/smallest.csv": f"terms,logarithm\n{row}\n",
+    }
+
+
+def draw(document: Sum) -> list[Picture]:
+    def figure() -> Figure:
+        from matplotlib.figure import Figure
+
+        return Figure()
+
+    return [Picture(f"smallest-{document.terms}", "a sum", "nothing is seen", figure)]
+
+
+def lacking(report: Published) -> list[str]:
+    name = "data/smallest/big.txt"
+    return [] if (report.folder / name).exists() else [name]
+
+
+def make(folder: Path, names: list[str], progress: Progress) -> tuple[Path, ...]:
+    del progress
+    return replace_files(folder, dict.fromkeys(names, "big\n"))
+
+
+SMALLEST = Study(
+    name="smallest",
+    title="the smallest study there can be",
+    duration="no time",
+    measure=measure,
+    page="tables/smallest.md",
+    find=SUM.find,
+    texts=texts,
+    draw=draw,
+    needs_heyoka=False,
+    options=(Option("terms", "so many terms", int),),
+    bulk=(Bulk("big files", ("data/smallest/",), lacking, make),),
+)
+
+
+@pytest.fixture(autouse=True)
+def registered() -> Iterator[None]:
+    STUDIES.append(SMALLEST)
+    yield
+    STUDIES.remove(SMALLEST)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The reports of something that is taken for a checkout."""
+    monkeypatch.setattr("taylor_verify.cli.folders._checkout", lambda place: place)
+    return tmp_path / "reports"
+
+
+def call(folder: Path, *words: str) -> int:
+    return main(["publish", *words, "--from", str(folder)])
+
+
+# What goes through the list.
+
+
+def test_a_study_is_listed(capsys: Captured) -> None:
+    """With what it is, how long it takes, and whether it needs heyoka; as JSON too."""
+    assert main(["publish", "--list"]) == 0
+    text = capsys.readouterr().out
+    assert "smallest   the smallest study there can be\n" in text
+    assert "no time; exact, without heyoka" in text
+    assert main(["publish", "--list", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["studies"]
+    assert [row["name"] for row in rows] == [study.name for study in STUDIES]
+    assert rows[-1] == {
+        "name": "smallest",
+        "title": "the smallest study there can be",
+        "duration": "no time",
+        "needs_heyoka": False,
+        "options": {"terms": "so many terms"},
+    }
+
+
+def test_a_study_is_measured_drawn_and_told(folder: Path, capsys: Captured) -> None:
+    """Its document, page, sheet and picture are written and named; each step is told on stderr."""
+    assert call(folder, "smallest", "--terms", "4", "--json") == 0
+    out, err = capsys.readouterr()
+    names = [Path(name).relative_to(folder).as_posix() for name in json.loads(out)["written"]]
+    assert names == [
+        "data/smallest.json",
+        *("figures/smallest-4.svg", "figures/smallest-4.pdf"),
+        *("tables/smallest.md", "tables/smallest.csv"),
+    ]
+    assert "4/4 term 3" in err
+    stored = json.loads((folder / SUM.name).read_text(encoding="utf-8"))
+    assert stored["made_by"] == "taylor-verify publish smallest; do not edit"
+    assert SUM.load(folder) == Sum(4, 2.0)
+
+
+def test_what_a_study_says_is_the_answer(folder: Path, capsys: Captured) -> None:
+    """Its messages are on stderr and its status is that of the command; of several the gravest."""
+    assert call(folder, "smallest") == 1
+    assert "it is odd" in capsys.readouterr().err
+    assert call(folder, "smallest", "--terms", "13") == 2
+    assert "expected another number than 13, got it @ publish smallest" in capsys.readouterr().err
+
+
+def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
+    """`--pages`, like no option at all, makes its page anew without a measurement, and links to it."""
+    assert call(folder, "smallest", "--terms", "2") == 0
+    SUM.write(folder, Sum(2, 7.0))
+    store.write(folder, [], [])
+    assert call(folder, "--pages") == 0
+    assert (folder / SMALLEST.page).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
+    assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
+    index = (folder / "tables" / "README.md").read_text(encoding="utf-8")
+    assert "| [smallest.md](smallest.md) | [csv](smallest.csv) |" in index
+    (folder / SUM.name).unlink()
+    assert call(folder) == 0
+    assert not (folder / SMALLEST.page).exists()
+
+
+def test_the_index_is_made_anew_after_a_measurement(folder: Path) -> None:
+    """A report that has verdicts links to the page of a study as soon as it is measured."""
+    store.write(folder, [], [])
+    assert call(folder, "smallest", "--terms", "2") == 0
+    assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
+
+
+def test_pictures_are_those_of_stored_documents(folder: Path) -> None:
+    """The paper and the archive draw every study's."""
+    assert registry.pictures(folder) == []
+    SUM.write(folder, Sum(5, 1.0))
+    assert [picture.stem for picture in registry.pictures(folder)] == ["smallest-5"]
+
+
+def test_files_that_are_not_committed_are_made_when_they_are_missing(
+    folder: Path, capsys: Captured
+) -> None:
+    """They are counted in words, and their pattern is one of those that git leaves out."""
+    store.write(folder, [], [])
+    assert "data/smallest/" in bulk.patterns()
+    assert "1 big files" in bulk.missing(folder, {}).data
+    assert call(folder, "--missing") == 0
+    assert "1 big files" in capsys.readouterr().err
+    assert bulk.missing(folder, {}).data == ""
+
+
+def test_a_document_that_no_page_can_tell_is_named(folder: Path) -> None:
+    """The fault has the command that writes the document, and the file."""
+    SUM.write(folder, Sum(0, 1.0))
+    with pytest.raises(
+        ValueError, match=r"expected what `publish smallest` writes, .* @ .*smallest\.json"
+    ):
+        SMALLEST.pages(folder)
+
+
+def test_without_matplotlib_the_page_is_made_all_the_same(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A message says that nothing was drawn, and what to install."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    SUM.write(folder, Sum(2, 1.0))
+    made = SMALLEST.publish(folder)
+    assert [path.name for path in made.written] == ["smallest.md", "smallest.csv"]
+    (said,) = made.messages
+    assert "pictures of smallest are not drawn: expected matplotlib" in said
+
+
+# Calls that are wrong.
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["smalest"], "expected a study, got 'smalest'; did you mean smallest?"),
+        (["--growth"], "expected `publish growth`, got --growth"),
+        (
+            ["--smallest", "--worst"],
+            "expected `publish smallest`, got --smallest\nexpected `publish worst`",
+        ),
+        (["zzz"], "known: accuracy, controls"),
+        (["--terms", "3"], "expected --terms with `publish smallest`, got it without @ publish"),
+        (
+            ["claims", "--seed", "3"],
+            "expected --seed with `publish worst`, got it without @ publish",
+        ),
+        (["smallest", "--terms", "x"], "@ --terms"),
+        (["smallest", "--paper"], "expected studies or --paper, got both @ publish"),
+        (["smallest", "--list"], "expected studies or --list, got both @ publish"),
+    ],
+    ids=str,
+)
+def test_a_wrong_call_is_told_in_a_sentence(
+    folder: Path, capsys: Captured, words: list[str], said: str
+) -> None:
+    """Exit status 2, and no file."""
+    assert call(folder, *words) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert said in captured.err
+    assert not folder.exists()
+
+
+# The list itself.
+
+
+def test_every_study_has_a_name_of_its_own() -> None:
+    """The word is that of its folder, and no two write or link to one page or share an option."""
+    names = [study.name for study in STUDIES]
+    assert len(set(names)) == len(names)
+    place = Path(registry.__file__).parent
+    assert all((place / name / "study.py").is_file() for name in names if name != "smallest")
+    folders = {file.parent.name for file in place.glob("*/study.py")}
+    assert folders == set(names) - {"smallest"}
+    for kind in ("page", "options"):
+        values = [value for study in STUDIES if (value := getattr(study, kind))]
+        assert len(set(values)) == len(values)
+
+
+def test_a_study_is_found_once() -> None:
+    """Named twice, in the order asked."""
+    assert [study.name for study in find(["worst", "claims", "worst"])] == ["worst", "claims"]
+    with pytest.raises(UnknownStudy):
+        find(["worst", "nothing"])
+
+
+def test_the_paper_has_every_page_that_is_read() -> None:
+    """Each page of a study in tables, and the ledger; none of a folder's own index."""
+    own = {study.page for study in STUDIES if study.page.startswith("tables/")} - {SMALLEST.page}
+    assert own | {"claims.md"} <= set(paper.PAGES)
+    assert {page.path for page in contents.others(Path(), paper.PAGES)} >= own

@@ -1,0 +1,39 @@
+"""The study of the claims: the ledger of both source texts, every entry checked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.studies.claims import page
+from taylor_verify.studies.claims.page import CLAIMS
+from taylor_verify.studies.study import Measured, Progress, Study
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    """Check the whole ledger; one whose entries have left their verdicts is not stored."""
+    from taylor_verify.claims.document import ClaimsStudy
+    from taylor_verify.claims.ledger import claims, examined, missed
+    from taylor_verify.claims.numbers import CITED
+    from taylor_verify.judge.provenance import command, processor, versions
+    from taylor_verify.records.provenance import Provenance
+
+    asked = claims()
+    with progress.working(f"claims, {len(asked)} entries"):
+        rows = tuple(finding.row() for finding in examined(asked))
+    if faults := missed(rows):
+        return Measured(messages=faults, status=1)
+    made_by = Provenance(versions(), processor(), command())
+    return Measured(CLAIMS.write(folder, ClaimsStudy(made_by, dict(CITED), rows)))
+
+
+STUDY: Final = Study(
+    name="claims",
+    title="every numbered equation of the two source texts, checked; errata in front",
+    duration="a minute",
+    measure=_measure,
+    page=page.PAGE,
+    find=CLAIMS.find,
+    texts=page.texts,
+    needs_heyoka=False,
+)

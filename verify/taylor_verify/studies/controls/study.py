@@ -1,0 +1,29 @@
+"""The study of the controls: what each gate sees of solvers that are broken on purpose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.studies.controls import page
+from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.study import Measured, Progress, Study
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    from taylor_verify.controls.defects import DEFECTS
+    from taylor_verify.studies.controls.measure import sights, study
+
+    seen = sights(DEFECTS, progress.counting(len(DEFECTS)))
+    return Measured(CONTROLS.write(folder, study(seen)))
+
+
+STUDY: Final = Study(
+    name="controls",
+    title="what each gate sees of solvers that were broken on purpose",
+    duration="a minute",
+    measure=_measure,
+    page=page.PAGE,
+    find=CONTROLS.find,
+    texts=page.texts,
+)

@@ -1,0 +1,31 @@
+"""The study of the extremes: each of them run on float64, beside what was expected of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.studies.extremes import page
+from taylor_verify.studies.extremes.page import EXTREMES
+from taylor_verify.studies.study import Measured, Progress, Study
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    """Run all of them; an unexpected answer is published too, where it stands out."""
+    from taylor_verify.studies.extremes.measure import extremes, extremes_study
+
+    with progress.jobs() as told:
+        results = extremes(told)
+    study = extremes_study(results)
+    return Measured(EXTREMES.write(folder, study), study.mismatches, results.exit_status)
+
+
+STUDY: Final = Study(
+    name="extremes",
+    title="what becomes of the hardest scenes, and what was expected of each",
+    duration="minutes, all cores",
+    measure=_measure,
+    page=page.PAGE,
+    find=EXTREMES.find,
+    texts=page.texts,
+)

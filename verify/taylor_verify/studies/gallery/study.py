@@ -1,0 +1,65 @@
+"""The gallery as a study: pictures of some motions and of their errors, from other studies' data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from taylor_verify.publish.pictures.picture import plotting
+from taylor_verify.studies.figures import FOLDER
+from taylor_verify.studies.portraits.stored import FOLDER as PORTRAITS
+from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
+
+if TYPE_CHECKING:
+    from taylor_verify.studies.gallery.page import Shown
+
+# The pictures are built with NumPy, which nothing else asks for that makes pages: it is imported late.
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    """Make sure that all data are there; nothing is measured."""
+    from taylor_verify.studies.gallery.page import gallery
+
+    del progress
+    try:
+        gallery(folder)
+        with plotting():
+            return Measured()
+    except FileNotFoundError as error:
+        raise NotMeasured(
+            "expected what `run --out`, `publish reference`, `publish controls` and `publish portraits` "
+            f"write, got no such file @ {error.filename}"
+        ) from error
+    except (ImportError, ValueError) as error:
+        raise NotMeasured(str(error)) from error
+
+
+def _find(folder: Path) -> list[Shown] | None:
+    """Return every picture of the gallery; None for a folder without some of its data."""
+    if not (folder / PORTRAITS).exists():
+        return None
+    from taylor_verify.studies.gallery.page import gallery
+
+    try:
+        return gallery(folder)
+    except FileNotFoundError:
+        return None
+
+
+def _texts(found: list[Shown], folder: Path) -> dict[str, str]:
+    from taylor_verify.studies.gallery.page import texts
+
+    return texts(found, folder)
+
+
+STUDY: Final = Study(
+    name="gallery",
+    title="pictures of some motions, and of their errors",
+    duration="seconds",
+    measure=_measure,
+    page=f"{FOLDER}/README.md",
+    find=_find,
+    texts=_texts,
+    draw=lambda found: [one.picture for one in found],
+    needs_heyoka=False,
+)

@@ -1,0 +1,76 @@
+"""The study of growth: ensembles of starts, followed over decades of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic
+from typing import Final
+
+from taylor_verify.studies.growth import page
+from taylor_verify.studies.growth.page import GROWTH, LONG
+from taylor_verify.studies.study import Measured, NotMeasured, Option, Progress, Study
+
+# Below the folder that is published: what is local there is nobody else's.
+_CHECKPOINTS: Final = "local/growth"
+# Between two signs of life, in seconds.
+_PATIENCE: Final = 10.0
+
+
+def _measure(
+    folder: Path, progress: Progress, periods: float | None = None, long: bool = False
+) -> Measured:
+    """Follow the published ensembles, or the long one alone; a run that was stopped goes on."""
+    from taylor_verify.studies.growth import published
+
+    entries = published.LONG if long else published.PUBLISHED
+    checkpoints = folder / _CHECKPOINTS
+    try:
+        study = published.followed(entries, checkpoints, Pieces(progress.say), periods)
+    except ValueError as error:
+        raise NotMeasured(str(error)) from error
+    written = (LONG if long else GROWTH).write(folder, study)
+    # Only what is stored is done: until then it could still be taken up.
+    published.forget(entries, checkpoints)
+    return Measured(written)
+
+
+def _periods(text: str) -> float:
+    from taylor_verify.scenes.reading.table import exact_number
+
+    try:
+        return float(exact_number(text))
+    except (OverflowError, ValueError) as error:
+        raise ValueError(f"expected a number of periods, got {text!r}") from error
+
+
+class Pieces:
+    """A line for every ensemble, and now and then how far it is."""
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say, self._label, self._said = say, "", 0.0
+
+    def __call__(self, label: str, done: int, of: int) -> None:
+        if done == of:
+            self._say(f"{label}: done")
+        elif label != self._label or monotonic() - self._said >= _PATIENCE:
+            self._say(f"{label}: piece {done} of {of}")
+        else:
+            return
+        self._label, self._said = label, monotonic()
+
+
+STUDY: Final = Study(
+    name="growth",
+    title="how drift and phase grow over decades of time",
+    duration="ten minutes, all cores; with --long an hour or more",
+    measure=_measure,
+    page=page.PAGE,
+    find=page.find,
+    texts=page.texts,
+    draw=page.pictures,
+    options=(
+        Option("periods", "follow none for more than so many periods", _periods),
+        Option("long", "follow the one ensemble of 100 million periods instead"),
+    ),
+)

@@ -1,0 +1,46 @@
+"""The reference as a study: the exact trajectory of every shipped scene, in digits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.studies.reference import page
+from taylor_verify.studies.study import Bulk, Measured, Progress, Published, Study
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    from taylor_verify.scenes.library import names
+    from taylor_verify.studies.reference.measure import references
+
+    scenes = names()
+    return Measured(page.write(folder, references(scenes, progress.counting(len(scenes)))))
+
+
+def _lacking(report: Published) -> tuple[str, ...]:
+    """Return the scenes with a sheet whose JSON is missing, or is of another text of the scene."""
+    target = report.folder / page.FOLDER
+    return tuple(
+        scene
+        for scene in report.without(page.FOLDER)
+        if (target / f"{of_scene(scene)}.csv").exists()
+    )
+
+
+def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
+    from taylor_verify.studies.reference.measure import references
+
+    return page.add_json(folder, references(scenes, progress.counting(len(scenes))))
+
+
+STUDY: Final = Study[None](
+    name="reference",
+    title="exact motions in digits, to test other programs with",
+    duration="a minute, all cores",
+    measure=_measure,
+    page=f"{page.FOLDER}/README.md",
+    needs_heyoka=False,
+    bulk=(Bulk("exact trajectories as JSON", (f"{page.FOLDER}/*.json",), _lacking, _add),),
+)

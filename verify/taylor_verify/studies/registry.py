@@ -1,0 +1,69 @@
+"""All studies, in the order in which indexes name them: this list is the only one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Final
+
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.studies.accuracy.study import STUDY as ACCURACY
+from taylor_verify.studies.claims.study import STUDY as CLAIMS
+from taylor_verify.studies.controls.study import STUDY as CONTROLS
+from taylor_verify.studies.enclosure.study import STUDY as ENCLOSURE
+from taylor_verify.studies.extremes.study import STUDY as EXTREMES
+from taylor_verify.studies.gallery.study import STUDY as GALLERY
+from taylor_verify.studies.growth.study import STUDY as GROWTH
+from taylor_verify.studies.portraits.study import STUDY as PORTRAITS
+from taylor_verify.studies.prices.study import STUDY as PRICES
+from taylor_verify.studies.reach.study import STUDY as REACH
+from taylor_verify.studies.reference.study import STUDY as REFERENCE
+from taylor_verify.studies.study import Study
+from taylor_verify.studies.tradeoff.study import STUDY as TRADEOFF
+from taylor_verify.studies.worst.study import STUDY as WORST
+
+STUDIES: Final[list[Study[Any]]] = [
+    ACCURACY,
+    CONTROLS,
+    TRADEOFF,
+    PRICES,
+    REACH,
+    GROWTH,
+    EXTREMES,
+    WORST,
+    CLAIMS,
+    ENCLOSURE,
+    PORTRAITS,
+    REFERENCE,
+    GALLERY,
+]
+
+
+class UnknownStudy(ValueError):  # noqa: N818 (it names what was asked for)
+    """Names of no studies; the text has a line for each."""
+
+
+def find(names: Iterable[str]) -> list[Study[Any]]:
+    """Return the studies of these names, each once, in the order asked. Raises UnknownStudy."""
+    known = {study.name: study for study in STUDIES}
+    asked = list(dict.fromkeys(names))
+    if faults := [_fault(name, list(known)) for name in asked if name not in known]:
+        raise UnknownStudy("\n".join(faults))
+    return [known[name] for name in asked]
+
+
+def _fault(name: str, known: list[str]) -> str:
+    if (word := name.removeprefix("--")) in known:
+        return f"expected `publish {word}`, got {name}"
+    close = get_close_matches(name, known, n=1)
+    hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(known)}"
+    return f"expected a study, got {name!r}; {hint}"
+
+
+def pictures(folder: Path) -> list[Picture]:
+    """Return every picture of a report folder whose data are there.
+
+    Raises OSError for files that cannot be read and ValueError for files that hold something else.
+    """
+    return [picture for study in STUDIES for picture in study.pictures(folder)]

@@ -1,0 +1,192 @@
+"""A study: something that is measured, stored below a report folder, and told in pages and pictures.
+
+Every folder of `studies` with a module `study` has one, and `registry` lists them all: the command line,
+the report, its index, the pictures, the paper and the missing data are made by going through that list.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+
+from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.records import store
+from taylor_verify.records.file_names import of_scene
+from taylor_verify.records.replacement import replace_files
+from taylor_verify.records.runs import Run, runs
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies import figures
+
+if TYPE_CHECKING:
+    from taylor_verify.batch.judging import Progress as JobProgress
+
+Document = TypeVar("Document")
+
+
+class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)
+    """A study that cannot be measured as it was asked for; the text is the message."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Signs of life of a measurement; silent unless given.
+
+    ``jobs`` and ``working`` open a bar for many runs, and a line for one long thing.
+    """
+
+    say: Callable[[str], None] = lambda words: None
+    jobs: Callable[[], AbstractContextManager[JobProgress | None]] = nullcontext
+    working: Callable[[str], AbstractContextManager[None]] = lambda what: nullcontext()
+
+    def counting(self, total: int) -> Callable[[str], None]:
+        """Return a function that names each thing as it ends, with its place among all."""
+        done = 0
+
+        def finished(name: str) -> None:
+            nonlocal done
+            done += 1
+            self.say(f"{done}/{total} {name}")
+
+        return finished
+
+
+class Measured(NamedTuple):
+    """Files that a study has written, what is to be said of them, and the exit status."""
+
+    written: Sequence[Path] = ()
+    messages: Sequence[str] = ()
+    status: int = 0
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option of one study, by its name without hyphens.
+
+    ``read`` makes its value of a text, and raises ValueError with what was expected and got; an option
+    without it is a switch.
+    """
+
+    name: str
+    help: str
+    read: Callable[[str], Any] | None = None
+    metavar: str = "N"
+
+
+@dataclass(frozen=True)
+class Published:
+    """The verdicts of a report folder, and the SHA-256 of every scene that can be run."""
+
+    folder: Path
+    verdicts: tuple[Verdict, ...]
+    digests: Mapping[str, str]
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        """The runs of scenes that can be run."""
+        return tuple(run for run in runs(self.verdicts) if run.scene in self.digests)
+
+    def without(self, place: str) -> tuple[str, ...]:
+        """Return the scenes that have no document of their present text in a folder below."""
+        scenes = dict.fromkeys(run.scene for run in self.runs)
+        return tuple(s for s in scenes if self._digest(place, s) != self.digests[s])
+
+    def _digest(self, place: str, scene: str) -> Any:
+        """Return the SHA-256 of the scene that a document was made of; None without a document."""
+        file = self.folder / place / f"{of_scene(scene)}.json"
+        return store.read_document(file).get("sha256") if file.exists() else None
+
+
+@dataclass(frozen=True)
+class Bulk:
+    """Files of a study that are made from the rest, which the repository leaves out.
+
+    ``what`` names them where they are counted, ``patterns`` are those of .gitignore below the folder.
+    ``lacking`` returns what is missing of a report, or belongs to other verdicts or to another text of a
+    scene; ``make`` makes that.
+    """
+
+    what: str
+    patterns: tuple[str, ...]
+    lacking: Callable[[Published], Sequence[Any]]
+    make: Callable[[Path, Sequence[Any], Progress], Iterable[Path]]
+
+
+def _no_document(folder: Path) -> None:
+    del folder
+
+
+@dataclass(frozen=True)
+class Study(Generic[Document]):
+    """One study.
+
+    Attributes
+    ----------
+    name, title
+        The word on the command line, and what its page has in a few words.
+    duration
+        The time that it takes to measure, in words.
+    measure
+        ``measure(folder, progress, **options)`` writes what it finds below the folder. It imports what it
+        needs when it is called: the list of all studies stays light. Raises NotMeasured.
+    page
+        The path of the page that indexes link to.
+    find
+        Returns what is stored below a folder, None where nothing is.
+    texts
+        Returns every page and sheet made of a document, by its path below the folder, which is given too: a
+        page shows the pictures that lie there.
+    draw
+        Returns the pictures made of a document.
+    """
+
+    name: str
+    title: str
+    duration: str
+    measure: Callable[..., Measured]
+    page: str = ""
+    find: Callable[[Path], Document | None] = _no_document
+    texts: Callable[[Document, Path], Mapping[str, str]] = lambda document, folder: {}
+    draw: Callable[[Document], Iterable[Picture]] = lambda document: ()
+    needs_heyoka: bool = True
+    options: tuple[Option, ...] = ()
+    bulk: tuple[Bulk, ...] = ()
+
+    def pages(self, folder: Path) -> dict[str, str]:
+        """Return pages and sheets of what is stored below ``folder``; nothing where nothing is.
+
+        Raises OSError for files that cannot be read and ValueError for files that hold something else.
+        """
+        document = self.find(folder)
+        return {} if document is None else self._pages(document, folder)
+
+    def pictures(self, folder: Path) -> list[Picture]:
+        """Return the pictures of what is stored below ``folder``. The errors are those of `pages`."""
+        document = self.find(folder)
+        return [] if document is None else [*self.draw(document)]
+
+    def publish(self, folder: Path) -> Measured:
+        """Draw what is stored below ``folder``, then make its pages.
+
+        Without matplotlib the pages are made all the same, and a message says so. Raises OSError, and
+        ValueError as `pages`.
+        """
+        document = self.find(folder)
+        if document is None:
+            return Measured()
+        drawn, messages = list[Path](), list[str]()
+        try:
+            drawn = figures.draw(folder, self.draw(document))
+        except ImportError as error:
+            messages = [f"pictures of {self.name} are not drawn: {error}"]
+        return Measured([*drawn, *replace_files(folder, self._pages(document, folder))], messages)
+
+    def _pages(self, document: Document, folder: Path) -> dict[str, str]:
+        data = folder / store.FOLDER
+        file = data / f"{self.name}.json"
+        place = file if file.exists() else data
+        with store.expecting(f"what `publish {self.name}` writes", place):
+            return dict(self.texts(document, folder))

@@ -1,0 +1,36 @@
+"""The study of speed against accuracy: every setting on some scenes, timed in fresh processes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.studies.study import Measured, Option, Progress, Study
+from taylor_verify.studies.tradeoff import page
+from taylor_verify.studies.tradeoff.stored import load, write
+
+
+def _measure(folder: Path, progress: Progress, outside: bool = False) -> Measured:
+    from taylor_verify.studies.tradeoff.measurement import measurement
+
+    found = measurement(with_outside=outside, finished=progress.say)
+    return Measured(write(folder, found.numbers(), found.times()))
+
+
+STUDY: Final = Study(
+    name="tradeoff",
+    title="speed against accuracy, every solver, measured once",
+    duration="minutes, a quiet machine; with --outside a quarter of an hour more",
+    measure=_measure,
+    page=page.PAGE,
+    find=load,
+    texts=page.texts,
+    draw=page.pictures,
+    options=(
+        Option(
+            "outside",
+            "measure compiled integrators of other libraries too, each solve a program of its own that "
+            "compiles first",
+        ),
+    ),
+)

@@ -1,0 +1,55 @@
+"""The study of the worst: a search for the largest error over attainable in families of extremes."""
+
+from __future__ import annotations
+
+from math import inf
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.studies.study import Measured, Option, Progress, Study
+from taylor_verify.studies.worst import page
+from taylor_verify.studies.worst.page import WORST
+
+
+def _measure(folder: Path, progress: Progress, seconds: float = 600.0, seed: int = 1) -> Measured:
+    """Search; the scenes that are found take the place of those that are shipped."""
+    from taylor_verify.scenes.library import WORST as SCENES
+    from taylor_verify.scenes.library import cases_directory
+    from taylor_verify.studies.worst.measure import FAMILIES, hunt, study
+
+    found = hunt(FAMILIES, seconds, seed, progress.counting(len(FAMILIES)))
+    scenes = {one.family.name: one.scene_text for one in found}
+    shipped = page.keep(cases_directory() / SCENES, scenes)
+    return Measured([*WORST.write(folder, study(found, seconds, seed)), *shipped])
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds < inf:
+        raise ValueError(f"expected a time in seconds above 0, got {text}")
+    return seconds
+
+
+def _seed(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"expected a whole number, got {text}") from None
+
+
+STUDY: Final = Study(
+    name="worst",
+    title="the worst that a search has found, family by family",
+    duration="ten minutes",
+    measure=_measure,
+    page=page.PAGE,
+    find=WORST.find,
+    texts=page.texts,
+    options=(
+        Option("seconds", "the time of the search; default: 600", _seconds, "S"),
+        Option("seed", "the seed of the search; default: 1", _seed),
+    ),
+)
