@@ -306,7 +306,7 @@ def paper(folder: Path) -> Answer:
         return files_written(files.write(folder))
     except ImportError as error:
         raise WrongCall(
-            f"expected markdown-it-py and latex2mathml, got {error} (pip install them) @ --paper"
+            f"expected pandoc, got {error} (pip install pypandoc_binary) @ --paper"
         ) from error
     except ValueError as error:
         raise WrongCall(f"{error} (--paper)") from error
