@@ -8,8 +8,7 @@ from builders.pages import compiled
 from builders.verdicts import MIXED, RECORD
 
 from taylor_verify.publish.markdown import Column, code, prose, table
-from taylor_verify.publish.paper import latex
-from taylor_verify.publish.paper.parsed import Page
+from taylor_verify.publish.paper import Page, latex
 from taylor_verify.studies import paper as files
 from taylor_verify.studies.report import publish, write
 
@@ -33,7 +32,7 @@ def test_pdflatex_takes_a_page_of_everything(tmp_path: Path) -> None:
             "- a\n- b\n\n1. c",
         ]
     )
-    (tmp_path / "all.tex").write_text(latex.document(Page("tables/all.md", text)), "utf-8")
+    (tmp_path / "all.tex").write_text(latex(Page("tables/all.md", text)), "utf-8")
     assert "Overfull" not in compiled(tmp_path, "all.tex", tmp_path)
 
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.publish.paper import html, latex
-from taylor_verify.publish.paper.parsed import FOLDER, Page
+from taylor_verify.publish.paper import FOLDER, HTML, LATEX, MAKERS, Page, html, latex, paper
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.studies import figures, registry
 
-PAPER: Final = f"paper{latex.SUFFIX}"
+PAPER: Final = f"paper{LATEX}"
 _TITLE: Final = "Verification of a Taylor integrator on Euler's and Kirchhoff's equations"
 
 # In the order in which a reader of the whole wants them. The gates are left out: a line for each of some
@@ -35,7 +34,7 @@ def write(folder: Path | str) -> list[Path]:
     Renderings of pages that are gone are removed.
 
     Raises OSError for files that cannot be read or written, ValueError for a page that is none, and
-    ImportError without markdown-it-py, latex2mathml or, where there are pictures, matplotlib.
+    ImportError without pypandoc or, where there are pictures, matplotlib.
     """
     place = Path(folder)
     texts = renderings(place)
@@ -59,10 +58,10 @@ def renderings(folder: Path) -> dict[str, str]:
     paths = [page.path for page in pages]
     texts: dict[str, str] = {}
     for page in pages:
-        texts[f"{FOLDER}/{page.stem}{latex.SUFFIX}"] = latex.document(page)
-        texts[f"{FOLDER}/{page.stem}{html.SUFFIX}"] = html.html(page, paths)
+        texts[f"{FOLDER}/{page.stem}{LATEX}"] = latex(page)
+        texts[f"{FOLDER}/{page.stem}{HTML}"] = html(page, paths)
     if pages:
-        texts[f"{FOLDER}/{PAPER}"] = latex.paper(_TITLE, [page.stem for page in pages])
+        texts[f"{FOLDER}/{PAPER}"] = paper(_TITLE, [page.stem for page in pages])
     return texts
 
 
@@ -72,6 +71,5 @@ def _text(file: Path) -> str:
 
 def _own(target: Path) -> list[Path]:
     """The files that name us as their maker."""
-    makers = {latex.SUFFIX: latex.MAKER, html.SUFFIX: html.MAKER}
-    found = [file for suffix in makers for file in target.glob(f"*{suffix}")]
-    return [file for file in found if first_line(file) == makers[file.suffix]]
+    found = [file for suffix in MAKERS for file in target.glob(f"*{suffix}")]
+    return [file for file in found if first_line(file) == MAKERS[file.suffix]]

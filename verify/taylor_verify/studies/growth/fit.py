@@ -17,9 +17,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from math import cos, exp, inf, isfinite, log, nan, pi, sin, sqrt, tan
+from math import isfinite, nan, sqrt, tan
 from typing import Any, Final
 
+import mpmath
 import numpy as np
 
 from taylor_verify.records.status import Status
@@ -262,47 +263,22 @@ def covariance_of(law: Law, times: Floats) -> Floats:
     return found
 
 
-# Two distributions, in closed form for whole degrees of freedom.
+# Two distributions.
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
-    """P(chi-square > value) for an even number of degrees of freedom: a Poisson sum (DLMF 8.4.8)."""
+    """P(chi-square > value); NaN for a value that is none."""
     if not value >= 0:
         return nan
-    half = value / 2
-    if half == inf:
-        return 0.0
-    terms, term = 1.0, 1.0
-    # exp(-half) underflows where the sum may be large: both in logarithms of its largest part.
-    shift = 0.0
-    for j in range(1, freedom // 2):
-        term *= half / j
-        terms += term
-        if terms > 1e200:
-            term, terms, shift = term / terms, 1.0, shift + log(terms)
-    return min(1.0, exp(log(terms) + shift - half))
+    return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))
 
 
 def student(freedom: int, level: float) -> float:
     """The t for which Student's variable is between -t and t with probability ``level``."""
-    low, high = 0.0, pi / 2
-    for _ in range(200):
-        middle = (low + high) / 2
-        if _student_within(middle, freedom) < level:
-            low = middle
-        else:
-            high = middle
-    return sqrt(freedom) * tan((low + high) / 2)
 
+    def excess(theta: mpmath.mpf) -> mpmath.mpf:
+        within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)
+        return within - level
 
-def _student_within(theta: float, freedom: int) -> float:
-    """P(|t| < sqrt(freedom) tan theta), by the finite sums in sines and cosines."""
-    s, c = sin(theta), cos(theta)
-    first = 1 if freedom % 2 else 0
-    term, total = (c, c) if first else (1.0, 1.0)
-    for j in range(first + 2, freedom - 1, 2):
-        term *= c * c * (j - 1) / j
-        total += term
-    if not first:
-        return s * total
-    return 2 / pi * (theta + (s * total if freedom > 1 else 0.0))
+    # t = sqrt(freedom) tan(theta) has its distribution on a bounded interval.
+    return sqrt(freedom) * tan(mpmath.findroot(excess, (0, mpmath.pi / 2), solver="illinois"))
