@@ -34,6 +34,11 @@ def euler_rates(body: RigidBody) -> list[Polynomial]:
     return [_sum(*(_times(c, p) for c, p in zip(row, torque, strict=True))) for row in inverse]
 
 
+def momentum_rates(body: RigidBody) -> list[Polynomial]:
+    """H x omega with omega = K H, in products of H."""
+    return _cross_form(0, body.inverse_inertia)
+
+
 def impulse_rates(body: ImmersedBody) -> list[Polynomial]:
     """x x Omega, and y x Omega + x x U, in products of x and y alone.
 
@@ -55,7 +60,7 @@ def driven(free: list[Polynomial], body: Body, clock: int) -> list[Polynomial]:
 
 
 def _cross_form(first: int, rows: Matrix) -> list[Polynomial]:
-    """The vector of the states ``first``, ... times a linear form of all six, given by its rows."""
+    """The vector of the states ``first``, ... times a linear form of all states, given by its rows."""
     entries = [[(i, c) for i, c in enumerate(row) if c] for row in rows]
     forward = [{(first + j, i): c for i, c in entries[k]} for j, k in ((1, 2), (2, 0), (0, 1))]
     backward = [{(first + k, i): -c for i, c in entries[j]} for j, k in ((1, 2), (2, 0), (0, 1))]
