@@ -26,11 +26,9 @@ from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps, products
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.conditioning.variation import integrated
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.instants import chosen
-from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
 
@@ -259,12 +257,8 @@ def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
 
 def _is_short(scene: Scene, flow: Flow) -> bool:
     """Return True if steps of float64 along the orbit cost less than four or seven orbits beside it."""
-    start, body = scene.initial, scene.body
-    if isinstance(body, RigidBody) and isinstance(start, Spin):
-        z = tensors.apply(body.inertia, start.omega)
-    else:
-        assert isinstance(start, Impulse)
-        z = start.linear + start.angular
+    kind = kind_of(scene.body)
+    z = kind.momentum(scene.body, kind.state(scene.initial))
     counted = np.array(
         [float(value / unit) for value, unit in zip(z, flow.components, strict=True)]
     )

@@ -17,10 +17,9 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps
 from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Unsettled
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -136,7 +135,7 @@ def derivatives(
     scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
 ) -> Derivatives:
     """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
-    start = momentum(scene)
+    start, kind = momentum(scene), kind_of(scene.body)
     step = Fraction(1, 10**exponent)
     with mp.workdps(digits):
         here = solution(scene).evaluate(elapsed, digits)
@@ -145,18 +144,23 @@ def derivatives(
             there = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
             columns.append(difference(here, there, mp.convert(step)))
         units = real((start.units,))
+        changes = [kind.momentum_rows(scene.body, column) for column in columns]
+        centre = kind.centre(scene.initial)
+        path = np.empty((0, 3), dtype=object)
+        if "centre" in here and centre is not None:
+            path = here["centre"] - real((centre,))
         return Derivatives(
             exponent=exponent,
             digits=digits,
             units=start.units,
-            momentum=np.stack([_momenta(scene, column) for column in columns], axis=2) / units.T,
+            momentum=np.stack(changes, axis=2) / units.T,
             others={
                 name: np.stack([column[name] for column in columns], axis=2)
                 for name in ("attitude", "centre")
                 if name in here
             },
-            state=_momenta(scene, here) / units,
-            centre=_path(scene, here),
+            state=kind.momentum_rows(scene.body, here) / units,
+            centre=path,
         )
 
 
@@ -179,21 +183,6 @@ def _rotation_vectors(turns: Array) -> Array:
     """The rotation vector of small rotations: the antisymmetric part of their matrices."""
     j, k = [1, 2, 0], [2, 0, 1]
     return (turns[:, k, j] - turns[:, j, k]) / 2
-
-
-def _momenta(scene: Scene, here: Quantities) -> Array:
-    """H, or x and y as one vector, at every time."""
-    if isinstance(scene.body, RigidBody):
-        momenta: Array = here["omega"] @ real(scene.body.inertia).T
-        return momenta
-    return np.concatenate([here["linear_impulse"], here["angular_impulse"]], axis=1)
-
-
-def _path(scene: Scene, here: Quantities) -> Array:
-    """The centre from its place at the start; no rows where it is not tracked."""
-    if "centre" not in here or isinstance(scene.initial, Spin):
-        return np.empty((0, 3), dtype=object)
-    return here["centre"] - real((scene.initial.centre,))
 
 
 def _balls(matrix: Array) -> arb_mat:

@@ -21,8 +21,7 @@ import numpy as np
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.conditioning.inputs import momentum
-from taylor_verify.exact.equations import impulse_rates, momentum_rates
-from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -73,8 +72,10 @@ class Flow:
     @classmethod
     def of(cls, scene: Scene) -> Flow:
         """Return the equations of a scene's body, in units of its start."""
-        constant, products, omega, velocity = _equations(scene)
-        units = momentum(scene).units
+        kind, units = kind_of(scene.body), momentum(scene).units
+        equations = kind.momentum_equations(scene.body)
+        constant, omega, velocity = equations.constant, equations.spin, equations.velocity
+        products = {(i, *pair): c for i, p in enumerate(equations.rates) for pair, c in p.items()}
         d = len(units)
         scaled = {
             (i, j, k): c * units[j] * units[k] / units[i] for (i, j, k), c in products.items()
@@ -90,11 +91,10 @@ class Flow:
         speeds = [c * u for row in velocity for c, u in zip(row, units, strict=True) if c]
         fastest = max((abs(s) for s in speeds), default=Fraction(0))
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
-        names = ("momentum",) if d == 3 else ("linear_impulse", "angular_impulse")
         return cls(
-            momenta=dict(zip(names, units[::3], strict=True)),
+            momenta=dict(zip(kind.momenta, units[::3], strict=True)),
             constant=np.array([float(c * time / u) for c, u in zip(constant, units, strict=True)]),
-            swing=clocks.swing(scene.body, units, time),
+            swing=clocks.swing(kind.manufactured_momentum(scene.body), units, time),
             twice=twice,
             omega=_floats(omega, units, time),
             velocity=_floats(velocity, units, time / length) if velocity else None,
@@ -161,20 +161,6 @@ def cross_matrix(v: Floats) -> Floats:
 def _norm(matrices: Floats) -> Floats:
     found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
     return found
-
-
-def _equations(scene: Scene) -> tuple[Vector, dict[tuple[int, int, int], Fraction], Matrix, Matrix]:
-    """z' = constant + the sum of products (i, j, k): c z_j z_k; and Omega, U as rows over z."""
-    body = scene.body
-    velocity: Matrix
-    if isinstance(body, RigidBody):
-        constant, rates = body.moment, momentum_rates(body)
-        velocity, omega = (), body.inverse_inertia
-    else:
-        constant, rates = body.force + body.couple, impulse_rates(body)
-        velocity, omega = body.energy_matrix[:3], body.energy_matrix[3:]
-    products = {(i, *pair): c for i, rate in enumerate(rates) for pair, c in rate.items()}
-    return constant, products, omega, velocity
 
 
 def _floats(matrix: Matrix, units: Vector, factor: Fraction) -> Floats:

@@ -28,7 +28,7 @@ from taylor_verify.exact.conditioning.inputs import Input, body_input, start_inp
 from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Unsettled
-from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import ZERO_VECTOR
@@ -215,7 +215,7 @@ def _sizes(motion: Quantities) -> dict[str, Array]:
 
 def _from_origin(scene: Scene) -> Scene:
     """The same motion with its centre at the origin: digits are those of the path, wherever it begins."""
-    if isinstance(scene.initial, Spin):
+    if not isinstance(scene.initial, Impulse):
         return scene
     return replace(scene, initial=replace(scene.initial, centre=ZERO_VECTOR))
 

@@ -26,8 +26,8 @@ from taylor_verify.exact.conditioning.flow import (
     cross_matrix,
     products,
 )
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
@@ -92,11 +92,7 @@ class _Samples:
 
 def _samples(scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion) -> _Samples:
     with mp.workdps(_FLOAT_DIGITS):
-        if isinstance(scene.body, RigidBody):
-            inertia = np.array([[mp.convert(c) for c in row] for row in scene.body.inertia])
-            z = truth["omega"] @ inertia.T
-        else:
-            z = np.concatenate([truth["linear_impulse"], truth["angular_impulse"]], axis=1)
+        z = kind_of(scene.body).momentum_rows(scene.body, truth)
         nothing = np.empty((0, 3), dtype=object)
         path = truth.quantities.get("centre", nothing) / mp.convert(flow.length)
         return _Samples(

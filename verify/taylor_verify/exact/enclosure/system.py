@@ -14,13 +14,14 @@ from itertools import pairwise
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact import clocks, equations
+from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import lamb
-from taylor_verify.scenes.bodies import Body, Ellipsoid, RigidBody
-from taylor_verify.scenes.motion import Spin, State
+from taylor_verify.exact.equations import driven
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector, diagonal
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class System:
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
     system, body = posed_exactly(scene), scene.body
-    if isinstance(body, RigidBody) or body.ellipsoid is None:
+    if not isinstance(body, ImmersedBody) or body.ellipsoid is None:
         return system
     clock = system.size - 6
     without = _forms(lamb.without_coefficients(body), 6, clock)
@@ -78,13 +79,12 @@ def posed(scene: Scene) -> System:
 
 def posed_exactly(scene: Scene) -> System:
     """The same, with the rational coefficients of the scene for an ellipsoid as well."""
-    body, start = scene.body, moving(scene.initial)
-    motion = body.manufactured
+    body, kind = scene.body, kind_of(scene.body)
+    start, motion = kind.state(scene.initial), body.manufactured
     clock = () if motion is None else clocks.at(motion, Fraction(0), 0)
-    ends = (3,) if isinstance(body, RigidBody) else (3, 6)
-    drift = equations.euler_drift(body) if isinstance(body, RigidBody) else body.force + body.couple
+    ends = tuple(range(3, len(start) + 1, 3))
     return System(
-        constant=drift + (Fraction(0),) * len(clock),
+        constant=kind.equations(body).constant + (Fraction(0),) * len(clock),
         forms=_forms(body, len(start), len(clock)),
         blocks=ends if motion is None else (*ends, len(start) + len(clock)),
         start=start + clock,
@@ -93,25 +93,15 @@ def posed_exactly(scene: Scene) -> System:
 
 def _forms(body: Body, size: int, clock: int) -> Forms:
     """The exact coefficients of a body whose state has this size, beside a clock."""
-    matrices: tuple[Matrix, Matrix]
-    if isinstance(body, RigidBody):
-        matrices, free = (diagonal((Fraction(1),) * 3), ()), equations.euler_rates(body)
-    else:
-        matrices = body.energy_matrix[3:], body.energy_matrix[:3]
-        free = equations.impulse_rates(body)
+    free = kind_of(body).equations(body)
     n, padding = size + clock, (Fraction(0),) * clock
     hessian = [[Fraction(0)] * (n * n) for _ in range(n)]
-    for row, polynomial in zip(hessian, equations.driven(free, body, size), strict=True):
+    for row, polynomial in zip(hessian, driven(free.rates, body.manufactured, size), strict=True):
         for (a, b), coefficient in polynomial.items():
             row[a * n + b] += coefficient
             row[b * n + a] += coefficient
-    spin, velocity = (tuple(row + padding for row in rows) for rows in matrices)
+    spin, velocity = (tuple(row + padding for row in rows) for rows in (free.spin, free.velocity))
     return Forms(tuple(map(tuple, hessian)), spin, velocity)
-
-
-def moving(state: State) -> Vector:
-    """The state that enters its own equations: omega, or x and y."""
-    return state.omega if isinstance(state, Spin) else state.linear + state.angular
 
 
 @dataclass(frozen=True)
