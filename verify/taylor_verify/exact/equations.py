@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.clocks import Polynomial
@@ -40,11 +41,20 @@ def cross(left: Matrix, right: Matrix) -> list[Polynomial]:
     With the forms put in, what cancels in exact coefficients is gone: a vector that stays zero for a whole
     body is disturbed by no rounding.
     """
-    pairs = ((1, 2), (2, 0), (0, 1))
-    return [
-        total(_product(left[j], right[k]), times(Fraction(-1), _product(left[k], right[j])))
-        for j, k in pairs
-    ]
+    one, other = (
+        [[(place, c) for place, c in enumerate(row) if c] for row in form] for form in (left, right)
+    )
+    found: list[Polynomial] = []
+    for j, k in ((1, 2), (2, 0), (0, 1)):
+        rate: dict[tuple[int, int], Fraction] = {}
+        backward = [(place, -c) for place, c in one[k]]
+        for first, second in ((one[j], other[k]), (backward, other[j])):
+            for (a, p), (b, q) in product(first, second):
+                # a b and b a are one product.
+                pair = (min(a, b), max(a, b))
+                rate[pair] = rate[pair] + p * q if pair in rate else p * q
+        found.append({pair: c for pair, c in rate.items() if c})
+    return found
 
 
 def times(factor: Fraction, polynomial: Polynomial) -> Polynomial:
@@ -58,14 +68,3 @@ def total(*polynomials: Polynomial) -> Polynomial:
         for pair, coefficient in polynomial.items():
             found[pair] = found.get(pair, Fraction(0)) + coefficient
     return {pair: coefficient for pair, coefficient in found.items() if coefficient}
-
-
-def _product(left: Vector, right: Vector) -> Polynomial:
-    """The product of two linear forms; a b and b a are one product."""
-    found: dict[tuple[int, int], Fraction] = {}
-    for a, one in enumerate(left):
-        for b, other in enumerate(right):
-            if one and other:
-                pair = (min(a, b), max(a, b))
-                found[pair] = found.get(pair, Fraction(0)) + one * other
-    return found
