@@ -15,7 +15,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.elements import disturbance
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.kirchhoff.elements import discriminant, stability
+from taylor_verify.exact.kirchhoff.clebsch_elements import discriminant, stability
 from taylor_verify.exact.kirchhoff.quartic import Nutation, value
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.explain.explanation import explanation

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.elements import elements
 from taylor_verify.judge.floor import inputs
 from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load

@@ -14,7 +14,7 @@ from builders.scenes import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import sensitivity as module
-from taylor_verify.exact.conditioning.condition import derivatives
+from taylor_verify.exact.conditioning.differences import derivatives, difference
 from taylor_verify.exact.conditioning.inputs import body_input
 from taylor_verify.exact.conditioning.sensitivity import Sensitivity, sensitivity
 from taylor_verify.exact.rotation import rotation_matrix
@@ -289,7 +289,7 @@ def test_the_flow_is_the_derivative_by_time(name: str) -> None:
     flow = known(name).flow
     before, after = (solution(SCENES[name]).motion([MIDDLE + s], 40) for s in (-STEP, STEP))
     with mp.workdps(40):
-        found = module.difference(before.quantities, after.quantities, 2 * mp.convert(STEP))
+        found = difference(before.quantities, after.quantities, 2 * mp.convert(STEP))
         assert set(found) == set(flow)
         for quantity, rates in flow.items():
             # STEP^2/6 of a third derivative of some tens.
@@ -314,9 +314,7 @@ def test_a_turn_or_a_shift_of_the_start_moves_the_path() -> None:
         motions = [solution(turned(CLEBSCH, axis, s * e)).motion(TIMES, 40) for s in (-1, 1)]
         with mp.workdps(40):
             # A quaternion 1 + e/2 turns by 2 atan(e/2): the angle is 2 e apart, up to e^3.
-            moved = module.difference(
-                motions[0].quantities, motions[1].quantities, 2 * mp.convert(e)
-            )
+            moved = difference(motions[0].quantities, motions[1].quantities, 2 * mp.convert(e))
             for name, rows in moved.items():
                 assert largest(rows - found[name, "attitude"][:, :, axis]) <= mpf("1e-18")
     with mp.workdps(40):

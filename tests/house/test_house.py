@@ -176,6 +176,24 @@ def _beyond(
             yield f"expected {expected}, got {target} @ {module}:{line}"
 
 
+_BODIES: Final = ("RigidBody", "ImmersedBody")
+# Types of bodies are named in the room of each, in the registry, and where ellipsoids are formed.
+_NAMES_BODIES: Final = (
+    *("taylor_verify.exact.euler", "taylor_verify.exact.kirchhoff", "taylor_verify.exact.registry"),
+    *("taylor_verify.exact.ellipsoid", "taylor_verify.exact.enclosure.lamb"),
+    "taylor_verify.exact.enclosure.system",
+)
+
+
+def asks_the_registry(module: str, source: str) -> Iterator[str]:
+    """exact names a type of body in the room of that body only; all else asks exact.registry."""
+    if room(module) != "exact" or within(module, *_NAMES_BODIES):
+        return
+    for target, line, _ in imports(source):
+        if within(target, *(f"taylor_verify.scenes.bodies.{name}" for name in _BODIES)):
+            yield f"expected exact.registry.kind_of, got {target} @ {module}:{line}"
+
+
 def heyoka_has_its_place(module: str, source: str) -> Iterator[str]:
     """heyoka is imported only in models and in solvers/taylor."""
     placed = within(module, "taylor_verify.models") or module.startswith(
@@ -254,6 +272,7 @@ RULES: Final = (
     records_stand_alone,
     scenes_stand_alone,
     publish_reads_records,
+    asks_the_registry,
     heyoka_has_its_place,
     batch_stands_below_the_verbs,
     studies_stand_below_the_verbs,
@@ -451,6 +470,12 @@ PLANTED = [
         "taylor_verify.publish.plots",
         "import taylor_verify.scenes.scene",
         "scenes",
+    ),
+    (
+        asks_the_registry,
+        "taylor_verify.exact.units",
+        "from taylor_verify.scenes.bodies import Body, RigidBody",
+        "RigidBody",
     ),
     (heyoka_has_its_place, "taylor_verify.judge.errors.state", "import heyoka as hy", "heyoka"),
     (heyoka_has_its_place, "taylor_verify.solvers.scipy", "from heyoka import par", "heyoka.par"),

@@ -16,11 +16,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import libmp, mp
 
-from taylor_verify.exact.conditioning import gathering
-from taylor_verify.exact.conditioning.condition import transition
-from taylor_verify.exact.conditioning.gathering import Path, path
-from taylor_verify.exact.conditioning.inputs import momentum
-from taylor_verify.exact.conditioning.variation import stepped
+from taylor_verify.exact.conditioning import condition
+from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
+from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import state_errors
@@ -190,11 +189,11 @@ def _change(
 
 @pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
 def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
-    """Integers from differences and factors of float64 give one answer, attitude and centre too."""
-    times = list(path(asked).elapsed)
-    found = stepped(asked, solution(asked), momentum(asked).units, times)
+    """Differences and variational equations give one answer, attitude and centre too."""
+    times, flow = path(asked).elapsed, Flow.of(asked)
+    found = integrated(asked, flow, times)
     assert found is not None
-    routes = gathering._sharp(asked, times), gathering._ByIntegration.of(asked, times, found)
+    routes = sharp(asked, flow, times), Path.of(asked, flow, times, found)
     draw = np.random.default_rng(1)
     errors = draw.uniform(0, 1, (len(times), 3 * len(routes[0].blocks)))
     one, other = (_in_scene_units(route, errors) for route in routes)
@@ -231,7 +230,7 @@ def test_an_error_of_every_component_is_between_one_norm_and_the_root_of_three()
     orbit = path(RIGID)
     errors = np.zeros((len(orbit.elapsed), 6))
     errors[0, :3] = 1
-    norms = transition(RIGID, orbit.elapsed).norms("momentum", "momentum")[:, 0]
+    norms = transition(RIGID, orbit.elapsed).norms("momentum", "momentum")
     found = orbit.gathered(errors)["momentum"]
     assert (norms * (1 - 1e-3) <= found).all()
     assert (found <= 3**0.5 * norms * (1 + 1e-3)).all()
@@ -341,9 +340,9 @@ def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.Monk
     """Samples that meet a motion in one phase find the floor that every radian has; alone, a tenth."""
     asked = in_step(41)
     found = _floor(asked, 14505)
-    monkeypatch.setattr(gathering, "few", lambda elapsed: list(elapsed))
+    monkeypatch.setattr(condition, "few", lambda elapsed: list(elapsed))
     alone = _floor_again(asked, 14505)
-    monkeypatch.setattr(gathering, "_REGULAR", 0)
+    monkeypatch.setattr(condition, "_REGULAR", 0)
     resolved = _floor_again(asked, 14505)
     # A few dozen times stand for a thousand whose parts differ a hundredfold: within the gates' factor.
     assert (found[1:] >= 0.2 * resolved[1:]).all()

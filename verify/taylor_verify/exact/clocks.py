@@ -17,7 +17,6 @@ import numpy as np
 from flint import arb, fmpq
 from mpmath import mp
 
-from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.precision import exact_value, floor_log2
 from taylor_verify.scenes.tensors import Vector
@@ -76,13 +75,10 @@ class Swing(NamedTuple):
         return clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
 
 
-def swing(body: Body, units: Vector, time: Fraction) -> Swing:
-    """Of z = H, or z = (x, y), counted in ``units``, with time in ``time``."""
-    motion = body.manufactured
+def swing(motion: Manufactured | None, units: Vector, time: Fraction) -> Swing:
+    """The clock of a motion that is counted in ``units``, with time in ``time``."""
     if motion is None:
         return Swing(np.zeros((len(units), 0)), np.zeros((0, 0)))
-    if isinstance(body, RigidBody):
-        motion = motion.mapped(body.inertia)
     columns = [motion.constant, *(v for wave in motion.waves for v in (wave.cosine, wave.sine))]
     rows = [[float(z / one) for z, one in zip(c, units, strict=True)] for c in columns]
     turning = np.zeros((len(columns), len(columns)))

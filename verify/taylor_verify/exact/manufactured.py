@@ -22,11 +22,10 @@ import numpy as np
 from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Settled
 from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 REGIME: Final = "manufactured"
 # What the elements of an orbit are told by instead.
@@ -55,14 +54,9 @@ def _motion(scene: Scene) -> Manufactured:
         raise NoClosedForm("the scene has no manufactured motion")
     if scene.track:
         raise NoClosedForm("the frame of a manufactured motion has no closed form")
-    if _start(scene) != motion.start:
+    if kind_of(scene.body).state(scene.initial) != motion.start:
         raise NoClosedForm("the start is not that of the manufactured motion")
     return motion
-
-
-def _start(scene: Scene) -> Vector:
-    initial = scene.initial
-    return initial.omega if isinstance(initial, Spin) else initial.linear + initial.angular
 
 
 @final
@@ -142,9 +136,5 @@ def _turned(angle: Fraction, bits: int) -> tuple[mpf, mpf]:
 
 def _parts(scene: Scene, rows: Sequence[Sequence[Any]]) -> dict[str, list[Sequence[Any]]]:
     """The rows by the names of what they hold."""
-    if scene.model == "euler":
-        return {"omega": list(rows)}
-    return {
-        "linear_impulse": [row[:3] for row in rows],
-        "angular_impulse": [row[3:] for row in rows],
-    }
+    names = kind_of(scene.body).moving
+    return {name: [row[3 * k : 3 * k + 3] for row in rows] for k, name in enumerate(names)}

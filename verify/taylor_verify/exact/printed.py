@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
-from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
@@ -92,13 +93,10 @@ def _printed_radius(radius: Fraction, digits: int) -> str:
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
     """The initial state by name, as rationals: what is zero has no digits but that one."""
-    initial = scene.initial
-    if isinstance(initial, Spin):
-        state: dict[str, Any] = {"omega": initial.omega}
-    else:
-        state = {"linear_impulse": initial.linear, "angular_impulse": initial.angular}
-        state["centre"] = initial.centre
-    state["attitude"] = rotation_matrix(initial.attitude)
+    initial, kind = scene.initial, kind_of(scene.body)
+    z = kind.state(initial)
+    state: dict[str, Any] = {name: z[3 * k : 3 * k + 3] for k, name in enumerate(kind.moving)}
+    state |= {"attitude": rotation_matrix(initial.attitude), "centre": kind.centre(initial)}
     return {name: np.array(values, dtype=object) for name, values in state.items()}
 
 

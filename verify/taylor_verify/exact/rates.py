@@ -17,19 +17,14 @@ from mpmath import mp
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.enclosure.system import posed_exactly
-from taylor_verify.exact.units import units
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.units import Units
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-
-# Blocks of the state, then attitude and centre.
-_STATES: Final = {
-    "euler": ("omega", "attitude"),
-    "kirchhoff": ("linear_impulse", "angular_impulse", "attitude", "centre"),
-}
 
 # Units of 2^-500 to 2^500 leave as much again to what is counted in them.
 _MODERATE: Final = 500
@@ -55,19 +50,20 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     ``elapsed`` are the times of its rows since the start, the scene's own unless they are given; loads
     that change with time, those of a manufactured motion, ask for them.
     """
-    scale, names = units(scene), _STATES[scene.model]
-    exponents = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=False))
+    scale, moving = _units(scene), kind_of(scene.body).moving
+    names = (*moving, "attitude", "centre")
+    exponents = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=True))
     values = {
         name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
     }
-    blocks = [values[name] for name in names[: len(scale.blocks)]]
+    blocks = [values[name] for name in moving]
     manufactured = scene.body.manufactured
     if manufactured is not None:
         times = scene.clock.elapsed if elapsed is None else elapsed
         blocks.append(clocks.floats(manufactured, times))
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
         found = _flow(scene).derivatives(np.concatenate(blocks, axis=1), values.get("attitude"))
-    velocity, acceleration = (_by_name(derivatives, names) for derivatives in found)
+    velocity, acceleration = (_by_name(derivatives, moving) for derivatives in found)
     return Rates(
         velocity={name: velocity[name] for name in values},
         acceleration={name: acceleration[name] for name in values},
@@ -76,12 +72,16 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     )
 
 
-def _by_name(derivatives: Sequence[Floats], names: Sequence[str]) -> dict[str, Floats]:
-    """The derivatives of the state apart, by block."""
+def _by_name(derivatives: Sequence[Floats], moving: Sequence[str]) -> dict[str, Floats]:
+    """The derivatives of the state apart, by block; then those of the frame, as far as it is tracked."""
     state, *frame = derivatives
-    count = len(names) - 2 if len(names) > 2 else 1
-    blocks = [state[:, 3 * k : 3 * k + 3] for k in range(count)]
-    return dict(zip(names, [*blocks, *frame], strict=False))
+    blocks = {name: state[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
+    return blocks | dict(zip(("attitude", "centre"), frame, strict=False))
+
+
+def _units(scene: Scene) -> Units:
+    kind = kind_of(scene.body)
+    return kind.units(scene.body, kind.state(scene.initial))
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _cross_matrices(vectors: Floats) -> Floats:
 
 @lru_cache(maxsize=16)
 def _flow(scene: Scene) -> _Flow:
-    system, scale = posed_exactly(scene), units(scene)
+    system, scale = posed_exactly(scene), _units(scene)
     n, time = system.size, power_of_two(scale.time)
     # The clock of a manufactured motion is of size one.
     blocks = [*scale.blocks, *[0] * (len(system.blocks) - len(scale.blocks))]

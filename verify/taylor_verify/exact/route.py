@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from importlib import import_module
 from typing import Final, final
 
 from taylor_verify.exact.balls import Enclosed
+from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.motion import Motion
@@ -20,19 +20,7 @@ _FEW_PRECISIONS: Final = 3
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
 CLOSED_ROUTES: Final = ("arb", "mpmath")
-# Each answers a scene or raises NoClosedForm. Imported when asked for: they load different libraries.
-_CLOSED_FORMS: Final[Mapping[tuple[str, str], str]] = {
-    ("euler", "arb"): "taylor_verify.exact.euler.theta:enclosed",
-    ("euler", "mpmath"): "taylor_verify.exact.euler.jacobi:closed_form",
-    ("kirchhoff", "arb"): "taylor_verify.exact.kirchhoff.weber.enclosure:enclosed",
-    ("kirchhoff", "mpmath"): "taylor_verify.exact.kirchhoff.weber.sums:closed_form",
-}
-# The same for a rigid body under a constant moment.
-_LOADED: Final[Mapping[str, str]] = {
-    "arb": "taylor_verify.exact.euler.moments.closed:enclosed",
-    "mpmath": "taylor_verify.exact.euler.moments.closed:closed_form",
-}
-# The same for a body with a manufactured motion, of either model.
+# The closed form of a body with a manufactured motion, of any kind.
 _MANUFACTURED: Final[Mapping[str, str]] = {
     "arb": "taylor_verify.exact.manufactured:enclosed",
     "mpmath": "taylor_verify.exact.manufactured:doubled",
@@ -102,10 +90,7 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 def _closed_form(scene: Scene, route: str) -> Solution:
     if scene.body.manufactured is not None:
         place = _MANUFACTURED[route]
-    elif scene.model == "euler" and not scene.body.is_free:
-        place = _LOADED[route]
     else:
-        place = _CLOSED_FORMS[scene.model, route]
-    module, name = place.split(":")
-    make: Callable[[Scene], Solution] = getattr(import_module(module), name)
-    return make(scene)
+        place = kind_of(scene.body).closed_form(scene.body, route)
+    found: Solution = function_at(place)(scene)
+    return found

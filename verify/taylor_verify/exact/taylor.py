@@ -21,10 +21,11 @@ from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls, midpoint, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
 from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.system import System, moving, posed
+from taylor_verify.exact.enclosure.system import System, posed
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
-from taylor_verify.scenes.motion import Impulse, Motion, State
+from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.scene import Scene
 
 _GUARD_BITS: Final = 40
@@ -176,7 +177,7 @@ class _Enclosing(Solution):
         ]
 
     def _state_names(self) -> tuple[str, ...]:
-        return ("omega",) if self.scene.model == "euler" else ("linear_impulse", "angular_impulse")
+        return kind_of(self.scene.body).moving
 
     def _gathered(self, rows: Sequence[_Proven]) -> Motion:
         """The rows as one motion; the radius of a row is that of its widest quantity."""
@@ -251,7 +252,7 @@ class _Arcs(_Enclosing):
         whole = Course.of(self._system, (), None, bits, most_bits)
         for number, span in times.items():
             start = self.starts[number]
-            state = balls(moving(start))
+            state = balls(kind_of(self.scene.body).state(start))
             if manufactured is not None:
                 state += clocks.balls_at(manufactured, self.begins[number])
             arc = replace(whole, start=state, place=_place(self.scene, start))
@@ -271,7 +272,7 @@ def _place(scene: Scene, initial: State) -> Place | None:
     """The frame at the start in balls, at the ambient precision; None where it is not tracked."""
     if not scene.track:
         return None
-    centre = initial.centre if "centre" in scene.track and isinstance(initial, Impulse) else None
+    centre = kind_of(scene.body).centre(initial) if "centre" in scene.track else None
     return Place.of(rotation_matrix(initial.attitude), centre)
 
 

@@ -16,7 +16,6 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge import accumulated as series
@@ -35,6 +34,7 @@ from taylor_verify.judge.errors.state import (
 )
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import motion_of, rows_at

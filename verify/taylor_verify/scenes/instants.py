@@ -76,3 +76,14 @@ class EquallySpaced(Instants):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return EquallySpaced, (self.first, self.step, len(self))
+
+
+def chosen(instants: Sequence[Fraction], most: int) -> list[Fraction]:
+    """Return at most so many of the instants, evenly, first and last among them."""
+    return [instants[k] for k in evenly(len(instants), most)]
+
+
+def evenly(samples: int, most: int) -> list[int]:
+    """Return at most so many indices, evenly, first and last among them."""
+    count = min(samples, most)
+    return sorted({round(k * (samples - 1) / max(count - 1, 1)) for k in range(count)})

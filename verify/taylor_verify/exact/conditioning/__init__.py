@@ -1,1 +1,4 @@
-"""The derivative of an exact motion in its data and its state."""
+"""The derivative of the motion by its data and its state.
+
+Two ways lead to it: differences of the exact solution, and the variational equations in float64.
+"""

@@ -1,94 +1,216 @@
-"""The condition of an orbit: how far a small error, made at one instant, is carried to another.
+"""The condition of an orbit: how far errors that are made on it are carried, and how they add up.
 
-The transition matrix comes from differences of the exact solution at high precision, so it shares
-nothing with the equations the solver was given.
+e(s)     sizes of independent errors, made in the components of the state at time s
+Phi(t,s) the derivative of the state at t by the state at s
+P(t)     the mean squares and products of what they have become at time t
+
+    P(t) = sum over s <= t of Phi(t, s) diag(e(s)^2) Phi(t, s)^T.
+
+The state is the momentum z (H, or the impulses x and y), in body axes; the attitude, as a rotation
+vector in space axes (R becomes exp([theta]x) R); and the centre, in space axes; these two where they
+are tracked. Phi comes from differences of the exact solution, or from the variational equations in
+float64: as steps from time to time, and P is carried along as a factor L of itself, P = L L^T.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf
-from typing import Any, Final
+from math import ceil, inf, log10
+from typing import Final
 
 import numpy as np
-from flint import fmpz_mat
-from mpmath import libmp, mp, mpf
 
+from taylor_verify.exact.conditioning.differences import settled
+from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps, products
 from taylor_verify.exact.conditioning.inputs import momentum
-from taylor_verify.exact.conditioning.sensitivity import difference, real
-from taylor_verify.exact.conditioning.variation import transition_table
+from taylor_verify.exact.conditioning.variation import integrated
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Quantities, Unsettled
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
-Array = np.ndarray[Any, Any]
-FloatArray = np.ndarray[Any, np.dtype[np.float64]]
-
-# (e, digits): momenta are changed by 10^-e of their size. The first attempt is for regular orbits. A
-# perturbed orbit may lie 10^-e beside a degenerate one, where a closed form can lose 3e digits; the
-# Taylor route loses none.
-_CLOSED_FORM_DIGITS: Final = ((12, 36), (25, 110), (50, 220), (100, 440), (250, 1100))
-_TAYLOR_DIGITS: Final = ((12, 32), (30, 70), (60, 130))
-# Norms are wanted to a digit or two; a single number, the determinant, stands for a whole matrix.
-_VOLUME_ERROR: Final = mpf("1e-6")
+# A derivative that outgrows 1 + rate x time by more than this comes from a passage of an unstable
+# motion: it matters then at which moments of it an error is made, and where it is looked at.
+_REGULAR: Final = 8.0
+# Steps of float64 cost less than orbits of dozens of digits beside this one until there are many. For a
+# solid in a fluid they cost less than seven of hundreds of digits until there are thousands; the four of
+# a rigid body, in functions of real numbers, cost less than those.
+_FEW_RADIANS: Final = 200
+_MOST_RADIANS: Final = 2000
+# Norms are wanted to a digit or two, and the size of one that is too large to within a tenth.
+_SHARP: Final = 1e-3
+_ROUGH: Final = 0.1
+# On a regular orbit what is injected at any time grows alike, and so many samples stand for all,
+_FEW: Final = 33
+# if there are so many times beside them that no period shares: samples may meet the orbit in one phase.
+_BETWEEN: Final = 20
+_GOLDEN: Final = Fraction(0.6180339887498949)
+# Until so many radians every radian is a point of its own, later every 64th part of the time so far.
+_RESOLVED: Final = 64
+_MOST_SAMPLES: Final = 401
 
 
 @dataclass(frozen=True)
-class Transition:
-    """How errors travel along one orbit between the instants ``elapsed`` (times since the start).
+class Path:
+    """An orbit at the times ``elapsed`` since the start, and the derivative of its motion.
 
-    The state is the momentum z (H, or the impulses x and y), in body axes; the attitude, as a
-    rotation vector in space axes (R becomes exp([theta]x) R); and the centre, in space axes.
-    ``table`` holds what ``norms`` returns.
+    ``momentum`` (n, d) and ``centre`` (n, 3; from its start; no rows if it is not tracked) are the
+    motion there, in ``units``: powers of two by name, of the blocks of the state and of ``omega``.
+    ``blocks`` are those of the state, each of three components, in their order. Where the derivative
+    comes from differences, they are of 10^-``exponent`` units.
     """
 
     elapsed: tuple[Fraction, ...]
-    table: Mapping[tuple[str, str], FloatArray]
+    blocks: tuple[str, ...]
+    flow: Flow
+    carried: Steps
+    exponent: int = 0
 
-    def norms(self, out: str, into: str) -> FloatArray:
-        """Entry [i, k]: the spectral norm of d out(t_i) / d into(t_k) for k <= i; zero for k > i.
+    @classmethod
+    def of(
+        cls, scene: Scene, flow: Flow, points: Sequence[Fraction], carried: Steps, exponent: int = 0
+    ) -> Path:
+        tracked = tuple(name for name in ("attitude", "centre") if name in scene.track)
+        return cls(tuple(points), (*flow.momenta, *tracked), flow, carried, exponent)
 
-        Shape (n, n). ``into`` is ``momentum`` or ``attitude`` (euler), ``linear_impulse``,
-        ``angular_impulse``, ``attitude`` or ``centre`` (kirchhoff); ``out`` is one of the same, or
-        ``omega`` = K momentum. What the scene does not track raises KeyError. A norm outside
-        the range of float64 is inf.
+    @property
+    def units(self) -> dict[str, Fraction]:
+        return self.flow.units
+
+    @property
+    def momentum(self) -> Floats:
+        return self.carried.momentum
+
+    @property
+    def centre(self) -> Floats:
+        return self.carried.centre
+
+    def gathered(self, errors: Floats) -> dict[str, Floats]:
+        """The size, root mean square, of what the errors up to each time have become there.
+
+        ``errors`` (n, components) are their sizes at each time. By name of the block, ``omega`` too;
+        in units, infinite beyond float64.
         """
-        return self.table[out, into]
+        size = 3 * len(self.blocks)
+        factor, rows = np.diag(errors[0]), []
+        with np.errstate(all="ignore"):
+            rows.append(self._sizes(factor))
+            for step, sizes in zip(self.carried.steps, errors[1:], strict=True):
+                both = np.hstack([step[:size, :size] @ factor, np.diag(sizes)])
+                factor = _narrowed(both)
+                rows.append(self._sizes(factor))
+        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+    def norms(self, out: str, into: str, since: int = 0) -> Floats:
+        """The spectral norms of d out(t) / d into(t_since) from that time on, in the scene's units.
+
+        ``into`` is a block of the state, and ``out`` another one, or ``omega`` = K momentum for a rigid
+        body. What the scene does not track raises KeyError. A norm outside the range of float64 is inf.
+        """
+        places = {name: self._place(name) for name in self.blocks}
+        columns = self._since(since)[:, :, places[into]]
+        if out == "omega" and "momentum" in places:
+            rows = self.flow.omega @ columns[:, places["momentum"]]
+        else:
+            rows = columns[:, places[out]]
+        return _ldexp(_spectral_norms(rows), self.units[out] / self.units[into])
+
+    @property
+    def growth(self) -> Floats:
+        """|d momentum(t) / d momentum(0)| at each time, in units."""
+        d = self.momentum.shape[1]
+        return _spectral_norms(self.carried.since_first[:, :d, :d])
+
+    @property
+    def rate(self) -> float:
+        """The largest norm of the Jacobian along the orbit, per unit of the scene's time."""
+        return self.flow.fastest(self.momentum)
+
+    @property
+    def is_regular(self) -> bool:
+        """True if errors grow no faster than in proportion to time."""
+        times = np.array([abs(float(t)) for t in self.elapsed])
+        return bool((self.growth <= _REGULAR * (1 + self.rate * times)).all())
+
+    def _since(self, first: int) -> Floats:
+        """The derivative of the state at each time from this one on by the state there."""
+        if first == 0:
+            return self.carried.since_first
+        return products(self.carried.steps[first:])
+
+    def _place(self, block: str) -> slice:
+        first = 3 * self.blocks.index(block)
+        return slice(first, first + 3)
+
+    def _sizes(self, factor: Floats) -> dict[str, float]:
+        names = {name: factor[self._place(name)] for name in self.blocks}
+        if "momentum" in names:
+            names["omega"] = self.flow.omega @ names["momentum"]
+        sizes = {name: float(np.linalg.norm(rows)) for name, rows in names.items()}
+        return {name: size if size == size else np.inf for name, size in sizes.items()}
 
 
-def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Transition:
-    """The transition norms between these times, ``elapsed`` since the start and sorted away from it.
+def _narrowed(factor: Floats) -> Floats:
+    """A square L with the same L L^T; what is once beyond float64 is so for ever."""
+    if np.isfinite(factor).all():
+        return np.linalg.qr(factor.T).R.T
+    return np.full((len(factor), len(factor)), np.inf)
 
-    With D, A, C the derivatives of momentum, attitude and centre by the initial momentum, and c the
-    centre, the derivatives by the initial state are
 
-        momentum <- momentum  D
-        attitude <- momentum  A     attitude <- attitude  1
-        centre   <- momentum  C     centre   <- attitude  -[c - c(0)]x     centre <- centre  1
+def _spectral_norms(matrices: Floats) -> Floats:
+    """The largest singular value over the last two axes; inf where an entry is not finite."""
+    size = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
+    # Divided by their size, because entries up to 1e308 would overflow when squared.
+    moderate = np.where(np.isfinite(size), matrices, 0.0) / np.where(size > 0, size, 1.0)
+    norms = np.linalg.norm(moderate, 2, axis=(-2, -1))
+    found: Floats = np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
+    return found
 
-    since a rotation of the start turns the whole path about its start, and a shift moves it. This
-    matrix at t_i, times the inverse of the one at t_k, is
 
-        momentum <- momentum  D_i D_k^-1
-        attitude <- momentum  (A_i - A_k) D_k^-1
-        centre   <- momentum  (C_i - C_k + [c_i - c_k]x A_k) D_k^-1
-        centre   <- attitude  -[c_i - c_k]x, of norm |c_i - c_k|
+def _ldexp(values: Floats, unit: Fraction) -> Floats:
+    """The values times a power of two; beyond float64 that is inf, and no warning."""
+    with np.errstate(over="ignore", under="ignore"):
+        return np.ldexp(values, floor_log2(unit))
 
-    and 1 or 0 elsewhere. Both flows conserve volume, det D = 1, loads or not; a false digit in D
-    shows in det D as it does in D_i D_k^-1, so precision rises until det D = 1 to six digits.
-    Raises Unsettled if it never is.
+
+# Which way leads to the derivative.
+
+
+def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
+    """The orbit at these times, ``elapsed`` since the start and sorted away from it.
+
+    Raises Unsettled where the derivatives of the motion cannot be had.
     """
+    flow = Flow.of(scene)
     if differs_dearly(scene):
-        table = transition_table(scene, solution(scene), _units(scene), elapsed)
-        if table is not None:
-            return Transition(tuple(elapsed), table)
-    return Transition(tuple(elapsed), dict(_norms(next(settled(scene, elapsed)))))
+        found = integrated(scene, flow, elapsed)
+        if found is not None:
+            return Path.of(scene, flow, elapsed, found)
+    differences = next(settled(scene, elapsed))
+    return Path.of(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
+
+
+def path(scene: Scene) -> Path:
+    """The orbit of a scene at as many times as it takes; some or all samples are among them.
+
+    Raises Unsettled where the derivatives of the motion cannot be had.
+    """
+    elapsed, flow = scene.clock.elapsed, Flow.of(scene)
+    found = _along(scene, flow, few(elapsed))
+    if found.is_regular:
+        return found
+    rate, growth = found.rate, found.growth.max()
+    points = many(elapsed, rate)
+    is_solid_in_fluid = found.momentum.shape[1] == 6
+    if is_solid_in_fluid and rate * abs(elapsed[-1]) <= _MOST_RADIANS and growth < inf:
+        # So many more digits of the truth as the growth may magnify its last one by.
+        steps = integrated(scene, flow, points, ceil(log10(growth)))
+        if steps is not None:
+            return Path.of(scene, flow, points, steps)
+    return sharp(scene, flow, points, found.exponent)
 
 
 def differs_dearly(scene: Scene) -> bool:
@@ -104,230 +226,71 @@ def differs_dearly(scene: Scene) -> bool:
     return any(solution(each).route == "taylor" for each in (scene, *beside))
 
 
-def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterator[Derivatives]:
-    """Differences that conserve volume, of 10^-``least`` units or less, at one precision after the other.
+def sharp(
+    scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0, to_tell: bool = False
+) -> Path:
+    """From differences so small that products of F with inverses of it have their leading digits.
 
-    Raises Unsettled if there is none.
+    A step of 10^-e leaves 10^-e |F|^2 in F, and that is multiplied by F^-1. Where no precision of the
+    ladder is enough, what is found there is noise on top of what is asked: more, and not less. An orbit
+    that is not regular is left as it is ``to_tell`` that it is not: |F| is sharp before F F^-1 is.
     """
-    exact = solution(scene)
-    is_by_series = exact.route == "taylor" or exact.by_quadrature
-    ladder = _TAYLOR_DIGITS if is_by_series else _CLOSED_FORM_DIGITS
-    is_settled = False
-    for exponent, digits in ladder:
-        if exponent < least:
-            continue
-        found = derivatives(scene, elapsed, exponent, digits)
-        if found.volume_error() <= _VOLUME_ERROR:
-            is_settled = True
-            yield found
-    if not is_settled:
-        raise Unsettled(
-            f"differences of the exact solution at {digits} digits do not conserve volume along the "
-            f"orbit of {scene.name}: its transition matrix is not known"
-        )
+    for found in settled(scene, points, least):
+        steps, shrinkage = found.steps(flow)
+        path = Path.of(scene, flow, points, steps, found.exponent)
+        growth, sharpness = path.growth, 10.0**found.exponent
+        if (growth**2 * shrinkage <= _SHARP * sharpness).all():
+            break
+        if to_tell and growth.max() <= _ROUGH * sharpness and not path.is_regular:
+            break
+    return path
 
 
-@dataclass(frozen=True)
-class Derivatives:
-    """The orbit's derivatives by its initial momentum, as object arrays of mpf.
+def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
+    """The orbit at a few points; no sharper than it takes to see that they are too few."""
+    if _is_short(scene, flow) or differs_dearly(scene):
+        found = integrated(scene, flow, points)
+        if found is not None:
+            return Path.of(scene, flow, points, found)
+    return sharp(scene, flow, points, to_tell=True)
 
-    They are differences of 10^-``exponent`` units, formed with ``digits`` digits.
-    ``momentum`` (n, d, d), d = 3 or 6, ``others`` (n, 3, d) by name (omega, attitude, centre as
-    tracked), the momenta themselves in ``state`` (n, d) and the ``centre`` (n, 3), empty where
-    untracked. Momenta are measured in ``units``, one power of two near the size of each component's
-    block, in ``momentum`` and ``state``; everything else is in the scene's units. The centre counts
-    from its place at the start.
+
+def _is_short(scene: Scene, flow: Flow) -> bool:
+    """Return True if steps of float64 along the orbit cost less than four or seven orbits beside it."""
+    kind = kind_of(scene.body)
+    z = kind.momentum(scene.body, kind.state(scene.initial))
+    counted = np.array(
+        [float(value / unit) for value, unit in zip(z, flow.components, strict=True)]
+    )
+    rate = float(flow.rate(counted)) / float(flow.time)
+    return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
+
+
+# At which times an orbit is looked at, where it need not be at all.
+
+
+def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
+    """Evenly chosen samples, and times that owe nothing to them: few samples leave more to these.
+
+    In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
+    which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.
     """
-
-    exponent: int
-    digits: int
-    units: Vector
-    momentum: Array
-    others: Mapping[str, Array]
-    state: Array
-    centre: Array
-
-    def volume_error(self) -> mpf:
-        """The largest |det D - 1|: exact for D as counted in last bits."""
-        d = self.momentum.shape[1]
-        with mp.workdps(self.digits):
-            bits = mp.prec
-            volumes = [_volume(counts) for counts in as_integers(self.momentum, bits)]
-            return max(abs(mp.ldexp(mp.mpf(v), -d * bits) - 1) for v in volumes)
+    samples = [Fraction(0), *chosen(elapsed, _FEW)]
+    parts = max(_BETWEEN, _FEW - len(elapsed))
+    between = [elapsed[-1] / parts * (k + k * _GOLDEN % 1) for k in range(parts)]
+    first = next((t for t in samples if t), Fraction(0))
+    return _sorted([*samples, *between, first * _GOLDEN**2, first * _GOLDEN])
 
 
-def derivatives(
-    scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
-) -> Derivatives:
-    """One-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
-    start = momentum(scene)
-    step = Fraction(1, 10**exponent)
-    with mp.workdps(digits):
-        here = solution(scene).evaluate(elapsed, digits)
-        columns: list[dict[str, Array]] = []
-        for j, unit in enumerate(start.units):
-            there = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
-            columns.append(_momentum_first(scene, difference(here, there, mp.convert(step))))
-        stacked = {
-            name: np.stack([column[name] for column in columns], axis=2) for name in columns[0]
-        }
-        return Derivatives(
-            exponent=exponent,
-            digits=digits,
-            units=start.units,
-            momentum=stacked.pop("momentum") / real((start.units,)).T,
-            others=stacked,
-            state=_momenta(scene, here) / real((start.units,)),
-            centre=_path(scene, here),
-        )
+def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
+    """Radian by radian at first, later in proportion to the time so far; and the samples."""
+    end = float(elapsed[-1])
+    times, t = [], 0.0
+    while t < abs(end):
+        times.append(Fraction(t if end > 0 else -t))
+        t += max(1 / rate, t / _RESOLVED)
+    return _sorted([*times, *chosen(elapsed, _MOST_SAMPLES)])
 
 
-def _momentum_first(scene: Scene, change: dict[str, Array]) -> dict[str, Array]:
-    """The same change with the momenta under one name: H beside omega, or x and y as one vector."""
-    if isinstance(scene.body, RigidBody):
-        return {"momentum": change["omega"] @ real(scene.body.inertia).T, **change}
-    both = [change.pop("linear_impulse"), change.pop("angular_impulse")]
-    return {"momentum": np.concatenate(both, axis=1), **change}
-
-
-def _momenta(scene: Scene, here: Quantities) -> Array:
-    """H, or x and y as one vector, at every time."""
-    if isinstance(scene.body, RigidBody):
-        momenta: Array = here["omega"] @ real(scene.body.inertia).T
-        return momenta
-    return np.concatenate([here["linear_impulse"], here["angular_impulse"]], axis=1)
-
-
-def _path(scene: Scene, here: Quantities) -> Array:
-    """The centre from its place at the start; no rows where it is not tracked."""
-    if "centre" not in here or isinstance(scene.initial, Spin):
-        return np.empty((0, 3), dtype=object)
-    return here["centre"] - real((scene.initial.centre,))
-
-
-def _units(scene: Scene) -> Vector:
-    """For each component of the momentum a power of two near the size of its block."""
-    return momentum(scene).units
-
-
-# Norms. The products are of Python's integers, which NumPy multiplies as objects: they count
-# 2^-bits of each quantity's size, a power of two.
-
-
-def _norms(found: Derivatives) -> Iterator[tuple[tuple[str, str], FloatArray]]:
-    """Every entry of the table."""
-    blocks = ("momentum",) if len(found.units) == 3 else ("linear_impulse", "angular_impulse")
-    sizes = {block: floor_log2(found.units[3 * j]) for j, block in enumerate(blocks)}
-    sizes.update({name: log2_size(rows) for name, rows in found.others.items()})
-    if "attitude" in found.others:
-        sizes["attitude"] = 0
-    if "centre" in found.others:
-        sizes["centre"] = log2_size(found.others["centre"], found.centre)
-    if "attitude" in found.others:
-        yield from _from_place(found, blocks, sizes)
-    table = _from_momentum(found, sizes)
-    for row, out in enumerate((*blocks, *found.others)):
-        for column, into in enumerate(blocks):
-            part = table[:, :, 3 * row : 3 * row + 3, 3 * column : 3 * column + 3]
-            yield (out, into), _ldexp(_spectral_norms(part), sizes[out] - sizes[into])
-
-
-def _from_momentum(found: Derivatives, sizes: Mapping[str, int]) -> FloatArray:
-    """d (momentum, others)(t_i) / d momentum(t_k), shape (n, n, rows, d), zero for k > i."""
-    count, d, _ = found.momentum.shape
-    with mp.workdps(found.digits):
-        bits = mp.prec
-        others = [rows * mp.ldexp(1, -sizes[name]) for name, rows in found.others.items()]
-        rows = as_integers(np.concatenate([found.momentum, *others], axis=1), bits)
-        inverses = [inverse(counts, bits) for counts in rows[:, :d]]
-        arms = as_integers(found.centre * mp.ldexp(1, -sizes.get("centre", 0)), bits)
-    # omega depends on the momentum of the moment; attitude and centre add up from the start.
-    place = d + 3 * ("omega" in found.others)
-    table = np.zeros((count, count, rows.shape[1], d))
-    for k in range(count):
-        product = (rows[k:].reshape(-1, d) @ inverses[k]).reshape(count - k, -1, d)
-        turn = product[0, place : place + 3].copy()
-        product[:, place:] -= product[0, place:].copy()
-        if len(arms):
-            product[:, place + 3 :] += _cross(arms[k:] - arms[k], turn) >> bits
-        table[k:, k] = _floats(product, 2 * bits)
-    return table
-
-
-def _from_place(
-    found: Derivatives, blocks: Sequence[str], sizes: Mapping[str, int]
-) -> Iterator[tuple[tuple[str, str], FloatArray]]:
-    """What a turn or a shift of the body does: it moves the later path as a whole."""
-    count = len(found.momentum)
-    alone, nothing = np.tril(np.ones((count, count))), np.zeros((count, count))
-    places = [name for name in found.others if name != "omega"]
-    for into in places:
-        for out in (*blocks, *found.others):
-            yield (out, into), alone if out == into else nothing
-    if "centre" in places:
-        with mp.workdps(found.digits):
-            bits = mp.prec
-            path = as_integers(found.centre * mp.ldexp(1, -sizes["centre"]), bits)
-        arms = _floats(path[:, None] - path[None, :], bits)
-        lengths = np.tril(np.linalg.norm(arms, axis=2))
-        yield ("centre", "attitude"), _ldexp(lengths, sizes["centre"])
-
-
-def _volume(counts: Array) -> int:
-    """The determinant of a matrix of integers."""
-    return int(fmpz_mat(counts.tolist()).det())
-
-
-def inverse(counts: Array, bits: int) -> Array:
-    """The inverse, in integers that count 2^-bits as those of the matrix do; each rounded once."""
-    found = fmpz_mat(counts.tolist()).inv()
-    scale = 1 << 2 * bits + 1
-    halves = [int(scale * entry.p // entry.q) for entry in found.entries()]
-    return np.array([half + 1 >> 1 for half in halves], dtype=object).reshape(counts.shape)
-
-
-def _cross(arms: Array, turn: Array) -> Array:
-    """a x (each column of turn), for every row a of arms: (n, 3, d)."""
-    j, k = [1, 2, 0], [2, 0, 1]
-    across: Array = arms[:, j, None] * turn[None, k] - arms[:, k, None] * turn[None, j]
-    return across
-
-
-def log2_size(*arrays: Array) -> int:
-    """The binary exponent of the largest entry, 0 if all are zero."""
-    largest = max((abs(value) for array in arrays for value in array.flat), default=0)
-    return int(mp.mag(largest)) if largest else 0
-
-
-def as_integers(values: Array, bits: int) -> Array:
-    """Python integers that count 2^-bits."""
-    fixed = [int(libmp.to_fixed(value._mpf_, bits)) for value in values.flat]
-    return np.array(fixed, dtype=object).reshape(values.shape)
-
-
-def _floats(counts: Array, bits: int) -> FloatArray:
-    unit = 1 << bits
-    return np.array([quotient(count, unit) for count in counts.flat]).reshape(counts.shape)
-
-
-def quotient(count: int, unit: int) -> float:
-    """count / unit rounded once; inf, of either sign, beyond float64."""
-    try:
-        return count / unit
-    except OverflowError:
-        return inf if count > 0 else -inf
-
-
-def _spectral_norms(matrices: FloatArray) -> FloatArray:
-    """The largest singular value over the last two axes; inf where an entry is."""
-    size: FloatArray = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
-    # Divided by their size, because entries up to 1e308 would overflow when squared.
-    moderate = np.where(np.isfinite(size), matrices, 0.0) / np.where(size > 0, size, 1.0)
-    norms = np.linalg.norm(moderate, 2, axis=(-2, -1))
-    return np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
-
-
-def _ldexp(values: FloatArray, exponent: int) -> FloatArray:
-    """values * 2^exponent; beyond float64 that is inf, and no warning."""
-    with np.errstate(over="ignore", under="ignore"):
-        return np.ldexp(values, exponent)
+def _sorted(times: Sequence[Fraction]) -> list[Fraction]:
+    return sorted(set(times), key=abs)

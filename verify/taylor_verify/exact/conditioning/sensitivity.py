@@ -23,15 +23,15 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.exact.conditioning.differences import difference, real
 from taylor_verify.exact.conditioning.inputs import Input, body_input, start_inputs
+from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Unsettled
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
+from taylor_verify.scenes.tensors import ZERO_VECTOR
 
 Array = np.ndarray[Any, Any]
 Pair = tuple[str, str]
@@ -125,22 +125,6 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
 # Differences.
 
 
-def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Array]:
-    """(after - before)/step of every quantity, shape (n, 3); of attitudes the small turn between them."""
-    change = {name: after[name] - before[name] for name in before if name != "attitude"}
-    if "attitude" in before:
-        here, there = to_mpfr(before["attitude"]), to_mpfr(after["attitude"])
-        with precision():
-            change["attitude"] = to_mpf(_rotation_vectors(there @ here.transpose(0, 2, 1)))
-    return {name: change[name] / step for name in before}
-
-
-def _rotation_vectors(turns: Array) -> Array:
-    """The rotation vector of small rotations: the antisymmetric part of their matrices."""
-    j, k = [1, 2, 0], [2, 0, 1]
-    return (turns[:, k, j] - turns[:, j, k]) / 2
-
-
 @dataclass(frozen=True)
 class _Base:
     """The scene as it is: its motion at any precision, and the sizes that errors are measured by."""
@@ -231,7 +215,7 @@ def _sizes(motion: Quantities) -> dict[str, Array]:
 
 def _from_origin(scene: Scene) -> Scene:
     """The same motion with its centre at the origin: digits are those of the path, wherever it begins."""
-    if isinstance(scene.initial, Spin):
+    if not isinstance(scene.initial, Impulse):
         return scene
     return replace(scene, initial=replace(scene.initial, centre=ZERO_VECTOR))
 
@@ -261,25 +245,16 @@ def _unit_vector(axis: int) -> Array:
 
 
 def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
-    """The right-hand sides of the equations of motion, and R omega for the turning."""
-    body = scene.body
-    if isinstance(body, RigidBody):
-        omega = motion["omega"].T
-        torque = _cross(real(body.inertia) @ omega, omega) + real((body.moment,)).T
-        rates = {"omega": real(body.inverse_inertia) @ torque}
-    else:
-        x, y = motion["linear_impulse"].T, motion["angular_impulse"].T
-        velocities = real(body.energy_matrix) @ np.concatenate([x, y])
-        velocity, omega = velocities[:3], velocities[3:]
-        rates = {
-            "linear_impulse": _cross(x, omega) + real((body.force,)).T,
-            "angular_impulse": _cross(y, omega) + _cross(x, velocity) + real((body.couple,)).T,
-        }
-    found = {name: rate.T for name, rate in rates.items()}
-    if "attitude" in motion:
-        found["attitude"] = _turned(motion["attitude"], omega.T)
-    if "centre" in motion:
-        found["centre"] = _turned(motion["attitude"], velocity.T)
+    """The right-hand sides of the equations of motion, R omega for the turning, and R U."""
+    system = posed_exactly(scene)
+    moving = [name for name in motion if name not in ("attitude", "centre")]
+    z = np.concatenate([motion[name] for name in moving], axis=1)
+    products = (z[:, :, None] * z[:, None, :]).reshape(len(z), -1)
+    rate = real((system.constant,)) + products @ real(system.forms.hessian).T / 2
+    found = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
+    for name, form in (("attitude", system.forms.spin), ("centre", system.forms.velocity)):
+        if name in motion:
+            found[name] = _turned(motion["attitude"], z @ real(form).T)
     return found
 
 
@@ -291,8 +266,3 @@ def _turned(attitudes: Array, vectors: Array) -> Array:
 def _cross(a: Array, b: Array) -> Array:
     """a x b for components along the first axis."""
     return np.array([a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))], dtype=object)
-
-
-def real(matrix: Matrix) -> Array:
-    """The matrix as mpf, rounded at the ambient precision."""
-    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)

@@ -14,13 +14,15 @@ from itertools import pairwise
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact import clocks, equations
+from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import lamb
-from taylor_verify.scenes.bodies import Body, Ellipsoid, RigidBody
-from taylor_verify.scenes.motion import Spin, State
+from taylor_verify.exact.equations import Equations, driven
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
+from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector, diagonal
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 @dataclass(frozen=True)
@@ -68,50 +70,44 @@ class System:
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
     system, body = posed_exactly(scene), scene.body
-    if isinstance(body, RigidBody) or body.ellipsoid is None:
+    if not isinstance(body, ImmersedBody) or body.ellipsoid is None:
         return system
-    clock = system.size - 6
-    without = _forms(lamb.without_coefficients(body), 6, clock)
-    shaped = [_forms(unit, 6, clock).minus(without) for unit in lamb.units(body, body.ellipsoid)]
+    equations = kind_of(body).equations
+
+    def forms(other: ImmersedBody) -> Forms:
+        return _forms(equations(other), body.manufactured, system.size - 6)
+
+    without = forms(lamb.without_coefficients(body))
+    shaped = [forms(unit).minus(without) for unit in lamb.units(body, body.ellipsoid)]
     return replace(system, forms=without, shape=body.ellipsoid, shaped=tuple(shaped))
 
 
 def posed_exactly(scene: Scene) -> System:
     """The same, with the rational coefficients of the scene for an ellipsoid as well."""
-    body, start = scene.body, moving(scene.initial)
-    motion = body.manufactured
+    body, kind = scene.body, kind_of(scene.body)
+    start, motion = kind.state(scene.initial), body.manufactured
     clock = () if motion is None else clocks.at(motion, Fraction(0), 0)
-    ends = (3,) if isinstance(body, RigidBody) else (3, 6)
-    drift = equations.euler_drift(body) if isinstance(body, RigidBody) else body.force + body.couple
+    ends = tuple(range(3, len(start) + 1, 3))
+    free = kind.equations(body)
     return System(
-        constant=drift + (Fraction(0),) * len(clock),
-        forms=_forms(body, len(start), len(clock)),
+        constant=free.constant + (Fraction(0),) * len(clock),
+        forms=_forms(free, motion, len(clock)),
         blocks=ends if motion is None else (*ends, len(start) + len(clock)),
         start=start + clock,
     )
 
 
-def _forms(body: Body, size: int, clock: int) -> Forms:
-    """The exact coefficients of a body whose state has this size, beside a clock."""
-    matrices: tuple[Matrix, Matrix]
-    if isinstance(body, RigidBody):
-        matrices, free = (diagonal((Fraction(1),) * 3), ()), equations.euler_rates(body)
-    else:
-        matrices = body.energy_matrix[3:], body.energy_matrix[:3]
-        free = equations.impulse_rates(body)
+def _forms(free: Equations, motion: Manufactured | None, clock: int) -> Forms:
+    """The coefficients of these equations, beside a clock, with the loads of a manufactured motion."""
+    size = len(free.rates)
     n, padding = size + clock, (Fraction(0),) * clock
     hessian = [[Fraction(0)] * (n * n) for _ in range(n)]
-    for row, polynomial in zip(hessian, equations.driven(free, body, size), strict=True):
+    for row, polynomial in zip(hessian, driven(free.rates, motion, size), strict=True):
         for (a, b), coefficient in polynomial.items():
             row[a * n + b] += coefficient
             row[b * n + a] += coefficient
-    spin, velocity = (tuple(row + padding for row in rows) for rows in matrices)
+    spin, velocity = (tuple(row + padding for row in rows) for rows in (free.spin, free.velocity))
     return Forms(tuple(map(tuple, hessian)), spin, velocity)
-
-
-def moving(state: State) -> Vector:
-    """The state that enters its own equations: omega, or x and y."""
-    return state.omega if isinstance(state, Spin) else state.linear + state.angular
 
 
 @dataclass(frozen=True)

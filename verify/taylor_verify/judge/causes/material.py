@@ -15,10 +15,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.instants import evenly
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 

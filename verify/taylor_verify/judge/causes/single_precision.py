@@ -14,10 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.scenes.instants import evenly
 
 _BITS: Final = 24
 _ROUNDOFF: Final = 2.0**-_BITS

@@ -17,12 +17,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import courses
 from taylor_verify.judge.errors.compared import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.reason import Kind, TimeShift
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 

@@ -23,15 +23,12 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.condition import Transition, transition
-from taylor_verify.exact.conditioning.gathering import Path, path
-from taylor_verify.exact.conditioning.inputs import momentum
-from taylor_verify.exact.conditioning.looks import chosen, evenly
-from taylor_verify.exact.conditioning.tangent import Flow
+from taylor_verify.exact.conditioning.condition import Path, path, transition
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.records.reason import Carried, RoundoffFloor, shown
+from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -183,8 +180,7 @@ def _orbit(scene: Scene) -> Path:
 def radians(scene: Scene) -> float:
     """The angle that the fastest of an orbit's rates turns through by its end."""
     orbit = _orbit(scene)
-    flow = Flow.of(scene, momentum(scene).units)
-    rates = flow.rate(orbit.momentum) / float(flow.time)
+    rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
@@ -196,7 +192,7 @@ def looked_at(scene: Scene) -> list[int]:
 
 
 @lru_cache(maxsize=8)
-def condition(scene: Scene) -> Transition:
+def condition(scene: Scene) -> Path:
     """How errors travel along the scene's own orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
 

@@ -68,7 +68,7 @@ def carrying(scene: Scene) -> Carrying | None:
     found = condition(scene)
     sizes = _sizes(scene, found.elapsed)
     factors = [
-        found.norms(out, into)[:, 0] * at_first / at_most
+        found.norms(out, into) * at_first / at_most
         for out, at_most in sizes.at_most.items()
         for into, at_first in sizes.at_first.items()
         if at_first and at_most

@@ -26,7 +26,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.gathering import Path
+from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.quantities import COLUMNS

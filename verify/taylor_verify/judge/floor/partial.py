@@ -13,7 +13,6 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
@@ -36,6 +35,7 @@ from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.solvers.files.file import Recorded

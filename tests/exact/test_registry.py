@@ -1,0 +1,68 @@
+"""Every kind of body gives the truth all that it asks for, and its parts agree with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from samples import IMPULSE, LOADED, MOMENT, SPIN, TENSOR
+
+from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.registry import KINDS, function_at, kind_of
+from taylor_verify.exact.route import CLOSED_ROUTES
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.tensors import apply, dot
+
+SAMPLES = {"euler": (RigidBody(TENSOR, MOMENT), SPIN), "kirchhoff": (LOADED, IMPULSE)}
+
+
+def rates(equations: Equations, z: Sequence[Fraction]) -> list[Fraction]:
+    """The right-hand side at z, exactly."""
+    pairs = zip(equations.constant, equations.rates, strict=True)
+    return [c + sum(k * z[a] * z[b] for (a, b), k in rate.items()) for c, rate in pairs]
+
+
+def test_every_shipped_body_has_a_kind() -> None:
+    """No scene has a body of a type without a line in the registry, and no line is without a scene."""
+    assert {type(load(name).body) for name in names()} == set(KINDS)
+
+
+@pytest.mark.parametrize("model", SAMPLES)
+def test_the_momentum_has_the_equations_of_the_state(model: str) -> None:
+    """Its rate is the momentum of the rate of z, its spin and energy are those of z; exactly."""
+    body, initial = SAMPLES[model]
+    kind: Any = kind_of(body)
+    z = kind.state(initial)
+    p = kind.momentum(body, z)
+    assert kind.of_momentum(body, p) == z
+    assert kind.with_state(initial, z) == initial
+    by_state, by_momentum = kind.equations(body), kind.momentum_equations(body)
+    assert tuple(rates(by_momentum, p)) == kind.momentum(body, tuple(rates(by_state, z)))
+    assert apply(by_momentum.spin, p) == apply(by_state.spin, z)
+    energy = dot(z, apply(kind.energy(body), z))
+    assert dot(p, apply(kind.momentum_energy(body), p)) == energy
+
+
+@pytest.mark.parametrize("model", SAMPLES)
+def test_what_is_imported_late_is_there(model: str) -> None:
+    """The elements and both closed forms, free and loaded, are functions."""
+    loaded, _ = SAMPLES[model]
+    free = load(f"{model}/later-start").body
+    kind = kind_of(loaded)
+    places = [kind.closed_form(body, route) for body in (free, loaded) for route in CLOSED_ROUTES]
+    assert all(callable(function_at(place)) for place in (kind.elements, *places))
+
+
+@pytest.mark.parametrize("model", SAMPLES)
+def test_a_parameter_changes_the_body_alone(model: str) -> None:
+    """Each of them makes another body, whose own parameter moved back makes the first one again."""
+    body, _ = SAMPLES[model]
+    found = kind_of(body).parameters(body)
+    for j in range(len(found.components)):
+        other = found.changed(j, Fraction(1, 2**20))
+        assert other != body
+        assert kind_of(other).parameters(other).changed(j, Fraction(-1, 2**20)) == body

@@ -1,0 +1,168 @@
+"""The equations of the momentum in float64, linearised along any motion, and one step of their flow.
+
+The equations are quadratic in the momentum z = H, or z = (x, y): z' = c + J(z) z/2 with J linear in z,
+so that a small error obeys dz' = J(z) dz. It turns the attitude by theta, a rotation vector in space
+axes, and moves the centre c,
+
+    theta' = R dOmega,        dc' = theta x R U + R dU,
+
+with Omega and U linear in z. Of a manufactured motion z* = S w, with w the clock of exact.clocks and
+w' = N w, the loads are S w' - J(z*) z*/2; they do not depend on z, and so are no part of J.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from taylor_verify.exact import clocks
+from taylor_verify.exact.conditioning.inputs import momentum
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+class Steps(NamedTuple):
+    """The derivative of a motion between n times, and the motion there, counted in a flow's units.
+
+    ``steps`` (n - 1, d + 6, d + 6) lead an error of (z, theta, c) from each time to the next,
+    ``since_first`` (n, d + 6, d + 6) from the first time to each. ``momentum`` (n, d) is z; ``centre``
+    (n, 3) counts from its start and has no rows where it is not tracked.
+    """
+
+    steps: Floats
+    since_first: Floats
+    momentum: Floats
+    centre: Floats
+
+
+def products(steps: Floats) -> Floats:
+    """The products of the first 0, 1, 2, ... of these matrices (n, m, m), the later ones to the left."""
+    found = [np.eye(steps.shape[1])]
+    for step in steps:
+        found.append(step @ found[-1])
+    return np.array(found)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """The equations in units of their size: d = 3 or 6 components of momentum.
+
+    ``twice`` (d, d, d) gives J = twice @ z; ``omega`` and ``velocity`` (3, d) give Omega and, for a
+    solid in a fluid, U. ``momenta`` are the units of each block of the momentum by name; time is
+    measured in ``time``, lengths in ``length``: powers of two. ``swing`` is S and N.
+    """
+
+    momenta: Mapping[str, Fraction]
+    constant: Floats
+    swing: clocks.Swing
+    twice: Floats
+    omega: Floats
+    velocity: Floats | None
+    time: Fraction
+    length: Fraction
+
+    @classmethod
+    def of(cls, scene: Scene) -> Flow:
+        """Return the equations of a scene's body, in units of its start."""
+        kind, units = kind_of(scene.body), momentum(scene).units
+        equations = kind.momentum_equations(scene.body)
+        constant, omega, velocity = equations.constant, equations.spin, equations.velocity
+        products = {(i, *pair): c for i, p in enumerate(equations.rates) for pair, c in p.items()}
+        d = len(units)
+        scaled = {
+            (i, j, k): c * units[j] * units[k] / units[i] for (i, j, k), c in products.items()
+        }
+        rates = [abs(c) for c in scaled.values() if c]
+        rates += [abs(c / unit) for c, unit in zip(constant, units, strict=True) if c]
+        time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
+        twice = np.zeros((d, d, d))
+        for (i, j, k), c in scaled.items():
+            # Both orders of a product, so that J is the Jacobian; a square counts twice so.
+            twice[i, j, k] += float(c * time)
+            twice[i, k, j] += float(c * time)
+        speeds = [c * u for row in velocity for c, u in zip(row, units, strict=True) if c]
+        fastest = max((abs(s) for s in speeds), default=Fraction(0))
+        length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
+        return cls(
+            momenta=dict(zip(kind.momenta, units[::3], strict=True)),
+            constant=np.array([float(c * time / u) for c, u in zip(constant, units, strict=True)]),
+            swing=clocks.swing(kind.manufactured_momentum(scene.body), units, time),
+            twice=twice,
+            omega=_floats(omega, units, time),
+            velocity=_floats(velocity, units, time / length) if velocity else None,
+            time=time,
+            length=length,
+        )
+
+    @property
+    def units(self) -> dict[str, Fraction]:
+        """The unit of every quantity by name: of each block of the state, and of omega."""
+        others = {"omega": 1 / self.time, "attitude": Fraction(1), "centre": self.length}
+        return {**self.momenta, **others}
+
+    @property
+    def components(self) -> Vector:
+        """The unit of every component of the momentum."""
+        return tuple(unit for unit in self.momenta.values() for _ in range(3))
+
+    def jacobian(self, z: Floats) -> Floats:
+        """J (..., d, d) at z (..., d)."""
+        d = z.shape[-1]
+        found: Floats = z @ self.twice.reshape(d * d, d).T
+        return found.reshape(*z.shape, d)
+
+    def load(self, clock: Floats) -> Floats:
+        """The constant load, and the one that a manufactured motion takes."""
+        there, rate = self.swing.at(clock)
+        found: Floats = self.constant + rate - applied(self.jacobian(there), there) / 2
+        return found
+
+    def rate(self, z: Floats) -> Floats:
+        """The rate that a step has to resolve: h times it is the length of the step.
+
+        A step errs by (h J)^5/120, and by h J (h rate)^4 of what J becomes. Where the moments of inertia
+        lie far apart J is far from normal: |J| is then much larger than any power of it makes a step.
+        """
+        jacobian = self.jacobian(z)
+        square = jacobian @ jacobian
+        fifth = _norm(square @ square @ jacobian) ** 0.2
+        spin = np.linalg.norm(z @ self.omega.T, axis=-1)
+        own = np.maximum(np.maximum(fifth, spin), self.swing.fastest)
+        found: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
+        return found
+
+    def fastest(self, momenta: Floats) -> float:
+        """The largest norm of J along a motion (n, d; in units), per unit of the scene's time."""
+        norms = np.linalg.norm(self.jacobian(momenta), 2, axis=(-2, -1))
+        return float(max(norms)) / float(self.time)
+
+
+def applied(matrices: Floats, vectors: Floats) -> Floats:
+    """Each matrix (..., m, n) times its own vector (..., n)."""
+    return (matrices @ vectors[..., None])[..., 0]
+
+
+def cross_matrix(v: Floats) -> Floats:
+    """[v]x (..., 3, 3) of v (..., 3)."""
+    found = np.zeros((*v.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., j, i], found[..., i, j] = v[..., k], -v[..., k]
+    return found
+
+
+def _norm(matrices: Floats) -> Floats:
+    found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
+    return found
+
+
+def _floats(matrix: Matrix, units: Vector, factor: Fraction) -> Floats:
+    scaled = np.array([[c * u * factor for c, u in zip(row, units, strict=True)] for row in matrix])
+    return scaled.astype(float)

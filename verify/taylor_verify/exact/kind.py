@@ -1,0 +1,119 @@
+"""The contract of a kind of body: everything that the truth has to know about it.
+
+A new kind is a folder with one class like exact.euler.rigid.Rigid, and one line in exact.registry.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+
+from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.invariant import Invariant
+from taylor_verify.exact.parameters import Parameters
+from taylor_verify.exact.units import Units
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import State
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+Array = np.ndarray[Any, Any]
+B = TypeVar("B", bound=Body)
+S = TypeVar("S", bound=State)
+
+
+class Kind(ABC, Generic[B, S]):
+    """A kind of body, with its body and its initial state as scenes hold them.
+
+    The state z is what moves by equations of its own, in body axes: omega, or both impulses. The momentum
+    is what these equations are linearised in, because its flow conserves volume: H, or the impulses.
+    """
+
+    moving: ClassVar[tuple[str, ...]]
+    """The quantities that z consists of, three components each."""
+    momenta: ClassVar[tuple[str, ...]]
+    """The blocks of the momentum, three components each."""
+    elements: ClassVar[str]
+    """``module:function`` of (scene, digits): the elements of an orbit."""
+
+    @property
+    def components(self) -> Mapping[str, tuple[str, ...]]:
+        """The names of the components of each quantity in z."""
+        return {name: COLUMNS[name] for name in self.moving}
+
+    # The state and the equations.
+
+    @abstractmethod
+    def state(self, initial: S) -> Vector:
+        """z at the start."""
+
+    @abstractmethod
+    def with_state(self, initial: S, z: Vector) -> S:
+        """The same start with another z."""
+
+    @abstractmethod
+    def energy(self, body: B) -> Matrix:
+        """The matrix of 2T = z . energy z."""
+
+    @abstractmethod
+    def equations(self, body: B) -> Equations:
+        """The equations of z, without the loads of a manufactured motion."""
+
+    def centre(self, initial: S) -> Vector | None:
+        """The origin of the body at the start, in space axes; None where it does not move."""
+        return None
+
+    @abstractmethod
+    def units(self, body: B, z: Vector) -> Units:
+        """Powers of two in which a motion from z is of size one."""
+
+    # The momentum. It is z itself unless stated.
+
+    def momentum(self, body: B, z: Vector) -> Vector:
+        """The momentum of a state."""
+        return z
+
+    def momentum_rows(self, body: B, motion: Any) -> Array:
+        """The momentum at every row of a motion (n, d), at the ambient precision."""
+        return np.concatenate([motion[name] for name in self.moving], axis=1)
+
+    def of_momentum(self, body: B, momentum: Vector) -> Vector:
+        """The state of a momentum."""
+        return momentum
+
+    def momentum_energy(self, body: B) -> Matrix:
+        """The matrix of 2T by the momentum."""
+        return self.energy(body)
+
+    def momentum_equations(self, body: B) -> Equations:
+        """The equations of the momentum, without the loads of a manufactured motion."""
+        return self.equations(body)
+
+    def manufactured_momentum(self, body: B) -> Manufactured | None:
+        """The momentum of the manufactured motion, if there is one."""
+        return body.manufactured
+
+    # Closed forms, and what is conserved.
+
+    @abstractmethod
+    def closed_form(self, body: B, route: str) -> str:
+        """``module:function`` of (scene): the closed form by this route, which may raise NoClosedForm."""
+
+    @abstractmethod
+    def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
+        """The conserved quantities that the tracked quantities of a scene determine."""
+
+    @abstractmethod
+    def sizes(self, scene: Scene, motion: Any) -> list[Array]:
+        """The sizes (n,) at every row of a motion that the scales of the invariants are made of."""
+
+    # What a motion depends on.
+
+    @abstractmethod
+    def parameters(self, body: B) -> Parameters:
+        """The numbers of the body that a motion depends on."""

@@ -1,0 +1,139 @@
+"""A solid in an ideal fluid as the truth knows it: hydromechanics 48 (3), (4).
+
+x' = x x Omega + X and y' = y x Omega + x x U + L, with U = A x + B y and Omega = B^T x + C y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from fractions import Fraction
+from typing import Final, final
+
+from taylor_verify.exact import clocks
+from taylor_verify.exact.equations import Equations, cross, total
+from taylor_verify.exact.invariant import Array, Invariant, norms
+from taylor_verify.exact.kind import Kind
+from taylor_verify.exact.kirchhoff.integrable import fourth_integral
+from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy, fourth
+from taylor_verify.exact.parameters import Block, Parameters, entries
+from taylor_verify.exact.units import Units, exponent, halved, largest, later
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
+from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+_CLOSED: Final = {
+    "arb": "taylor_verify.exact.kirchhoff.weber.enclosure:enclosed",
+    "mpmath": "taylor_verify.exact.kirchhoff.weber.sums:closed_form",
+}
+# x and y as linear forms of (x, y).
+_X: Final = tuple(tuple(Fraction(int(i == k)) for k in range(6)) for i in range(3))
+_Y: Final = tuple(tuple(Fraction(int(i + 3 == k)) for k in range(6)) for i in range(3))
+
+
+@final
+class Immersed(Kind[ImmersedBody, Impulse]):
+    """z = (x, y), which is the momentum as well."""
+
+    moving = ("linear_impulse", "angular_impulse")
+    momenta = ("linear_impulse", "angular_impulse")
+    elements = "taylor_verify.exact.kirchhoff.elements:elements"
+
+    def state(self, initial: Impulse) -> Vector:
+        return initial.linear + initial.angular
+
+    def with_state(self, initial: Impulse, z: Vector) -> Impulse:
+        return replace(initial, linear=z[:3], angular=z[3:])
+
+    def centre(self, initial: Impulse) -> Vector:
+        return initial.centre
+
+    def energy(self, body: ImmersedBody) -> Matrix:
+        return body.energy_matrix
+
+    def equations(self, body: ImmersedBody) -> Equations:
+        U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
+        turned = zip(cross(_Y, Omega), cross(_X, U), strict=True)
+        rates = cross(_X, Omega) + [total(p, q) for p, q in turned]
+        return Equations(body.force + body.couple, rates, Omega, U)
+
+    def units(self, body: ImmersedBody, z: Vector) -> Units:
+        """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
+        # What a manufactured motion reaches, not where it begins, is the size of its impulses.
+        reached = z if body.manufactured is None else body.manufactured.reach
+        x, y, force, couple = reached[:3], reached[3:], body.force, body.couple
+        a, b, c = body.linear, body.coupling, body.angular
+        spun = tensors.plus(tensors.apply(tensors.transpose(b), force), tensors.apply(c, couple))
+        pushed = tensors.plus(tensors.apply(a, force), tensors.apply(b, couple))
+        omega = largest(
+            exponent(tensors.apply(tensors.transpose(b), x)),
+            exponent(tensors.apply(c, y)),
+            halved(exponent(spun)),
+            default=0,
+        )
+        time = -omega
+        velocity = largest(
+            exponent(tensors.apply(a, x)),
+            exponent(tensors.apply(b, y)),
+            later(exponent(pushed), time),
+            default=omega,
+        )
+        if body.manufactured is not None:
+            time = -largest(omega, clocks.exponent(body.manufactured), default=0)
+        linear = largest(exponent(x), later(exponent(force), time), default=0)
+        moment = linear + velocity + time
+        angular = largest(exponent(y), later(exponent(couple), time), moment, default=0)
+        return Units((linear, angular), velocity + time, time)
+
+    def closed_form(self, body: ImmersedBody, route: str) -> str:
+        return _CLOSED[route]
+
+    def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
+        body = scene.body
+        assert isinstance(body, ImmersedBody)
+        found = [energy(body), F2, FG]
+        if body.axis_of_symmetry is not None:
+            found.append(axial(body.axis_of_symmetry))
+        integral = fourth_integral(scene)
+        if integral is not None:
+            found.append(fourth(integral))
+        if scene.track:
+            found.append(X_SPACE)
+        if "centre" in scene.track:
+            found.append(Y_SPACE)
+        return tuple(found)
+
+    def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
+        assert isinstance(scene.body, ImmersedBody)
+        x, y = norms(motion["linear_impulse"]), norms(motion["angular_impulse"])
+        found = [abs(energy(scene.body).value(motion)), x, y]
+        if "centre" in scene.track:
+            found.append(y + norms(motion["centre"]) * x)
+        return found
+
+    def parameters(self, body: ImmersedBody) -> Parameters:
+        """Clebsch's six coefficients, or all 21 of T."""
+        if body.clebsch is not None:
+            return _six(body, body.clebsch)
+        A, C = body.linear, body.angular
+        # T > 0 keeps the square of an entry below the product of the two on the diagonal.
+        blocks = [
+            Block("A", "linear", (A, A)),
+            Block("B", "coupling", (A, C), is_symmetric=False),
+            Block("C", "angular", (C, C)),
+        ]
+        return entries("energy", replace(body, ellipsoid=None), blocks)
+
+
+def _six(body: ImmersedBody, six: Clebsch) -> Parameters:
+    components = tuple(field.name for field in fields(six))
+
+    def changed(j: int, amount: Fraction) -> ImmersedBody:
+        other = replace(six, **{components[j]: getattr(six, components[j]) + amount})
+        return other.body(body.force, body.couple)
+
+    p, p_prime, r, r_prime = six.p, six.p_prime, six.r, six.r_prime
+    # q may be zero; T > 0 keeps q^2 below p r.
+    squares = (p * p, p_prime * p_prime, p * r, p_prime * r_prime, r * r, r_prime * r_prime)
+    return Parameters("clebsch", components, squares, changed)
