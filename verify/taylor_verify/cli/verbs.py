@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
     from taylor_verify.cli.terminal import names_text
-    from taylor_verify.records.quantities import LADDER
+    from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reading.reader import load

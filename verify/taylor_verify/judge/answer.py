@@ -45,7 +45,7 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
+from taylor_verify.records.quantities import COLUMNS, GROUPS, MAIN, MOMENTA, VELOCITIES
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
@@ -61,14 +61,6 @@ Array = np.ndarray[Any, Any]
 _SPARE_BITS: Final = 128
 # How far the Taylor route is sent for a file.
 _MOST_SPANS: Final = 100
-# The columns that the states are read from; what is conserved may need any of them.
-_MADE_OF: Final = {
-    "omega": ("omega",),
-    "impulse": ("linear_impulse", "angular_impulse", *VELOCITIES),
-    "velocity": ("linear_velocity",),
-    "attitude": ("quaternion", "attitude"),
-    "centre": ("centre",),
-}
 
 
 @dataclass(frozen=True, repr=False)
@@ -334,7 +326,11 @@ def _verdict(sides: Sequence[Graded], file: TrajectoryFile, start: float) -> Ver
 
 def _flaw(file: TrajectoryFile, quantity: str) -> str:
     """The place of the first value of a quantity that is no finite number; empty if there is none."""
-    groups = [name for name in _MADE_OF.get(quantity, tuple(COLUMNS)) if name in file.groups]
+    made_of = [name for name, group in GROUPS.items() if group.quantity == quantity]
+    if quantity == MAIN["kirchhoff"]:
+        made_of += VELOCITIES
+    # What is conserved may need any of them.
+    groups = [name for name in made_of or GROUPS if name in file.groups]
     lost = {name: np.flatnonzero(~file.rows[name].finite) for name in groups}
     first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
     if not first:

@@ -16,7 +16,14 @@ from taylor_verify.judge.conventions.search import Finding
 from taylor_verify.judge.file_notes import single_precision
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.quantities import CONSERVED, INITIAL, STATES, UNIT_QUATERNION
+from taylor_verify.records.quantities import (
+    CONSERVED,
+    GROUPS,
+    INITIAL,
+    STATES,
+    UNIT_QUATERNION,
+    changed_by,
+)
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -28,18 +35,12 @@ _VECTOR: Final = sqrt(3)
 _ATTITUDE: Final = 4.0
 # The momenta in a conserved quantity are a state each, and the start has its own.
 _GRADIENT: Final = 2 * _VECTOR
-_IN_SPACE: Final = ("H_space", "x_space", "y_space")
 # The quantities that a convention of each subject changes; a map of time changes nothing conserved.
 _CHANGED: Final = {
     "time": STATES,
     "body": (*STATES, *CONSERVED),
     "axes": (*STATES, *CONSERVED),
-    "omega": ("omega", *CONSERVED),
-    "linear_impulse": ("impulse", *CONSERVED),
-    "angular_impulse": ("impulse", *CONSERVED),
-    "quaternion": ("attitude", *_IN_SPACE),
-    "attitude": ("attitude", *_IN_SPACE),
-    "centre": ("centre", "y_space"),
+    **{group: changed_by(group) for group in GROUPS},
 }
 # A shift that leaves no more than so many times as much is the clock that was found.
 _AS_WELL: Final = 1e6
@@ -58,9 +59,7 @@ def with_file_kinds(
     if not any(_is_open(verdict) for verdict in verdicts):
         return verdicts
     stored = storing(file, rung)
-    changed = {
-        name for found in findings if found.is_certain for name in _CHANGED.get(found.subject, ())
-    }
+    changed = {name for found in findings if found.is_certain for name in _CHANGED[found.subject]}
     left = [found.after for found in findings if found.is_certain and found.subject == "time"]
     return tuple(
         _with_clock(_with_kind(verdict, stored, changed), *left[:1]) for verdict in verdicts

@@ -27,20 +27,13 @@ from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.accumulated import Series, joined
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]
-
-_STATE_FIELDS = {
-    "omega": "omega",
-    "linear_impulse": "linear",
-    "angular_impulse": "angular",
-    "quaternion": "attitude",
-    "centre": "centre",
-}
 
 
 def drifts(
@@ -152,7 +145,7 @@ def _sizes(values: Column) -> Column:
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
     """The answer's samples as exact initial states."""
-    columns = {_STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()}
+    columns = {GROUPS[name].start: [_exact(row) for row in rows] for name, rows in held.items()}
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
 

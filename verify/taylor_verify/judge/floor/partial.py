@@ -31,7 +31,7 @@ from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
-from taylor_verify.records.quantities import UNIT_QUATERNION, VELOCITIES
+from taylor_verify.records.quantities import GROUPS, TRACKED, UNIT_QUATERNION, VELOCITIES
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
@@ -122,12 +122,7 @@ class Filled(ByRows):
 
 def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
     """The quantities of a verdict all of whose ingredients the answer has."""
-    found = has & {"omega", "attitude", "centre"}
-    found.add(UNIT_QUATERNION)
-    if "linear_velocity" in has:
-        found.add("velocity")
-    if {"linear_impulse", "angular_impulse"} & has:
-        found.add("impulse")
+    found = {UNIT_QUATERNION, *(GROUPS[name].quantity for name in has)}
     for invariant in invariants(problem.given):
         blocks = {_BLOCKS.get(block, block) for block in invariant.sensitivity(truth)}
         if blocks <= has:
@@ -145,7 +140,7 @@ def _states_apart(
         base = floor(given, problem.scene, rung.unit_roundoff, 0, solver.carries_velocities)
         rows = []
         for errors in states:
-            if errors.quantity in ("attitude", "centre"):
+            if errors.quantity in TRACKED[given.model]:
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
                 terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))

@@ -15,7 +15,7 @@ from typing import Any, Final, TypeVar
 
 from taylor_verify.records import json_text, store
 from taylor_verify.records.file_names import of_scene, of_solver
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.studies.controls import stored as sights
 from taylor_verify.studies.controls.document import Sight
