@@ -102,7 +102,8 @@ class Comparison:
                     for found in block.distances(arc):
                         states.add(found)
                 with costs.of(CONSERVED):
-                    drifts.add([elapsed[k] for k in block.places], block.answer, block.own)
+                    moved = [elapsed[k] for k in block.places]
+                    drifts.add(moved, block.truth, block.answer, block.own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]
