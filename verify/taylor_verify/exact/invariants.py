@@ -53,7 +53,7 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     """
     if isinstance(scene.body, RigidBody):
         found = [_euler_energy(scene.body), _euler_momentum(scene.body)]
-        if scene.track:
+        if "attitude" in scene.track:
             found.append(_euler_space_momentum(scene.body))
         return tuple(found)
     found = [_energy(scene.body), _F2, _FG]
@@ -62,7 +62,7 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     fourth = fourth_integral(scene)
     if fourth is not None:
         found.append(_fourth(fourth))
-    if scene.track:
+    if "attitude" in scene.track:
         found.append(_x_space)
     if "centre" in scene.track:
         found.append(_y_space)
