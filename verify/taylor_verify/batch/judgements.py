@@ -11,10 +11,10 @@ from taylor_verify.batch.expectations import Agreement, compare_with_expectation
 from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.costs import total
 from taylor_verify.judge.judgement import Judgement, NotPassed
-from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
+from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
 

@@ -20,7 +20,7 @@ from taylor_verify.cli.terminal import figure
 from taylor_verify.records.quantities import GATE_FACTOR
 
 if TYPE_CHECKING:
-    from taylor_verify.judge.answer import FileJudgement
+    from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
 _HEADINGS: Final = (
@@ -37,7 +37,7 @@ def check_text(
 
     The conventions of the file come first. With ``explained`` the arithmetic of the bounds is there too.
     """
-    from taylor_verify.judge.showing import counts
+    from taylor_verify.records.showing import counts
 
     console = new_console()
     print_line(console, Text(judged.file.name, "bold"), f": {_extent(judged)}")

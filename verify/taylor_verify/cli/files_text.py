@@ -12,11 +12,11 @@ from rich.text import Text
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
 from taylor_verify.cli.sentences import status_text
 from taylor_verify.cli.terminal import figure
-from taylor_verify.judge.showing import counts
 from taylor_verify.records.quantities import STATES
+from taylor_verify.records.showing import counts
 
 if TYPE_CHECKING:
-    from taylor_verify.judge.answer import FileJudgement
+    from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.judge.series.files import FilesJudgement
 
 

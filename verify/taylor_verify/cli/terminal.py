@@ -72,7 +72,7 @@ def verdicts_text(
     Of many runs only rows that are no pass have a sentence. Where no row was judged, and all for one
     reason, the counts and the reason are enough. With ``explained`` the arithmetic of the bounds is there.
     """
-    from taylor_verify.judge.showing import counts
+    from taylor_verify.records.showing import counts
 
     # A path of any length keeps its row in one line of a pipe; on a terminal it is folded.
     console = new_console(PIPED_WIDTH + max((len(v.scene) for v in verdicts), default=0))

@@ -18,8 +18,9 @@ from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.records.precisions import bits_of
 
-_BITS: Final = 24
+_BITS: Final = bits_of("f32")
 _ROUNDOFF: Final = 2.0**-_BITS
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING: Final = 2.0**18

@@ -1,13 +1,11 @@
-"""Sentences about a file: what of it is compared, what is not and why, and how its numbers were stored."""
+"""Sentences about a file: what of it is compared, what is not and why."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Final
 
-from taylor_verify.judge.complete import Extent
-from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.files.extent import Extent
 from taylor_verify.records.quantities import (
     COLUMNS,
     GROUPS,
@@ -18,12 +16,9 @@ from taylor_verify.records.quantities import (
     state_groups,
     with_needs,
 )
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
-
-_FLOAT32_BITS: Final = 24
 
 
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
@@ -119,25 +114,6 @@ def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[
         f"the last row is at t = {float(last):.12g}, and the scene ends at t = {end:.12g}: "
         "the rest was not judged"
     )
-
-
-def single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Yield a note if every number of a wider rung is one of float32, and not by chance."""
-    if rung.bits > _FLOAT32_BITS and file.is_single_precision:
-        yield (
-            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
-            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
-        )
-
-
-def cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Whether the file was printed with too few digits to be right."""
-    needed = truth_digits(rung.bits, 1)
-    if file.digits is not None and file.digits < needed - 2:
-        yield (
-            f"no number is written with more than {file.digits} significant digits, where "
-            f"{rung.name} has {needed}: what the printing cut off counts as error"
-        )
 
 
 def noun(group: str) -> str:

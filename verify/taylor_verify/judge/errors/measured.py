@@ -19,9 +19,9 @@ from mpmath import mp
 from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge import accumulated as series
-from taylor_verify.judge.accumulated import States, joined
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
+from taylor_verify.judge.errors import accumulated as series
+from taylor_verify.judge.errors.accumulated import States, joined
 from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import (

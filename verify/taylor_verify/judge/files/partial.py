@@ -17,17 +17,16 @@ from taylor_verify.exact.conditioning.looks import evenly
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.accumulated import Series, States
 from taylor_verify.judge.costs import Costs
+from taylor_verify.judge.errors.accumulated import Series, States
 from taylor_verify.judge.errors.angular_shift import angular_shift
+from taylor_verify.judge.errors.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, floor
 from taylor_verify.judge.floor.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.judgement import Judgement, judgement, mean
-from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
-from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.judgement import Judgement, judgement, numbers_of, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
@@ -246,33 +245,16 @@ def _row(
     tolerances: Tolerances,
 ) -> Gated:
     finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
-    instants, worst, values = problem.given.clock.instants, finding.worst, errors.doubles
-    verdict = Verdict(
-        scene=problem.scene.name,
-        solver=solver.name,
-        rung=problem.rung.name,
-        setting=solver.setting,
-        quantity=errors.quantity,
-        verdict=finding.status,
-        outcome=Outcome.FINISHED.value,
-        max=float(values[worst]),
-        mean=mean(values),
-        final=float(values[-1]),
-        at=float(instants[worst]),
-        unit=errors.unit,
-        bound=finding.bound,
-        tolerance=finding.tolerance,
-        reason=finding.reason,
-        attainable=float(attainable[worst]),
-        ratio=finding.ratio,
-        ratio_at=float(instants[finding.ratio_at]),
-        roundoff=float(problem.rung.unit_roundoff),
-        provenance=provenance(problem.scene.digest),
+    quantity, rung = errors.quantity, problem.rung
+    verdict = verdict_on(
+        *(problem.scene, solver, rung, quantity, finding.status, Outcome.FINISHED),
+        roundoff=float(rung.unit_roundoff),
+        **numbers_of(errors, attainable, finding, problem.given.clock.instants),
     )
     gate = GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=Doubles(values),
+        errors=Doubles(errors.doubles),
         attainable=Doubles(attainable),
         truth_radius=float(np.max(errors.widths)),
     )
