@@ -101,7 +101,7 @@ class Judgements(Sequence[Judgement]):
             return
         others = [v for v in self.verdicts if v.verdict is not Status.PASS and not self._is_met(v)]
         lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
-        lines += [f"{c.scene} {c.rung}: likely cause: {c.sentence}" for c in self.causes]
+        lines += [cause.line for cause in self.causes]
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
         raise NotPassed("\n".join(lines) or "nothing was judged")
 

@@ -37,9 +37,8 @@ def add_options(verb: argparse.ArgumentParser) -> None:
 
 def check(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
-    from taylor_verify.cli.check_text import check_text
+    from taylor_verify.cli.answers_text import check_text, files_text
     from taylor_verify.cli.ci import outputs, tell
-    from taylor_verify.cli.files_text import files_text
     from taylor_verify.cli.progress import working
     from taylor_verify.judge.series.files import files_judgement, judge_each
     from taylor_verify.records.verdict import exit_status

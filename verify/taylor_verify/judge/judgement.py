@@ -101,7 +101,7 @@ class Judgement:
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
             lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
-            lines += [f"likely cause: {cause.sentence}" for cause in self.causes]
+            lines += [cause.line for cause in self.causes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 
