@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.answer import judge_file
+from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced

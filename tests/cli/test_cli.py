@@ -23,7 +23,7 @@ from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import RigidBody

@@ -13,7 +13,7 @@ from taylor_verify.exact.ellipsoid import deviation, formed_to, told
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import pose
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, ImmersedBody
 from taylor_verify.scenes.precision import rung

@@ -19,7 +19,7 @@ from taylor_verify.exact.kirchhoff import integrable
 from taylor_verify.exact.kirchhoff.integrable import Fourth, fourth_integral
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody

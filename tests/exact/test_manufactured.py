@@ -32,7 +32,7 @@ from taylor_verify.models.form import (
 from taylor_verify.models.kirchhoff import velocities
 from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library

@@ -113,8 +113,8 @@ def records_stand_alone(module: str, source: str) -> Iterator[str]:
 def scenes_stand_alone(module: str, source: str) -> Iterator[str]:
     """scenes imports nothing of taylor_verify but scenes, and the names that all rooms share."""
     if room(module) == "scenes":
-        readable = ["taylor_verify.scenes", "taylor_verify.records.quantities"]
-        yield from _beyond(readable, module, source)
+        shared = ["taylor_verify.records.quantities", "taylor_verify.records.precisions"]
+        yield from _beyond(["taylor_verify.scenes", *shared], module, source)
 
 
 def publish_reads_records(module: str, source: str) -> Iterator[str]:

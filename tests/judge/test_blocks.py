@@ -19,11 +19,10 @@ from mpmath import mp, mpf
 from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
-from taylor_verify.judge import accumulated as series
-from taylor_verify.judge import measured
-from taylor_verify.judge.accumulated import Series
-from taylor_verify.judge.four_digits import four_digits
-from taylor_verify.records.doubles import Doubles
+from taylor_verify.judge.errors import accumulated as series
+from taylor_verify.judge.errors import measured
+from taylor_verify.judge.errors.accumulated import Series
+from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock

@@ -29,8 +29,8 @@ from scipy.spatial.transform import Rotation
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.answer import FileJudgement
 from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene

@@ -20,7 +20,7 @@ from mpmath import mp
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.floor.inputs import input_rounding
 from taylor_verify.models.problem import adopt, pose
 from taylor_verify.records.quantities import COLUMNS, COMPLETE, INITIAL

@@ -26,10 +26,10 @@ from builders.trajectories import (
 from mpmath import mp, mpf
 
 import taylor_verify
-from taylor_verify.judge.answer import FileJudgement
 from taylor_verify.judge.conventions.axes import AXES, Frames
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import EXPLAINS, conventions
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

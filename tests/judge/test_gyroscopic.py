@@ -13,7 +13,7 @@ from builders.trajectories import VECTORS, Columns, columns_at, exact_columns, w
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.reading.reader import load
 
 OMEGA = VECTORS["omega"]

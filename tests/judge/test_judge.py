@@ -233,9 +233,24 @@ def test_balance_of_the_exact_motion_under_load_is_zero() -> None:
     with mp.workdps(40):
         truth = exact.motion(scene.clock.elapsed, 40)
         start = exact.motion([Fraction(0)], 40)
-        for _, errors in drifts(scene, start, truth, truth.quantities, 35):
+        for _, errors in drifts(scene, start, truth, truth, truth.quantities, 35):
             # Three terms of 35 digits each.
             assert all(error <= mpf("1e-33") for error in errors.values)
+
+
+def test_an_answer_that_runs_away_does_not_hide_its_own_drift() -> None:
+    """A drift has the scale of the exact motion: 1 % at the first row is 1 %, whatever follows."""
+    scene = load("euler/generic")
+    exact = solution(scene)
+    with mp.workdps(40):
+        truth = exact.motion(scene.clock.elapsed, 30)
+        start = exact.motion([Fraction(0)], 30)
+        factors = [mp.sqrt(mpf("1.01")), *[mpf(1)] * (len(truth.radius) - 2), mpf(10) ** 28]
+        rows = truth["omega"] * np.array(factors, dtype=object)[:, None]
+        answer = Motion({"omega": rows}, truth.radius)
+        for _, errors in drifts(scene, start, truth, answer, answer.quantities, 30):
+            assert float(errors.values[0]) == pytest.approx(0.01, rel=1e-9)
+            assert float(errors.values[-1]) == pytest.approx(1e56, rel=1e-9)
 
 
 def test_energy_alone_is_not_conserved_under_load() -> None:

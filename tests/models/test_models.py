@@ -15,7 +15,7 @@ from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
 from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.models.rates import Linearised
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names

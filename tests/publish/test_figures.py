@@ -13,7 +13,8 @@ from taylor_verify.exact.euler.jacobi import FreeRotation
 from taylor_verify.exact.euler.orbit import Orbit
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.route import solution
-from taylor_verify.records.quantities import LADDER, STATES
+from taylor_verify.records.precisions import LADDER
+from taylor_verify.records.quantities import STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run

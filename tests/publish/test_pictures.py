@@ -32,7 +32,7 @@ from taylor_verify.publish.pictures.style import (
     look_of_rung,
 )
 from taylor_verify.publish.pictures.wording import label_of, power_of_ten
-from taylor_verify.records.quantities import bits_of, place_of_rung
+from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.studies.prices import picture as prices
 from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade
 

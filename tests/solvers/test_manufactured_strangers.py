@@ -22,7 +22,7 @@ import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.inputs import _numbers, _with_factors
 from taylor_verify.models.problem import Problem, adopt, pose
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library

@@ -19,7 +19,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.times import rounded_times
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors

@@ -19,7 +19,7 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library, tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

@@ -32,7 +32,7 @@ from taylor_verify.publish.cells import NOTHING, figure
 from taylor_verify.publish.markdown import code, prose
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.records import store
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict

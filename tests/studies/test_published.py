@@ -37,7 +37,7 @@ from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import save
 from taylor_verify.records import store
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.replacement import first_line
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict

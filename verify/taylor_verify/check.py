@@ -108,7 +108,7 @@ def check(
         return _check_files(scene, solve_or_file, steps, *options)
     if steps is not None:
         raise ValueError("expected a list of files with steps, got one answer @ steps")
-    from taylor_verify.judge.answer import judge_file
+    from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene

@@ -17,7 +17,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
-from taylor_verify.records.quantities import FORMATS, GATE_FACTOR, INITIAL
+from taylor_verify.records.precisions import bits_of
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes import tensors
@@ -34,7 +35,7 @@ MOMENTS: Final = (1, 2, 3)
 GENERIC: Final = (0.71875, -0.40625, 0.90625)
 
 # A truth of so many digits is beyond question beside an error of double precision.
-_DIGITS: Final = truth_digits(FORMATS["f64"], 10)
+_DIGITS: Final = truth_digits(bits_of("f64"), 10)
 
 
 def free(name: str, omega: Sequence[float], end: float, samples: int = 11, start: int = 0) -> Scene:

@@ -17,7 +17,7 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.faults import Refused

@@ -18,7 +18,7 @@ from scipy.optimize import OptimizeResult
 from scipy.spatial.transform import Rotation
 
 import taylor_verify
-from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.faults import Refused

@@ -20,7 +20,7 @@ from rosbags import rosbag1, rosbag2
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.answer import FileJudgement
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load

@@ -25,10 +25,10 @@ from mpmath import mp
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.answer import FileJudgement
 from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.files.judgement import FileJudgement
+from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.floor.inputs import impulses, velocities
-from taylor_verify.judge.floor.partial import partial_judgement
 from taylor_verify.models.problem import adopt
 from taylor_verify.records.quantities import COMPLETE, INITIAL
 from taylor_verify.records.status import Status

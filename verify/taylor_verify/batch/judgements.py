@@ -11,10 +11,10 @@ from taylor_verify.batch.expectations import Agreement, compare_with_expectation
 from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.costs import total
 from taylor_verify.judge.judgement import Judgement, NotPassed
-from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
+from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
 
@@ -101,7 +101,7 @@ class Judgements(Sequence[Judgement]):
             return
         others = [v for v in self.verdicts if v.verdict is not Status.PASS and not self._is_met(v)]
         lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
-        lines += [f"{c.scene} {c.rung}: likely cause: {c.sentence}" for c in self.causes]
+        lines += [cause.line for cause in self.causes]
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
         raise NotPassed("\n".join(lines) or "nothing was judged")
 

@@ -72,7 +72,7 @@ def select(
     ValueError
         For a name that is no rung, and for what is neither scenes nor rungs.
     """
-    from taylor_verify.records.quantities import LADDER
+    from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
     from taylor_verify.scenes.precision import rung as rung_named

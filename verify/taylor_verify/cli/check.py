@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from taylor_verify.judge.answer import FileJudgement
+    from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.files.file import TrajectoryFile
@@ -37,9 +37,8 @@ def add_options(verb: argparse.ArgumentParser) -> None:
 
 def check(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
-    from taylor_verify.cli.check_text import check_text
+    from taylor_verify.cli.answers_text import check_text, files_text
     from taylor_verify.cli.ci import outputs, tell
-    from taylor_verify.cli.files_text import files_text
     from taylor_verify.cli.progress import working
     from taylor_verify.judge.series.files import files_judgement, judge_each
     from taylor_verify.records.verdict import exit_status
@@ -74,7 +73,7 @@ def _judged(options: argparse.Namespace, file: TrajectoryFile, scene: Scene) -> 
     """Judge one file as the options say."""
     from taylor_verify.cli.progress import working
     from taylor_verify.cli.tolerance import read_tolerances
-    from taylor_verify.judge.answer import judge_file
+    from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.scenes.precision import rung
 
     tolerances = read_tolerances(options.tolerance, [scene])

@@ -16,6 +16,7 @@ from taylor_verify.cli.console import print_indented, print_line
 from taylor_verify.records.error_kind import ErrorKind
 
 if TYPE_CHECKING:
+    from taylor_verify.records.answers import LikelyCause
     from taylor_verify.records.verdict import Verdict
 
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
@@ -54,6 +55,16 @@ def print_sentence(console: Console, verdict: Verdict, place: str = "", why: str
     print_line(console, first)
     for line in lines[1:]:
         print_line(console, line)
+
+
+def figure(value: float | None) -> str:
+    return "not finite" if value is None or value != value else f"{value:.3g}"
+
+
+def print_cause(console: Console, cause: LikelyCause, place: str = "") -> None:
+    """Print a likely cause; ``place`` says which run it is about."""
+    about = f"  {place}" if place else ""
+    print_line(console, Text("likely cause", "bold yellow"), f"{about}: {cause.sentence}")
 
 
 def print_arithmetic(console: Console, verdicts: Sequence[Verdict]) -> None:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 def list_all(options: argparse.Namespace) -> Answer:
     """Everything that has a name."""
-    from taylor_verify.cli.terminal import names_text
-    from taylor_verify.records.quantities import LADDER
+    from taylor_verify.cli.scene_text import names_text
+    from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.guide import GUIDE
     from taylor_verify.scenes.library import EXTREMES, names
     from taylor_verify.scenes.reading.reader import load
@@ -95,8 +95,8 @@ def _run_answer(
     explained: bool = False,
 ) -> Answer:
     """Return the answer of a run, with what comparisons and files add to it."""
+    from taylor_verify.cli.answers_text import verdicts_text
     from taylor_verify.cli.ci import tell
-    from taylor_verify.cli.terminal import verdicts_text
     from taylor_verify.judge.costs import sentence
     from taylor_verify.records.answers import Against
     from taylor_verify.records.json_text import complete
@@ -147,7 +147,7 @@ def _published(folder: str) -> Earlier:
 def exact(options: argparse.Namespace) -> Answer:
     """The exact motion of one scene."""
     from taylor_verify.cli.progress import working
-    from taylor_verify.cli.terminal import exact_text
+    from taylor_verify.cli.scene_text import exact_text
     from taylor_verify.exact.request import MOST_DIGITS
 
     if not 1 <= options.digits <= MOST_DIGITS:
@@ -191,7 +191,7 @@ def _without_rows(scene: Scene, digits: int, route: str, because: str) -> Answer
 def explain(options: argparse.Namespace) -> Answer:
     """The arithmetic of one run."""
     from taylor_verify.cli.progress import working
-    from taylor_verify.cli.terminal import explanation_text
+    from taylor_verify.cli.scene_text import explanation_text
     from taylor_verify.explain.explanation import explanation
 
     (rung,) = known_rungs([options.rung])

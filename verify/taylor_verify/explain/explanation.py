@@ -16,9 +16,9 @@ from taylor_verify.exact.kirchhoff.general import screws_beside
 from taylor_verify.exact.kirchhoff.screws import Screw
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.carrying import Carrying, carrying
-from taylor_verify.judge.floor.partial import partial_judgement
 from taylor_verify.judge.initial import with_initial
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form

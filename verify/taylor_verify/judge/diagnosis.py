@@ -142,9 +142,6 @@ def _mean_square_root(errors: Floats) -> float:
 
 def _line(points: Floats) -> tuple[float, float]:
     """Return the slope of a straight line through some points, and half of its interval."""
-    x, y = points[:, 0] - np.mean(points[:, 0]), points[:, 1] - np.mean(points[:, 1])
-    weight = float(np.sum(x * x))
-    slope = float(np.sum(x * y)) / weight
-    scatter = float(np.sum((y - slope * x) ** 2)) / (len(x) - 2)
-    half = _STUDENT * (scatter / weight) ** 0.5
+    (slope, _), covariance = np.polyfit(points[:, 0], points[:, 1], 1, cov=True)
+    half = _STUDENT * float(covariance[0, 0]) ** 0.5
     return (slope, half) if isfinite(slope) and isfinite(half) else (0.0, float("inf"))

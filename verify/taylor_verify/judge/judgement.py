@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from math import fsum, inf
 from typing import TYPE_CHECKING, Any
 
@@ -15,24 +16,23 @@ from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.balances import ClockWork, clock_work
+from taylor_verify.judge.errors.measured import Comparison
 from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, Floor, floor
 from taylor_verify.judge.floor.steps import Steps, count_steps
 from taylor_verify.judge.floor.unit_quaternion import unit_quaternion
-from taylor_verify.judge.four_digits import four_digits
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
-from taylor_verify.judge.measured import Comparison
 from taylor_verify.judge.provenance import provenance
-from taylor_verify.judge.showing import counts, dataframe, html_table
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.doubles import Doubles
+from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import MAIN, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record
+from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.mpfr import in_mpfr
@@ -101,7 +101,7 @@ class Judgement:
         if not self.passed:
             others = [v for v in self.verdicts if v.verdict is not Status.PASS]
             lines = [f"{v.verdict}  {v.scene} {v.rung} {v.sentence}" for v in others]
-            lines += [f"likely cause: {cause.sentence}" for cause in self.causes]
+            lines += [cause.line for cause in self.causes]
             raise NotPassed("\n".join(lines) or "nothing was judged")
 
 
@@ -123,20 +123,13 @@ class _Run:
         return judge(errors, attainable, terms, self.tolerances.of(errors.quantity))
 
     def verdict(self, quantity: str, status: Status, **numbers: Any) -> Verdict:
-        scene, trajectory = self.problem.scene, self.trajectory
-        return Verdict(
-            scene=scene.name,
-            solver=self.solver.name,
-            rung=self.problem.rung.name,
-            setting=self.solver.setting,
-            quantity=quantity,
-            verdict=status,
-            outcome=trajectory.outcome.value,
-            roundoff=float(self.problem.rung.unit_roundoff),
+        problem, trajectory = self.problem, self.trajectory
+        return verdict_on(
+            *(problem.scene, self.solver, problem.rung, quantity, status, trajectory.outcome),
+            roundoff=float(problem.rung.unit_roundoff),
             steps=trajectory.steps,
             evaluations=trajectory.evaluations,
             seconds=trajectory.seconds,
-            provenance=provenance(scene.digest),
             **numbers,
         )
 
@@ -280,28 +273,33 @@ def _reason(
 
 
 def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) -> Verdict:
-    instants = run.problem.given.clock.instants
+    numbers = numbers_of(errors, attainable, finding, run.problem.given.clock.instants)
+    return run.verdict(errors.quantity, finding.status, **numbers)
+
+
+def numbers_of(
+    errors: Errors, attainable: Floats, finding: Finding, instants: Sequence[Fraction]
+) -> dict[str, Any]:
+    """Return the numbers of a verdict on a compared quantity, by the names of its fields."""
     worst = finding.worst
-    return run.verdict(
-        errors.quantity,
-        finding.status,
-        max=float(errors.doubles[worst]),
-        mean=mean(errors.doubles),
-        final=float(errors.doubles[-1]),
-        at=float(instants[worst]),
-        unit=errors.unit,
-        bound=finding.bound,
-        tolerance=finding.tolerance,
-        reason=finding.reason,
-        attainable=float(attainable[worst]),
-        ratio=finding.ratio,
-        ratio_at=float(instants[finding.ratio_at]),
-        change=errors.change,
-    )
+    return {
+        "max": float(errors.doubles[worst]),
+        "mean": _mean(errors.doubles),
+        "final": float(errors.doubles[-1]),
+        "at": float(instants[worst]),
+        "unit": errors.unit,
+        "bound": finding.bound,
+        "tolerance": finding.tolerance,
+        "reason": finding.reason,
+        "attainable": float(attainable[worst]),
+        "ratio": finding.ratio,
+        "ratio_at": float(instants[finding.ratio_at]),
+        "change": errors.change,
+    }
 
 
-def mean(errors: Floats) -> float:
-    """The mean; infinite where the sum is beyond doubles."""
+def _mean(errors: Floats) -> float:
+    """Return the mean; infinite where the sum is beyond doubles."""
     try:
         return fsum(errors) / len(errors)
     except OverflowError:
@@ -361,18 +359,32 @@ def unjudged(
     outcome: Outcome = Outcome.NOT_REPRESENTABLE,
 ) -> Judgement:
     """The judgement of a run that could not begin."""
-    verdict = Verdict(
+    reason = stated(cause, str(why))
+    verdict = verdict_on(scene, solver, rung, main_quantity(scene), status, outcome, reason=reason)
+    return Judgement((verdict,), None)
+
+
+def verdict_on(
+    scene: Scene,
+    solver: Solver,
+    rung: Rung,
+    quantity: str,
+    status: Status,
+    outcome: Outcome,
+    **numbers: Any,
+) -> Verdict:
+    """Return the verdict on one quantity of a run, with its provenance."""
+    return Verdict(
         scene=scene.name,
         solver=solver.name,
         rung=rung.name,
         setting=solver.setting,
-        quantity=main_quantity(scene),
+        quantity=quantity,
         verdict=status,
         outcome=outcome.value,
-        reason=stated(cause, str(why)),
         provenance=provenance(scene.digest),
+        **numbers,
     )
-    return Judgement((verdict,), None)
 
 
 def main_quantity(scene: Scene) -> str:

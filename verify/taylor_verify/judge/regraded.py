@@ -16,9 +16,9 @@ import numpy as np
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.inputs import InputRounding
-from taylor_verify.judge.four_digits import four_digits
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.doubles import four_digits
 from taylor_verify.records.quantities import STATES
 from taylor_verify.records.reason import Cause, InputShare, Reason
 from taylor_verify.records.record import GateRecord, Record

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.records.quantities import STATES, UNIT_QUATERNION
+from taylor_verify.records.quantities import MAIN, STATES, UNIT_QUATERNION
 from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.scenes.reading.positive import positive
 
@@ -85,10 +85,6 @@ def _quantities(scenes: Iterable[Scene]) -> list[str]:
 
     asked = list(scenes)
     # A file may have the angular velocity of a solid in a fluid too.
-    states = {name for scene in asked for name in ("omega", *_main(scene), *scene.track)}
+    states = {name for scene in asked for name in ("omega", MAIN[scene.model], *scene.track)}
     conserved = dict.fromkeys(each.name for scene in asked for each in invariants(scene))
     return [*(name for name in STATES if name in states), *conserved]
-
-
-def _main(scene: Scene) -> tuple[str, ...]:
-    return ("impulse",) if scene.model == "kirchhoff" else ()

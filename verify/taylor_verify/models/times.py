@@ -14,11 +14,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.records.precisions import FORMATS
 from taylor_verify.scenes.instants import EquallySpaced, Instants
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, nearest, power_of_two
 
-_HARDWARE: Final[dict[str, Any]] = {"f32": np.float32, "f64": np.float64, "f80": np.longdouble}
+_HARDWARE: Final[dict[str, Any]] = {
+    each.name: np.dtype(each.numpy).type for each in FORMATS.values() if each.numpy
+}
 # The numerators are formed in 64-bit integers, one bit of which is the sign.
 _INTEGER_BITS: Final = 63
 

@@ -8,8 +8,9 @@ from typing import Any, Final
 
 from taylor_verify.publish.cells import figure, instant, judged, reason
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import versions

@@ -1,24 +1,144 @@
-"""Names that every room shares: quantities, the columns of files, the precision ladder."""
+"""Records of all quantities: of the state, of what is conserved, and of the columns of a trajectory file.
+
+Readers, solvers and the judge take names, columns and units from here. To add a state quantity is to add
+its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state has it
+(solvers/trajectory.py), what the exact motion makes of it, and how an error reaches it.
+"""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from enum import Enum
 from typing import Final
 
-# The quantities that say where the body is, in reading order; all others compared are conserved.
-STATES: Final = ("omega", "impulse", "attitude", "centre", "velocity")
-# The quantity of each model that every run has, and those that a scene may track besides.
-MAIN: Final[Mapping[str, str]] = {"euler": "omega", "kirchhoff": "impulse"}
-TRACKED: Final[Mapping[str, tuple[str, ...]]] = {
-    "euler": ("attitude",),
-    "kirchhoff": ("attitude", "centre"),
+
+class Measure(Enum):
+    """The way in which two values of a state quantity are compared."""
+
+    # The difference of vectors, over the largest of them; of several groups the larger counts.
+    VECTORS = "vectors"
+    # The angle between two frames.
+    ANGLE = "angle"
+    # The distance of two places, over the length of the path.
+    PATH = "path"
+
+
+@dataclass(frozen=True)
+class Group:
+    """Columns of a trajectory file that belong together, and the state ``quantity`` that they tell.
+
+    ``dimension`` says which units they may be written in. ``moves_with`` says whose axes rename them: those
+    of the ``body``, of ``space``, or both (``frame``). ``start`` is the field of the initial state.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    quantity: str
+    noun: str
+    dimension: str
+    moves_with: str = "body"
+    start: str = ""
+
+    @property
+    def is_frame(self) -> bool:
+        """True for columns that are an attitude, and no vector."""
+        return self.moves_with == "frame"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that says where the body is.
+
+    Every run of the model ``main_of`` has it, and a scene of the models ``tracked_by`` may ask for it
+    besides; one that is neither is in files alone. ``groups`` are the columns in which a solver's state
+    has it. A scene that tracks it tracks what it ``needs`` too. ``unit`` is that of its error.
+    """
+
+    name: str
+    unit: str
+    groups: tuple[str, ...]
+    main_of: str = ""
+    tracked_by: tuple[str, ...] = ()
+    measure: Measure = Measure.VECTORS
+    needs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Conserved:
+    """A quantity that a free motion conserves, made of the momenta and the quantities that it ``needs``.
+
+    To lose some of one that ``is_positive`` has a meaning.
+    """
+
+    name: str
+    needs: tuple[str, ...] = ()
+    is_positive: bool = False
+
+
+# r12 is row 1, column 2; q0 is the scalar.
+GROUPS: Final[Mapping[str, Group]] = {
+    each.name: each
+    for each in (
+        Group("omega", ("w1", "w2", "w3"), "omega", "angular velocity", "rate", start="omega"),
+        Group("linear_velocity", ("u1", "u2", "u3"), "velocity", "linear velocity", "velocity"),
+        Group(
+            *("linear_impulse", ("x1", "x2", "x3"), "impulse", "linear impulse", "impulse"),
+            start="linear",
+        ),
+        Group(
+            *("angular_impulse", ("y1", "y2", "y3"), "impulse"),
+            *("angular impulse", "moment of impulse"),
+            start="angular",
+        ),
+        Group(
+            *("quaternion", ("q0", "q1", "q2", "q3"), "attitude", "attitude", "number", "frame"),
+            start="attitude",
+        ),
+        Group(
+            *("attitude", tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3))),
+            *("attitude", "attitude", "number", "frame"),
+        ),
+        Group("centre", ("c1", "c2", "c3"), "centre", "centre", "length", "space", "centre"),
+    )
 }
-# Conserved quantities in reading order: energy, momenta in body axes, fourth integrals, momenta in space.
-CONSERVED: Final = (
-    *("T", "H2", "H_space", "F2", "FG", "y1", "y2", "y3"),
-    *("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov", "x_space", "y_space"),
-)
+# In reading order.
+QUANTITIES: Final[Mapping[str, Quantity]] = {
+    each.name: each
+    for each in (
+        Quantity("omega", "max|omega|", ("omega",), main_of="euler"),
+        Quantity(
+            *("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse")),
+            main_of="kirchhoff",
+        ),
+        Quantity(
+            *("attitude", "rad", ("quaternion",)),
+            tracked_by=("euler", "kirchhoff"),
+            measure=Measure.ANGLE,
+        ),
+        Quantity(
+            *("centre", "arc length", ("centre",)),
+            tracked_by=("kirchhoff",),
+            measure=Measure.PATH,
+            needs=("attitude",),
+        ),
+        Quantity("velocity", "max|U|", ("linear_velocity",)),
+    )
+}
+# In reading order: energy, momenta in body axes, fourth integrals, momenta in space.
+CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
+    each.name: each
+    for each in (
+        Conserved("T", is_positive=True),
+        Conserved("H2", is_positive=True),
+        Conserved("H_space", ("attitude",)),
+        Conserved("F2", is_positive=True),
+        *map(Conserved, ("FG", "y1", "y2", "y3")),
+        *map(Conserved, ("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov")),
+        Conserved("x_space", ("attitude",)),
+        Conserved("y_space", ("attitude", "centre")),
+    )
+}
 # Rows that compare no quantity of their own: the start, the extent of an answer, the length of quaternions.
 INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
@@ -29,30 +149,21 @@ UNIT_QUATERNION: Final = "unit quaternion"
 # for one step in a hundred done wrongly.
 GATE_FACTOR: Final = 10
 
-# The columns of a trajectory file, group by group. r12 is row 1, column 2; q0 is the scalar.
-COLUMNS: Final[Mapping[str, tuple[str, ...]]] = {
-    "omega": ("w1", "w2", "w3"),
-    "linear_velocity": ("u1", "u2", "u3"),
-    "linear_impulse": ("x1", "x2", "x3"),
-    "angular_impulse": ("y1", "y2", "y3"),
-    "quaternion": ("q0", "q1", "q2", "q3"),
-    "attitude": tuple(f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)),
-    "centre": ("c1", "c2", "c3"),
+# What follows is made of the records.
+STATES: Final = tuple(QUANTITIES)
+CONSERVED: Final = tuple(CONSERVED_QUANTITIES)
+# The quantity of each model that every run has, the groups that it consists of, and what a scene may
+# track besides.
+MAIN: Final = {each.main_of: each.name for each in QUANTITIES.values() if each.main_of}
+MOMENTA: Final = {model: QUANTITIES[name].groups for model, name in MAIN.items()}
+TRACKED: Final = {
+    model: tuple(name for name, each in QUANTITIES.items() if model in each.tracked_by)
+    for model in MAIN
 }
-# The groups that the momenta of a model consist of.
-MOMENTA: Final[Mapping[str, tuple[str, ...]]] = {
-    "euler": ("omega",),
-    "kirchhoff": ("linear_impulse", "angular_impulse"),
-}
+COLUMNS: Final = {name: group.columns for name, group in GROUPS.items()}
 # The groups of velocities that stand for the impulses of a solid in a fluid.
 VELOCITIES: Final = ("linear_velocity", "omega")
-IMPULSES: Final = COLUMNS["linear_impulse"] + COLUMNS["angular_impulse"]
-
-# Number formats of hardware or of compilers, with the bits of their significand; mpN has N bits.
-FORMATS: Final[Mapping[str, int]] = {"f32": 24, "f64": 53, "f80": 64, "f128": 113}
-# The precisions that the standard set runs on.
-LADDER: Final = (*FORMATS, "mp237")
-_MPFR: Final = re.compile(r"mp([1-9][0-9]*)")
+IMPULSES: Final = tuple(column for name in MOMENTA["kirchhoff"] for column in COLUMNS[name])
 
 
 def is_conserved(quantity: str) -> bool:
@@ -60,15 +171,27 @@ def is_conserved(quantity: str) -> bool:
     return quantity not in (*STATES, INITIAL, COMPLETE)
 
 
-def bits_of(rung: str) -> int:
-    """Return the bits of a rung's significand; 0 for a name that is no rung."""
-    if rung in FORMATS:
-        return FORMATS[rung]
-    found = _MPFR.fullmatch(rung)
-    return int(found[1]) if found else 0
+def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]:
+    """Return the quantities of a scene's states, the one that every run has first."""
+    names = (MAIN[model], *(name for name in TRACKED[model] if name in track))
+    return tuple(QUANTITIES[name] for name in names)
 
 
-def place_of_rung(rung: str) -> tuple[int, int, str]:
-    """Return a key to sort rungs by: the named formats, then mpN by N, then any other name."""
-    bits = bits_of(rung)
-    return (0 if rung in FORMATS else 1 if bits else 2), bits, rung
+def state_groups(model: str, track: Collection[str]) -> tuple[str, ...]:
+    """Return the groups of columns that a solver's states have, in their order."""
+    return tuple(name for each in state_quantities(model, track) for name in each.groups)
+
+
+def with_needs(track: Collection[str]) -> frozenset[str]:
+    """Return the quantities and all that they need."""
+    return frozenset(track).union(*(QUANTITIES[name].needs for name in track if name in QUANTITIES))
+
+
+def changed_by(group: str) -> tuple[str, ...]:
+    """Return the state quantity that some columns tell, and what is conserved and made of it."""
+    quantity = GROUPS[group].quantity
+    is_momentum = not any(quantity in tracked for tracked in TRACKED.values())
+    return (
+        quantity,
+        *(n for n, each in CONSERVED_QUANTITIES.items() if is_momentum or quantity in each.needs),
+    )

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from taylor_verify.records import status
-from taylor_verify.records.quantities import CONSERVED, MAIN, STATES, place_of_rung
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.quantities import CONSERVED, MAIN, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 

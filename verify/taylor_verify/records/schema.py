@@ -11,6 +11,7 @@ from typing import Any, Final
 import msgspec
 
 from taylor_verify.records.answers import Answer, FilesAnswer
+from taylor_verify.records.precisions import RUNG_PATTERN
 from taylor_verify.records.status import Status
 
 _DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -37,7 +38,6 @@ _DERIVED: Final = {
         "anyOf": [{"type": "integer", "minimum": 0}, {"type": "null"}],
     },
 }
-_RUNG: Final = "^(f32|f64|f80|f128|mp[1-9][0-9]*)$"
 
 
 def schema() -> dict[str, Any]:
@@ -46,7 +46,7 @@ def schema() -> dict[str, Any]:
     answer = _with_files(found.pop(Answer.__name__), found.pop(FilesAnswer.__name__))
     verdict = found["Verdict"]
     verdict["properties"] = {**_DERIVED, **verdict["properties"]}
-    verdict["properties"]["rung"]["pattern"] = _RUNG
+    verdict["properties"]["rung"]["pattern"] = RUNG_PATTERN
     verdict["properties"]["quantity"]["minLength"] = 1
     verdict["properties"]["provenance"] = {
         "description": "What the row can be traced to: SHA-256 of the scene's text, versions, machine.",

@@ -10,7 +10,12 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.quantities import COMPLETE, GATE_FACTOR, INITIAL
+from taylor_verify.records.quantities import (
+    COMPLETE,
+    CONSERVED_QUANTITIES,
+    GATE_FACTOR,
+    INITIAL,
+)
 from taylor_verify.records.status import Status
 
 if TYPE_CHECKING:
@@ -22,8 +27,6 @@ _POWERS: Final = {0.5: "t^1/2", 1.0: "t", 1.5: "t^3/2", 2.0: "t^2", 3.0: "t^3"}
 _NEAR: Final = 0.15
 # What of a change has one direction all the way, as a part of the largest error.
 _STEADY: Final = 0.5
-# Quantities of one sign: to lose some of them has a meaning.
-_POSITIVE: Final = ("T", "H2", "F2")
 _STORED: Final = {
     ErrorKind.PRINTED: "the rounding of the file's own printed digits",
     ErrorKind.SINGLE: "the rounding of the file's numbers to float32",
@@ -109,7 +112,8 @@ def _tendency(verdict: Verdict) -> str:
     change, size = verdict.change, verdict.max
     if change is None or size is None or not abs(change) >= _STEADY * size:
         return ""
-    if verdict.quantity not in _POSITIVE:
+    conserved = CONSERVED_QUANTITIES.get(verdict.quantity)
+    if conserved is None or not conserved.is_positive:
         return ": a steady drift"
     return ": a steady loss" if change < 0 else ": a steady gain"
 

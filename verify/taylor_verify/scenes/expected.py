@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Final
 
-from taylor_verify.records.quantities import LADDER
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Faults, Refused, near, shown

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import re
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from typing import Any
 
-from taylor_verify.records.quantities import FORMATS
+from taylor_verify.records.precisions import FORMATS, bits_of
 
 _LEAST_BITS = 24
 # The numbers of a verdict are doubles: errors of 2^-1000 still are, those of 2^-1075 are not.
@@ -56,11 +55,8 @@ class Rung:
         return self.round(value) == value
 
 
-_IEEE = {
-    "f32": Rung("f32", FORMATS["f32"], -126, 127),
-    "f64": Rung("f64", FORMATS["f64"], -1022, 1023),
-    "f80": Rung("f80", FORMATS["f80"], -16382, 16383),
-    "f128": Rung("f128", FORMATS["f128"], -16382, 16383),
+_FORMATS = {
+    each.name: Rung(each.name, each.bits, each.emin, each.emax) for each in FORMATS.values()
 }
 
 
@@ -68,17 +64,17 @@ def rung(name: str | Rung) -> Rung:
     """The rung of that name, or the one given; ValueError for a name that is not on the ladder."""
     if isinstance(name, Rung):
         return name
-    match = None
+    bits = 0
     if isinstance(name, str):
-        if name in _IEEE:
-            return _IEEE[name]
-        match = re.fullmatch(r"mp([1-9][0-9]{1,3})", name)
-    if match is None or not _LEAST_BITS <= int(match[1]) <= _MOST_BITS:
+        if name in _FORMATS:
+            return _FORMATS[name]
+        bits = bits_of(name)
+    if not _LEAST_BITS <= bits <= _MOST_BITS:
         raise ValueError(
-            f"expected a rung f32, f64, f80, f128 or mpN with {_LEAST_BITS} <= N <= {_MOST_BITS} "
+            f"expected a rung {', '.join(FORMATS)} or mpN with {_LEAST_BITS} <= N <= {_MOST_BITS} "
             f"bits, got {name!r:.60}"
         )
-    return Rung(name, int(match[1]))
+    return Rung(name, bits)
 
 
 def nearest(numerator: int, denominator: int, bits: int) -> tuple[int, int]:

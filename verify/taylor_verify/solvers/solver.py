@@ -15,6 +15,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.precision import Rung, held_exactly
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
@@ -139,15 +140,8 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
     ``omega`` 3, or ``linear_impulse`` 3 and ``angular_impulse`` 3 (body axes); then ``quaternion`` 4
     (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked.
     """
-    if problem.scene.model == "euler":
-        layout = [("omega", 3)]
-    else:
-        layout = [("linear_impulse", 3), ("angular_impulse", 3)]
-    if "attitude" in problem.scene.track:
-        layout.append(("quaternion", 4))
-    if "centre" in problem.scene.track:
-        layout.append(("centre", 3))
-    return layout
+    groups = state_groups(problem.scene.model, problem.scene.track)
+    return [(name, len(COLUMNS[name])) for name in groups]
 
 
 def _held(value: Any) -> Any:

@@ -17,9 +17,10 @@ import numpy as np
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material, Pairs
+from taylor_verify.records.precisions import bits_of
 from taylor_verify.scenes.instants import evenly
 
-_BITS: Final = 24
+_BITS: Final = bits_of("f32")
 _ROUNDOFF: Final = 2.0**-_BITS
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING: Final = 2.0**18

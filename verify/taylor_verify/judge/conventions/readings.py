@@ -19,6 +19,7 @@ from mpmath import mp
 
 from taylor_verify.judge.conventions.axes import Frames
 from taylor_verify.judge.errors.state import norms
+from taylor_verify.records.quantities import GROUPS
 
 Array = np.ndarray[Any, Any]
 # The columns of one group, shaped (n, k), and the exact R at the same times, (n, 3, 3).
@@ -51,14 +52,6 @@ _UNITS: Final = (
     ("in turns per minute, the unit of time being the second", Fraction(1, 30), 1),
 )
 
-_LETTERS: Final = {
-    "omega": "w",
-    "linear_velocity": "u",
-    "linear_impulse": "x",
-    "angular_impulse": "y",
-    "centre": "c",
-}
-
 
 @lru_cache
 def readings(group: str, frames: Frames = Frames()) -> tuple[Reading, ...]:  # noqa: B008 (frozen)
@@ -72,21 +65,17 @@ def readings(group: str, frames: Frames = Frames()) -> tuple[Reading, ...]:  # n
     return tuple(sorted(every, key=lambda reading: reading.cost))
 
 
-def vector_columns(group: str) -> tuple[str, ...]:
-    """The three columns of a group of vectors."""
-    return tuple(f"{_LETTERS[group]}{i}" for i in (1, 2, 3))
-
-
 def _vectors(group: str, frames: Frames) -> Iterator[Reading]:
-    together = " ".join(vector_columns(group))
-    units = _UNITS if group == "omega" else _UNITS[:1]
+    about = GROUPS[group]
+    together, is_placed = " ".join(about.columns), about.moves_with == "space"
+    units = _UNITS if about.dimension == "rate" else _UNITS[:1]
     for unit, rational, power in units:
-        for space in (False, True) if group != "centre" else (False,):
+        for space in (False,) if is_placed else (False, True):
             words = (
                 *([f"{together} are {unit}"] if unit else []),
                 *([f"{together} are in space axes"] if space else []),
             )
-            axes = frames.space if space or group == "centre" else frames.body
+            axes = frames.space if space or is_placed else frames.body
             read = _vector_map(rational, power, space, axes.vectors)
             yield Reading(words, bool(unit) + space, read)
 

@@ -26,10 +26,11 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
-from taylor_verify.judge.conventions.readings import Reading, readings, rotations, vector_columns
+from taylor_verify.judge.conventions.readings import Reading, readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.floor.inputs import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
@@ -238,20 +239,22 @@ class _Search:
     def frames(self) -> tuple[Frames, ...]:
         """The renamings of axes that show in the file."""
         active: dict[str, set[int]] = {"body": set(), "space": set()}
-        vectors = [group for group in self.values if group not in _ATTITUDES]
+        vectors = [group for group in self.values if not GROUPS[group].is_frame]
         for group in vectors:
             columns = set(np.flatnonzero(np.any(self.values[group], axis=0)).tolist())
             active["space"] |= columns
-            active["body"] |= columns if group != "centre" else set()
+            active["body"] |= columns if GROUPS[group].moves_with == "body" else set()
         has_attitude = len(vectors) < len(self.values)
         if has_attitude:
             active = {"body": {0, 1, 2}, "space": {0, 1, 2}}
-        joined = has_attitude or ("centre" in vectors and len(vectors) > 1)
+        is_placed = any(GROUPS[group].moves_with == "space" for group in vectors)
+        joined = has_attitude or (is_placed and len(vectors) > 1)
         return tuple(renamings(active["body"], active["space"], joined))
 
     def solution(self, world: World) -> tuple[Scene, Solution]:
         """The rounded scene of a world at the file's rows, with the attitude for space axes."""
-        track = {"attitude"} | ({"centre"} if "centre" in self.file.groups else set())
+        track = {"attitude", *(GROUPS[group].quantity for group in self.file.groups)}
+        track &= set(TRACKED[self.scene.model])
         given = adopt(world.scene, self.rung, world.times(self.instants)).given
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
@@ -270,7 +273,7 @@ class _Search:
         except Unsettled:
             near, truth = [], {}
         floats = _as_floats(_with_velocities(given, truth)) if near else {}
-        columns = vector_columns(next(iter(self.values))) if self._is_one_vector else ()
+        columns = COLUMNS[next(iter(self.values))] if self._is_one_vector else ()
         fits = []
         for renamed in frames or self.frames:
             groups: dict[str, _Read] = {}
@@ -285,7 +288,7 @@ class _Search:
 
     @property
     def _is_one_vector(self) -> bool:
-        return len(self.values) == 1 and not _ATTITUDES & set(self.values)
+        return len(self.values) == 1 and not any(GROUPS[group].is_frame for group in self.values)
 
     def _best(
         self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
@@ -293,7 +296,8 @@ class _Search:
         known = readings(group, frames)
         if not near:
             return _Read(known[0], 1.0, 1.0, 0.0, ())
-        columns, right = self.values[group][list(near)], truth[_QUANTITY.get(group, group)]
+        columns = self.values[group][list(near)]
+        right = truth["attitude" if GROUPS[group].is_frame else group]
         # A row out of reach of this world is not known to be right.
         beyond = 1.0 if len(near) < len(self.rows) else 0.0
         errors = [
@@ -334,10 +338,6 @@ def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) ->
 # The errors of the groups.
 
 
-_QUANTITY: Final = {"quaternion": "attitude"}
-_ATTITUDES: Final = frozenset({"quaternion", "attitude"})
-
-
 def _with_velocities(given: Scene, truth: Quantities) -> Quantities:
     if isinstance(given.body, ImmersedBody):
         with mp.workdps(_DIGITS):
@@ -362,7 +362,7 @@ def _distance(group: str, got: Floats, right: Floats) -> float:
     largest = _largest(got - right)
     if not largest < inf:
         return inf
-    size = np.sqrt(2) if group in _ATTITUDES else _largest(right) or 1.0
+    size = np.sqrt(2) if GROUPS[group].is_frame else _largest(right) or 1.0
     # Beyond doubles both may be infinite: no reading is right then.
     return float(largest / size) if size < inf else inf
 

@@ -21,6 +21,7 @@ from mpmath import mp
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.errors.state import Errors, largest
+from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import power_of_two
@@ -248,15 +249,19 @@ class Compared:
         ends = accumulate((self.run.answer[part][0].size for part in self._scales), initial=0)
         parts = [fit.error[:, left:right] for left, right in pairwise(ends)]
         left = float(max(np.max(np.linalg.norm(part, axis=1)) for part in parts)) * fit.size
-        if self.errors.quantity == "attitude":
+        if self._is_angle:
             return float(2 * np.arcsin(min(left / 2, 1.0)))
         return left
+
+    @property
+    def _is_angle(self) -> bool:
+        return QUANTITIES[self.errors.quantity].measure is Measure.ANGLE
 
     @cached_property
     def _scales(self) -> dict[str, Any]:
         """A frame turned by a small angle is off by sqrt 2 of it in the Frobenius norm."""
-        if self.errors.quantity == "attitude":
-            return {"attitude": mp.sqrt(2)}
+        if self._is_angle:
+            return {self.errors.quantity: mp.sqrt(2)}
         return self.errors.parts
 
     def _relative(self, truth: Motion, rows: Sequence[int] | slice) -> tuple[Floats, float]:

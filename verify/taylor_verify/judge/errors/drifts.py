@@ -25,8 +25,9 @@ from mpmath import mp
 
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
-from taylor_verify.judge.accumulated import Series, joined
+from taylor_verify.judge.errors.accumulated import Series, joined
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import exact_value
@@ -34,26 +35,24 @@ from taylor_verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]
 
-_STATE_FIELDS = {
-    "omega": "omega",
-    "linear_impulse": "linear",
-    "angular_impulse": "angular",
-    "quaternion": "attitude",
-    "centre": "centre",
-}
-
 
 def drifts(
-    scene: Scene, start: Motion, answer: Motion, held: Mapping[str, Column], digits: int
+    scene: Scene,
+    start: Motion,
+    truth: Motion,
+    answer: Motion,
+    held: Mapping[str, Column],
+    digits: int,
 ) -> list[tuple[Invariant, Errors]]:
     """The drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
 
-    ``start`` is the exact initial state as a Motion of one row; ``held`` are the answer's own exact
+    ``start`` is the exact initial state as a Motion of one row. The exact motion ``truth`` has the scales,
+    so that an answer that runs away does not hide its own drift. ``held`` are the answer's own exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
     found = Drifts(scene, start, digits)
-    found.add(scene.clock.elapsed, answer, held)
+    found.add(scene.clock.elapsed, truth, answer, held)
     return found.errors()
 
 
@@ -70,18 +69,24 @@ class Drifts:
         self._sums: dict[str, Column] = {}
         # The signed drift of the last row, over its scale, of what is a number.
         self._changes: dict[str, float] = {}
-        # The rows so far that the scales are made of.
+        # The rows of the exact motion so far that the scales are made of.
         self._largest: Motion | None = None
         self._is_lost = False
 
-    def add(self, elapsed: Sequence[Fraction], answer: Motion, held: Mapping[str, Column]) -> None:
+    def add(
+        self,
+        elapsed: Sequence[Fraction],
+        truth: Motion,
+        answer: Motion,
+        held: Mapping[str, Column],
+    ) -> None:
         """Take in the next rows. Raises Unsettled where an arc cannot be had."""
         quick = in_mpfr(answer)
         is_free = self._scene.body.is_free
         self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
         ends = None if is_free or self._is_lost else in_mpfr(self._arc_ends(elapsed, held))
         with precision():
-            self._widen(quick)
+            self._widen(in_mpfr(truth))
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:
@@ -108,8 +113,8 @@ class Drifts:
         widths, change = np.zeros(len(values)), self._changes.get(name)
         return Errors(name, f"scale of {name}", values, widths, {name: in_mpf}, change=change)
 
-    def _widen(self, answer: Motion) -> None:
-        rows = answer.at(decisive(self._scene, answer))
+    def _widen(self, truth: Motion) -> None:
+        rows = truth.at(decisive(self._scene, truth))
         if self._largest is not None:
             rows = joined(self._largest, rows)
         self._largest = rows.at(decisive(self._scene, rows))
@@ -152,7 +157,7 @@ def _sizes(values: Column) -> Column:
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
     """The answer's samples as exact initial states."""
-    columns = {_STATE_FIELDS[name]: [_exact(row) for row in rows] for name, rows in held.items()}
+    columns = {GROUPS[name].start: [_exact(row) for row in rows] for name, rows in held.items()}
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
 

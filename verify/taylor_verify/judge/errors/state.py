@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.records.quantities import Measure, Quantity, state_quantities
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
@@ -89,36 +90,28 @@ def state_distances(
     scene: Scene, truth: Motion, answer: Motion, arc: Arc | None = None
 ) -> list[Distances]:
     """The distances of everything tracked, likewise; ``arc`` is the path before these samples."""
-    if scene.model == "euler":
-        found = [_vectors("omega", "max|omega|", ["omega"], truth, answer)]
-    else:
-        parts = ["linear_impulse", "angular_impulse"]
-        found = [_vectors("impulse", "max|x|, max|y|", parts, truth, answer)]
-    if "attitude" in scene.track:
-        found.append(_attitudes(truth, answer))
-    if "centre" in scene.track:
-        length = (arc or Arc()).through(scene, truth)
-        distances = norms(answer["centre"] - truth["centre"])
-        widths = _width(truth, "centre", norms(truth["centre"]))
-        found.append(_distances("centre", "arc length", distances, widths, length))
+    found = []
+    for quantity in state_quantities(scene.model, scene.track):
+        if quantity.measure is Measure.ANGLE:
+            found.append(_angles(quantity, truth, answer))
+        elif quantity.measure is Measure.PATH:
+            length = (arc or Arc()).through(scene, truth)
+            found.append(_vectors(quantity, truth, answer, length))
+        else:
+            found.append(_vectors(quantity, truth, answer))
     return found
 
 
-def _distances(name: str, unit: str, distances: Column, widths: Column, size: Any) -> Distances:
-    return Distances(name, unit, {name: distances}, {name: widths}, {name: size})
-
-
-def _vectors(
-    quantity: str, unit: str, parts: Sequence[str], truth: Motion, answer: Motion
-) -> Distances:
-    """The size of each part is the largest norm that it reaches."""
+def _vectors(quantity: Quantity, truth: Motion, answer: Motion, size: Any = None) -> Distances:
+    """Return the distances of vectors; without a ``size`` that of each part is its largest norm."""
+    parts = quantity.groups
     sizes = {part: norms(truth[part]) for part in parts}
     return Distances(
-        quantity,
-        unit,
+        quantity.name,
+        quantity.unit,
         {part: norms(answer[part] - truth[part]) for part in parts},
         {part: _width(truth, part, sizes[part]) for part in parts},
-        {part: largest(sizes[part]) for part in parts},
+        {part: largest(sizes[part]) if size is None else size for part in parts},
     )
 
 
@@ -136,12 +129,14 @@ def _width(truth: Motion, quantity: str, sizes: Column) -> Column:
     return width
 
 
-def _attitudes(truth: Motion, answer: Motion) -> Distances:
-    """The angle of R_exact^T R: |R - R_exact| in the Frobenius norm is 2 sqrt 2 sin(angle/2)."""
-    chords = norms(answer["attitude"] - truth["attitude"]) / (2 * mp.sqrt(2))
+def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
+    """Return the angle of R_exact^T R: |R - R_exact| in the Frobenius norm is 2 sqrt 2 sin(angle/2)."""
+    name = quantity.name
+    chords = norms(answer[name] - truth[name]) / (2 * mp.sqrt(2))
     angles = np.array([_angle(chord) for chord in chords], dtype=object)
     # |R|_F is sqrt 3, so a relative radius is less than this many radians.
-    return _distances("attitude", "rad", angles, 2 * truth.radius_of("attitude"), mpf(1))
+    widths = 2 * truth.radius_of(name)
+    return Distances(name, quantity.unit, {name: angles}, {name: widths}, {name: mpf(1)})
 
 
 def _angle(half_chord: Any) -> Any:

@@ -204,7 +204,7 @@ def _numbers(scene: Scene) -> list[Place]:
         if "centre" in scene.track:
             places += _row("centre", start.centre)
     places += _of_motion(body.manufactured)
-    return places + (_row("attitude", start.attitude) if scene.track else [])
+    return places + (_row("attitude", start.attitude) if "attitude" in scene.track else [])
 
 
 def _of_motion(motion: Manufactured | None) -> list[Place]:

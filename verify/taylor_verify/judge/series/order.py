@@ -27,7 +27,7 @@ from taylor_verify.records.quantities import COMPLETE, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 
 if TYPE_CHECKING:
-    from taylor_verify.judge.answer import FileJudgement
+    from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
 _NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, UNIT_QUATERNION)

@@ -15,7 +15,7 @@ from typing import Any, Final
 from zlib import crc32
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
-from taylor_verify.records.quantities import bits_of, place_of_rung
+from taylor_verify.records.precisions import FORMATS, bits_of, place_of_rung
 
 Dashes = tuple[float, ...]
 
@@ -58,14 +58,6 @@ TAYLOR: Final = "taylor"
 OTHERS: Final = "others"
 PROCESS: Final = "process"
 
-# Light to dark and thin to thick with the digits that a rung has: where rungs agree, as they do at
-# coarse tolerances, the lines lie in each other.
-_RUNGS: Final = {
-    "f32": Look("#3F9BD1", "o", width=0.9, size=3.0),
-    "f64": Look("#0072B2", "s", width=1.5, size=4.2),
-    "f80": Look("#5A2A9A", "^", width=2.1, size=5.4),
-    "f128": Look("#1A1040", "D", width=2.7, size=5.6),
-}
 # A star of the same width looks smaller.
 _SIZES: Final = {"*": 6.5, "d": 5.5}
 _BEYOND: Final = ("p", "h", "8", "*", "P", "X")
@@ -160,8 +152,9 @@ def look_of(family: str, rung: str) -> Look:
 
 def look_of_rung(rung: str) -> Look:
     """The look of taylor on a rung, which is also that of the rung where nothing else is compared."""
-    if rung in _RUNGS:
-        return _RUNGS[rung]
+    if rung in FORMATS:
+        format = FORMATS[rung]
+        return Look(format.colour, format.marker, width=format.width, size=format.size)
     marker = _BEYOND[bits_of(rung) % len(_BEYOND)]
     return Look("#000000", marker, DASHED, width=1.2, size=_SIZES.get(marker, 5.0))
 

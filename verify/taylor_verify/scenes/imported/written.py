@@ -9,6 +9,7 @@ from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from typing import Final
 
+from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes.imported.link import Link
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.precision import float_text
@@ -38,7 +39,7 @@ def scene_text(link: Link, form: str, file: str) -> str:
     )
     body = _rigid(link) if link.added_mass is None else _vehicle(link)
     start = _RIGID_START if link.added_mass is None else _VEHICLE_START
-    track = '["omega", "attitude"]' if model == "euler" else '["impulse", "attitude", "centre"]'
+    track = json.dumps([MAIN[model], *TRACKED[model]])
     lines = [
         *_comment(opening),
         f"title = {title}",

@@ -14,6 +14,7 @@ from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from typing import Final, NamedTuple, TypeVar
 
+from taylor_verify.records.quantities import MAIN, MOMENTA, TRACKED, with_needs
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
@@ -23,7 +24,7 @@ from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warning
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.faults import Faults, Refused, cut, near, shown
 from taylor_verify.scenes.reading.hints import hints
-from taylor_verify.scenes.reading.initial import IMPULSES, VELOCITIES, impulse, placed, spin, turned
+from taylor_verify.scenes.reading.initial import VELOCITIES, impulse, placed, spin, turned
 from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.regular_file import read_bytes
@@ -45,16 +46,13 @@ _DEEP_KEY: Final = re.compile(
 class Model(NamedTuple):
     """How the parts of a scene that differ from model to model are read.
 
-    ``always`` is what every motion holds, tracked or not; ``extras`` may be tracked besides. ``moving``
-    are the vectors of a manufactured motion, ``velocities`` other keys for its start, ``loads`` the
-    vectors that it determines, and ``placed`` reads what of the initial state it leaves open.
+    ``moving`` are the vectors of a manufactured motion, ``velocities`` other keys for its start, ``loads``
+    the vectors that it determines, and ``placed`` reads what of the initial state it leaves open.
     """
 
     name: str
     body: Callable[[Table], Body | None]
     initial: Callable[[Table, Body | None], State | None]
-    always: str
-    extras: frozenset[str]
     moving: tuple[str, ...]
     velocities: tuple[str, ...]
     loads: tuple[str, ...]
@@ -170,12 +168,13 @@ def _model(top: Table) -> Model | None:
 
 
 def _track(top: Table, model: Model | None) -> frozenset[str] | None:
-    """What the scene requires besides omega or impulse; the centre needs the attitude."""
-    known = model.extras | {model.always} if model else EVERYTHING_TRACKED
+    """Return what the scene requires besides omega or impulse, and what that needs."""
+    models = [model.name] if model else list(MODELS)
+    known = frozenset(name for each in models for name in (MAIN[each], *TRACKED[each]))
     words = top.words("track", known)
     if words is None or model is None:
         return None
-    return (words | {"attitude"} if "centre" in words else words) & model.extras
+    return with_needs(words) & frozenset(TRACKED[model.name])
 
 
 def _manufactured(
@@ -223,9 +222,7 @@ MODELS: Final = {
             name="euler",
             body=rigid_body,
             initial=spin,
-            always="omega",
-            extras=frozenset({"attitude"}),
-            moving=("omega",),
+            moving=MOMENTA["euler"],
             velocities=(),
             loads=("moment",),
             placed=turned,
@@ -234,14 +231,10 @@ MODELS: Final = {
             name="kirchhoff",
             body=immersed_body,
             initial=impulse,
-            always="impulse",
-            extras=frozenset({"attitude", "centre"}),
-            moving=IMPULSES,
+            moving=MOMENTA["kirchhoff"],
             velocities=VELOCITIES,
             loads=("force", "couple"),
             placed=placed,
         ),
     )
 }
-
-EVERYTHING_TRACKED: Final = frozenset().union(*({m.always, *m.extras} for m in MODELS.values()))

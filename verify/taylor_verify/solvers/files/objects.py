@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.reading.faults import Faults, Refused, brief, cut
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.names import GROUPS
@@ -22,11 +22,6 @@ from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column, check_lengths, check_size
 
-# The states of a solver in their order, model by model: a result has the first so many groups.
-_STATES: Final[Mapping[str, tuple[str, ...]]] = {
-    "euler": ("omega", "quaternion"),
-    "kirchhoff": ("linear_impulse", "angular_impulse", "quaternion", "centre"),
-}
 _ACCEPTED: Final = (
     "a callable solve(problem), a trajectory file, a DataFrame, an xarray Dataset, a dict of arrays or "
     "SciPy's OdeResult"
@@ -111,13 +106,15 @@ class _Gathered:
 
     def _names_of_states(self, count: int, scene: Scene) -> list[str]:
         names: list[str] = []
-        for group in _STATES[scene.model]:
+        # A result has the first so many groups.
+        groups = state_groups(scene.model, TRACKED[scene.model])
+        for group in groups:
             names += COLUMNS[group]
             if len(names) == count:
                 taken = " ".join(names)
                 self.notes.append(f"y[0] ... y[{count - 1}] taken as {taken}, the order of a state")
                 return names
-        lengths = [len(COLUMNS[group]) for group in _STATES[scene.model]]
+        lengths = [len(COLUMNS[group]) for group in groups]
         sizes = [str(sum(lengths[: k + 1])) for k in range(len(lengths))]
         expected = f"{', '.join(sizes)} states ({' '.join(names)})"
         mend = "name them: columns={'w1': 'y[0]', ...}"

@@ -9,7 +9,8 @@ from typing import Final
 from taylor_verify.publish.cells import INFINITE, NOTHING, figure, instant, ratio, word
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, page, roundoffs, sections, unscored
-from taylor_verify.records.quantities import GATE_FACTOR, place_of_rung
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from taylor_verify.publish.cells import NOTHING, error, figure, in_roundoffs, judged, ratio
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import counts, whole
-from taylor_verify.records.quantities import GATE_FACTOR, STATES, place_of_rung
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict

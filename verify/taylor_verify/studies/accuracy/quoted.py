@@ -12,7 +12,7 @@ from typing import Final
 
 from taylor_verify.publish.cells import in_roundoffs
 from taylor_verify.publish.markdown import code, table
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import page as controls
 from taylor_verify.studies.controls.stored import CONTROLS

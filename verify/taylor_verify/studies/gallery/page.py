@@ -17,7 +17,8 @@ from taylor_verify.publish.page import MADE_BY
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene
-from taylor_verify.records.quantities import COLUMNS, place_of_rung
+from taylor_verify.records.precisions import place_of_rung
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies import figures
 from taylor_verify.studies.controls import picture as shifts

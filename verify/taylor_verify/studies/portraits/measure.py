@@ -151,7 +151,7 @@ def equations(scene: Scene) -> list[str]:
     centre = [_CENTRE] if "centre" in scene.track else []
     return [
         *_kirchhoff_equations(body),
-        *_attitude(r"\boldsymbol\Omega", bool(scene.track)),
+        *_attitude(r"\boldsymbol\Omega", "attitude" in scene.track),
         *centre,
     ]
 

@@ -112,7 +112,7 @@ def _initial(scene: Scene) -> dict[str, Any]:
     else:
         found["linear_impulse"] = _exact(state.linear)
         found["angular_impulse"] = _exact(state.angular)
-    if scene.track:
+    if "attitude" in scene.track:
         found["attitude"] = _exact(state.attitude)
     if isinstance(state, Impulse) and "centre" in scene.track:
         found["centre"] = _exact(state.centre)

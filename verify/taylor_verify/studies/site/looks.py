@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET, contrast
 from taylor_verify.publish.pictures.style import look_of, look_of_line, look_of_rung
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import FORMATS, place_of_rung
 
 DARK_PAPER: Final = "#15181C"
 LINE_CONTRAST: Final = 3.0
@@ -36,12 +36,6 @@ _FIXED: Final = {
     "class6": ("#6CA6D4", "#3A7FB8"),
     "class12": ("#2F78B4", "#7DB4DF"),
     "class24": ("#0B3F73", "#CFE4F6"),
-}
-_DARK_RUNGS: Final = {
-    "f32": "#3F7FB0",
-    "f64": "#58A6E0",
-    "f80": "#A98BE8",
-    "f128": "#D9C8FF",
 }
 _BEYOND: Final = "#F4F4F0"
 # matplotlib's markers, in Plotly's words.
@@ -74,7 +68,7 @@ class Palette:
     def rung(self, name: str) -> str:
         """The token of a rung's colour, which is that of taylor on it."""
         light = look_of_rung(name).colour
-        return self._token(name, light, _DARK_RUNGS.get(name, _BEYOND))
+        return self._token(name, light, FORMATS[name].dark if name in FORMATS else _BEYOND)
 
     def family(self, name: str, rung: str) -> str:
         """The token of a family of solvers; taylor goes by the rung."""

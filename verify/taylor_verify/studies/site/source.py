@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene, of_solver
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.studies.controls.document import Sight
 from taylor_verify.studies.controls.stored import CONTROLS

@@ -80,5 +80,6 @@ class Truth:
         return Accuracy(found, final, drift[name], name)
 
     def _drift(self, answer: Motion, trajectory: Trajectory) -> dict[str, float]:
-        found = drifts(self._given, self._start, answer, trajectory.quantities, self._digits)
+        own = trajectory.quantities
+        found = drifts(self._given, self._start, self._motion, answer, own, self._digits)
         return {invariant.name: float(largest(errors.values)) for invariant, errors in found}

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.models.units import natural_units
-from taylor_verify.records.quantities import FORMATS
+from taylor_verify.records.precisions import FORMATS
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene

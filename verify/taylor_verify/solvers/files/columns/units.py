@@ -16,6 +16,7 @@ from typing import Final
 
 from mpmath import mp
 
+from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS
 from taylor_verify.scenes.precision import exact_value
 
@@ -84,13 +85,7 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
 # The dimension of each group of columns.
 DIMENSION: Final[Mapping[str, str]] = {
     "time": "time",
-    "omega": "rate",
-    "linear_velocity": "velocity",
-    "linear_impulse": "impulse",
-    "angular_impulse": "moment of impulse",
-    "quaternion": "number",
-    "attitude": "number",
-    "centre": "length",
+    **{name: group.dimension for name, group in GROUPS.items()},
 }
 _GREEK: Final = str.maketrans(
     {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "°": "deg", "·": ".", "*": "."}

@@ -22,7 +22,7 @@ from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_rung
 from taylor_verify.publish.pictures.wording import plain, stem_of
-from taylor_verify.records.quantities import place_of_rung
+from taylor_verify.records.precisions import place_of_rung
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,7 +19,7 @@ from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio, check
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
 from taylor_verify.publish.pictures.wording import stem_of, times
-from taylor_verify.records.quantities import bits_of, place_of_rung
+from taylor_verify.records.precisions import bits_of, place_of_rung
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,9 +18,9 @@ from mpmath import mp
 
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge import accumulated as series
-from taylor_verify.judge.accumulated import States, joined
 from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
+from taylor_verify.judge.errors import accumulated as series
+from taylor_verify.judge.errors.accumulated import States, joined
 from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import (
@@ -102,7 +102,8 @@ class Comparison:
                     for found in block.distances(arc):
                         states.add(found)
                 with costs.of(CONSERVED):
-                    drifts.add([elapsed[k] for k in block.places], block.answer, block.own)
+                    moved = [elapsed[k] for k in block.places]
+                    drifts.add(moved, block.truth, block.answer, block.own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]

@@ -1,74 +1,75 @@
-"""Sentences about a file: what of it is compared, what is not and why, and how its numbers were stored."""
+"""Sentences about a file: what of it is compared, what is not and why."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Final
 
-from taylor_verify.judge.complete import Extent
-from taylor_verify.judge.floor.arithmetic import truth_digits
-from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.judge.files.extent import Extent
+from taylor_verify.records.quantities import (
+    COLUMNS,
+    GROUPS,
+    MAIN,
+    MOMENTA,
+    TRACKED,
+    VELOCITIES,
+    state_groups,
+    with_needs,
+)
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
-
-_FLOAT32_BITS: Final = 24
-_MODELS: Final = {
-    "euler": ("omega", "quaternion", "attitude"),
-    "kirchhoff": tuple(COLUMNS),
-}
 
 
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
     """Return the groups that the scene's motion has. A file without any is refused."""
     foreign = _foreign(file, scene)
-    groups = [name for name in file.groups if name not in foreign and _is_known(name, scene)]
+    groups = [name for name in file.groups if name not in foreign and _is_compared(name, scene)]
     if groups:
         return groups
-    known = " ".join(" ".join(COLUMNS[name]) for name in _MODELS[scene.model])
+    known = " ".join(" ".join(COLUMNS[name]) for name in _known(scene))
     faults = [
         f"expected columns of a scene of model {scene.model} ({known}), got "
         f"{' '.join(COLUMNS[name])} @ {file.name}"
         for name in foreign
     ]
     if not faults:
-        groups = [" ".join(COLUMNS[name]) for name in _wanted(scene)]
+        wanted = state_groups(scene.model, scene.track)
+        groups = [" ".join(COLUMNS[name]) for name in wanted]
         if scene.model == "kirchhoff":
             # Whoever has velocities has no impulses.
             groups.insert(0, " ".join(n for name in VELOCITIES for n in COLUMNS[name]))
-        wanted = " or ".join(groups)
+        expected = " or ".join(groups)
         got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
-        first = COLUMNS[_wanted(scene)[0]][0]
+        first = COLUMNS[wanted[0]][0]
         notes = "; ".join((*file.notes, f"name other columns: --columns {first}=NAME,..."))
         faults = [
-            f"expected {wanted}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"
+            f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"
         ]
     raise Refused(faults)
 
 
 def _foreign(file: TrajectoryFile, scene: Scene) -> list[str]:
     """The groups of a file that no scene of this model has."""
-    return [name for name in file.groups if name not in _MODELS[scene.model]]
+    return [name for name in file.groups if name not in _known(scene)]
 
 
-def _is_known(group: str, scene: Scene) -> bool:
-    name = "attitude" if group == "quaternion" else group
-    return name in scene.track or name not in ("attitude", "centre")
+def _known(scene: Scene) -> list[str]:
+    """Return the groups that scenes of this model may have; of a solid in a fluid also its velocities."""
+    quantities = {MAIN[scene.model], *TRACKED[scene.model]}
+    velocities = VELOCITIES if scene.model == "kirchhoff" else ()
+    return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
 
 
-def _wanted(scene: Scene) -> list[str]:
-    return [
-        *MOMENTA[scene.model],
-        *(["quaternion"] if "attitude" in scene.track else []),
-        *(["centre"] if "centre" in scene.track else []),
-    ]
+def _is_compared(group: str, scene: Scene) -> bool:
+    """Return True unless the scene might track what the columns tell, and does not."""
+    quantity = GROUPS[group].quantity
+    return quantity in scene.track or quantity not in TRACKED[scene.model]
 
 
 def tracked(groups: Sequence[str]) -> frozenset[str]:
-    found = {"attitude"} if {"attitude", "quaternion", "centre"} & set(groups) else set()
-    return frozenset(found | ({"centre"} & set(groups)))
+    """Return what a scene with these columns would track."""
+    return with_needs({GROUPS[name].quantity for name in groups})
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
@@ -89,11 +90,11 @@ def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) ->
 
 def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
     """The groups that the scene asks for and the file lacks."""
-    has = {"quaternion" if name == "attitude" else name for name in groups}
-    if has.issuperset(VELOCITIES) and scene.model == "kirchhoff":
+    has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
+    if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
         # Together they stand for the impulses.
         has |= set(MOMENTA["kirchhoff"])
-    return [name for name in _wanted(scene) if name not in has]
+    return [name for name in state_groups(scene.model, scene.track) if name not in has]
 
 
 def no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
@@ -115,26 +116,6 @@ def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[
     )
 
 
-def single_precision(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Yield a note if every number of a wider rung is one of float32, and not by chance."""
-    if rung.bits > _FLOAT32_BITS and file.is_single_precision:
-        yield (
-            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
-            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
-        )
-
-
-def cut_off(file: TrajectoryFile, rung: Rung) -> Iterator[str]:
-    """Whether the file was printed with too few digits to be right."""
-    needed = truth_digits(rung.bits, 1)
-    if file.digits is not None and file.digits < needed - 2:
-        yield (
-            f"no number is written with more than {file.digits} significant digits, where "
-            f"{rung.name} has {needed}: what the printing cut off counts as error"
-        )
-
-
 def noun(group: str) -> str:
-    return {"quaternion": "attitude", "omega": "angular velocity"}.get(group, group).replace(
-        "_", " "
-    )
+    """Return the noun for what some columns tell."""
+    return GROUPS[group].noun

@@ -8,38 +8,38 @@ the attitude by 4 u radians, and a conserved quantity by u times its gradient, w
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf, sqrt
 from typing import Final
 
 from taylor_verify.judge.conventions.search import Finding
-from taylor_verify.judge.file_notes import single_precision
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.quantities import CONSERVED, INITIAL, STATES, UNIT_QUATERNION
+from taylor_verify.records.precisions import bits_of
+from taylor_verify.records.quantities import (
+    CONSERVED,
+    GROUPS,
+    INITIAL,
+    STATES,
+    UNIT_QUATERNION,
+    changed_by,
+)
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.files.file import TrajectoryFile
 
-_FLOAT32: Final = 2.0**-24
 # A file with two digits less than the rung has is cut off.
 _SPARE_DIGITS: Final = 2
 _VECTOR: Final = sqrt(3)
 _ATTITUDE: Final = 4.0
 # The momenta in a conserved quantity are a state each, and the start has its own.
 _GRADIENT: Final = 2 * _VECTOR
-_IN_SPACE: Final = ("H_space", "x_space", "y_space")
 # The quantities that a convention of each subject changes; a map of time changes nothing conserved.
 _CHANGED: Final = {
     "time": STATES,
     "body": (*STATES, *CONSERVED),
     "axes": (*STATES, *CONSERVED),
-    "omega": ("omega", *CONSERVED),
-    "linear_impulse": ("impulse", *CONSERVED),
-    "angular_impulse": ("impulse", *CONSERVED),
-    "quaternion": ("attitude", *_IN_SPACE),
-    "attitude": ("attitude", *_IN_SPACE),
-    "centre": ("centre", "y_space"),
+    **{group: changed_by(group) for group in GROUPS},
 }
 # A shift that leaves no more than so many times as much is the clock that was found.
 _AS_WELL: Final = 1e6
@@ -58,9 +58,7 @@ def with_file_kinds(
     if not any(_is_open(verdict) for verdict in verdicts):
         return verdicts
     stored = storing(file, rung)
-    changed = {
-        name for found in findings if found.is_certain for name in _CHANGED.get(found.subject, ())
-    }
+    changed = {name for found in findings if found.is_certain for name in _CHANGED[found.subject]}
     left = [found.after for found in findings if found.is_certain and found.subject == "time"]
     return tuple(
         _with_clock(_with_kind(verdict, stored, changed), *left[:1]) for verdict in verdicts
@@ -78,14 +76,32 @@ def _with_clock(verdict: Verdict, left: float = inf) -> Verdict:
     return replace(verdict, error_kind=ErrorKind.CONVENTION)
 
 
-def storing(file: TrajectoryFile, rung: Rung) -> tuple[ErrorKind, float] | None:
-    """Return how the numbers were stored and the u of it; None where they have all that the rung has."""
-    if any(single_precision(file, rung)):
-        return ErrorKind.SINGLE, _FLOAT32
-    digits = file.digits
-    if digits is None or digits >= truth_digits(rung.bits, 1) - _SPARE_DIGITS:
+@dataclass(frozen=True)
+class Storing:
+    """The way in which the numbers of a file were cut off: the kind of error, its u, and a sentence."""
+
+    kind: ErrorKind
+    u: float
+    note: str
+
+
+def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
+    """Return how the numbers were cut off; None where they have all that the rung has."""
+    bits = bits_of("f32")
+    if rung.bits > bits and file.is_single_precision:
+        note = (
+            f"every number is one of float32, where {rung.name} has {rung.bits} bits: what the "
+            "storing cut off counts as error; if float32 arithmetic made the file, judge it on f32"
+        )
+        return Storing(ErrorKind.SINGLE, 2.0**-bits, note)
+    digits, needed = file.digits, truth_digits(rung.bits, 1)
+    if digits is None or digits >= needed - _SPARE_DIGITS:
         return None
-    return ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits)
+    note = (
+        f"no number is written with more than {digits} significant digits, where "
+        f"{rung.name} has {needed}: what the printing cut off counts as error"
+    )
+    return Storing(ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits), note)
 
 
 def _is_open(verdict: Verdict) -> bool:
@@ -93,15 +109,12 @@ def _is_open(verdict: Verdict) -> bool:
     return verdict.is_compared and verdict.error_kind is not ErrorKind.ROUNDOFF
 
 
-def _with_kind(
-    verdict: Verdict, stored: tuple[ErrorKind, float] | None, changed: set[str]
-) -> Verdict:
+def _with_kind(verdict: Verdict, stored: Storing | None, changed: set[str]) -> Verdict:
     if not _is_open(verdict):
         return verdict
-    if stored is not None:
-        kind, u = stored
-        if verdict.max is not None and verdict.max <= _left_by_storing(verdict) * u:
-            return replace(verdict, error_kind=kind, exponent=None)
+    largest = inf if verdict.max is None else verdict.max
+    if stored is not None and largest <= _left_by_storing(verdict) * stored.u:
+        return replace(verdict, error_kind=stored.kind, exponent=None)
     if verdict.quantity in changed and verdict.error_kind not in _EXPLAINED:
         return replace(verdict, error_kind=ErrorKind.CONVENTION, exponent=None)
     return verdict

@@ -16,21 +16,20 @@ from mpmath import mp, mpf
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.accumulated import Series, States
 from taylor_verify.judge.costs import Costs
+from taylor_verify.judge.errors.accumulated import Series, States
 from taylor_verify.judge.errors.angular_shift import angular_shift
+from taylor_verify.judge.errors.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, floor
 from taylor_verify.judge.floor.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.judgement import Judgement, judgement, mean
-from taylor_verify.judge.measured import MOST_SHIFTED, Comparison
-from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.judgement import Judgement, judgement, numbers_of, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
-from taylor_verify.records.quantities import UNIT_QUATERNION, VELOCITIES
+from taylor_verify.records.quantities import GROUPS, TRACKED, UNIT_QUATERNION, VELOCITIES
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
@@ -122,12 +121,7 @@ class Filled(ByRows):
 
 def _rows_resting_on(problem: Problem, truth: Motion, has: set[str]) -> set[str]:
     """The quantities of a verdict all of whose ingredients the answer has."""
-    found = has & {"omega", "attitude", "centre"}
-    found.add(UNIT_QUATERNION)
-    if "linear_velocity" in has:
-        found.add("velocity")
-    if {"linear_impulse", "angular_impulse"} & has:
-        found.add("impulse")
+    found = {UNIT_QUATERNION, *(GROUPS[name].quantity for name in has)}
     for invariant in invariants(problem.given):
         blocks = {_BLOCKS.get(block, block) for block in invariant.sensitivity(truth)}
         if blocks <= has:
@@ -145,7 +139,7 @@ def _states_apart(
         base = floor(given, problem.scene, rung.unit_roundoff, 0, solver.carries_velocities)
         rows = []
         for errors in states:
-            if errors.quantity in ("attitude", "centre"):
+            if errors.quantity in TRACKED[given.model]:
                 attainable = base.of_state(errors)
                 worst = index_of_largest(errors.doubles)
                 terms = Reason(floor=base.terms(attainable, worst, Carried.ORBIT))
@@ -251,33 +245,16 @@ def _row(
     tolerances: Tolerances,
 ) -> Gated:
     finding = judge(errors, attainable, terms, tolerances.of(errors.quantity))
-    instants, worst, values = problem.given.clock.instants, finding.worst, errors.doubles
-    verdict = Verdict(
-        scene=problem.scene.name,
-        solver=solver.name,
-        rung=problem.rung.name,
-        setting=solver.setting,
-        quantity=errors.quantity,
-        verdict=finding.status,
-        outcome=Outcome.FINISHED.value,
-        max=float(values[worst]),
-        mean=mean(values),
-        final=float(values[-1]),
-        at=float(instants[worst]),
-        unit=errors.unit,
-        bound=finding.bound,
-        tolerance=finding.tolerance,
-        reason=finding.reason,
-        attainable=float(attainable[worst]),
-        ratio=finding.ratio,
-        ratio_at=float(instants[finding.ratio_at]),
-        roundoff=float(problem.rung.unit_roundoff),
-        provenance=provenance(problem.scene.digest),
+    quantity, rung = errors.quantity, problem.rung
+    verdict = verdict_on(
+        *(problem.scene, solver, rung, quantity, finding.status, Outcome.FINISHED),
+        roundoff=float(rung.unit_roundoff),
+        **numbers_of(errors, attainable, finding, problem.given.clock.instants),
     )
     gate = GateRecord(
         quantity=errors.quantity,
         unit=errors.unit,
-        errors=Doubles(values),
+        errors=Doubles(errors.doubles),
         attainable=Doubles(attainable),
         truth_radius=float(np.max(errors.widths)),
     )

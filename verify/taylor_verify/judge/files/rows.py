@@ -1,0 +1,144 @@
+"""The rows of a trajectory file in exact numbers, corrected where its conventions were accepted."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from operator import neg
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.conventions.readings import Reading
+from taylor_verify.judge.conventions.search import Conventions
+from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.floor.inputs import impulses
+from taylor_verify.models.problem import adopt
+from taylor_verify.records.quantities import COLUMNS, GROUPS, MAIN, MOMENTA, VELOCITIES
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.trajectory import ByRows
+
+Array = np.ndarray[Any, Any]
+
+# What is not dyadic in a file, and a correction, is rounded so far below the rung.
+_SPARE_BITS: Final = 128
+
+
+@dataclass(frozen=True)
+class FileRows(ByRows):
+    """Rows of a file, and the scene it is held against. ``times`` are those of all its rows.
+
+    ``places`` are the rows that count, in the order away from the start.
+    """
+
+    scene: Scene
+    times: Sequence[Fraction]
+    file: TrajectoryFile
+    rung: Rung
+    readings: Mapping[str, Reading]
+    places: range
+
+    @classmethod
+    def of(
+        cls, file: TrajectoryFile, scene: Scene, rung: Rung, accepted: Conventions | None
+    ) -> FileRows:
+        places = range(len(file.times))
+        if accepted is None:
+            return cls(scene, file.times, file, rung, {}, places)
+        world = accepted.world
+        return cls(world.scene, world.times(file.times), file, rung, accepted.readings, places)
+
+    @property
+    def count(self) -> int:  # type: ignore[override]
+        return len(self.places)
+
+    @property
+    def instants(self) -> tuple[Fraction, ...]:
+        """The times of the rows that count."""
+        return tuple(self.times[k] for k in self.places)
+
+    def __iter__(self) -> Iterator[str]:
+        made = MOMENTA["kirchhoff"] if self.has_velocities else ()
+        return iter((*self.file.groups, *made))
+
+    def rows(self, places: Sequence[int]) -> dict[str, Array]:
+        asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
+        found = {name: rows.held(asked, bits) for name, rows in self.file.rows.items()}
+        if "attitude" in found:
+            found["attitude"] = found["attitude"].reshape(-1, 3, 3)
+        if self.readings:
+            R = _attitudes(self.scene, self.rung, tuple(self.times[k] for k in asked), bits)
+            with mp.workprec(bits):
+                for name, reading in self.readings.items():
+                    found[name] = reading.read(found[name], R)
+        if self.has_velocities:
+            assert isinstance(self.scene.body, ImmersedBody)
+            with mp.workprec(bits):
+                found |= impulses(self.scene.body, found)
+        return found
+
+    @property
+    def has_velocities(self) -> bool:
+        """True if the impulses are made of the velocities, since the file has none of its own."""
+        has = set(self.file.groups)
+        is_immersed = isinstance(self.scene.body, ImmersedBody)
+        return is_immersed and has.issuperset(VELOCITIES) and not has & set(MOMENTA["kirchhoff"])
+
+    def sides(self) -> list[FileRows]:
+        """The rows after the start and those before it, each in the order away from the start."""
+        start, times, count = self.scene.clock.start, self.times, len(self.times)
+        if times[0] <= times[-1]:
+            at, beyond = bisect_left(times, start), bisect_right(times, start)
+            earlier, here, later = range(at - 1, -1, -1), range(at, beyond), range(beyond, count)
+        else:
+            at = bisect_left(times, -start, key=neg)
+            beyond = bisect_right(times, -start, key=neg)
+            earlier, here, later = range(beyond, count), range(at, beyond), range(at - 1, -1, -1)
+        if earlier and not later:
+            sides = [range(earlier.start - earlier.step * len(here), earlier.stop, earlier.step)]
+        else:
+            first = later.start - later.step * len(here) if later else at
+            sides = [range(first, later.stop, later.step) if later else here, earlier]
+        return [replace(self, places=side) for side in sides if side]
+
+
+def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
+    """The places of some of these rows in the file."""
+    if isinstance(places, range) and places.step == 1:
+        return rows[places.start : places.stop]
+    return [rows[k] for k in places]
+
+
+def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
+    """The exact R at these times, for vectors that are in space axes."""
+    given = replace(adopt(scene, rung, times).given, track=frozenset({"attitude"}))
+    digits = truth_digits(bits, 0)
+    return solution(given).motion(given.clock.elapsed, digits)["attitude"]
+
+
+def first_flaw(file: TrajectoryFile, quantity: str) -> str:
+    """The place of the first value of a quantity that is no finite number; empty if there is none."""
+    made_of = [name for name, group in GROUPS.items() if group.quantity == quantity]
+    if quantity == MAIN["kirchhoff"]:
+        made_of += VELOCITIES
+    # What is conserved may need any of them.
+    groups = [name for name in made_of or GROUPS if name in file.groups]
+    lost = {name: np.flatnonzero(~file.rows[name].finite) for name in groups}
+    first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
+    if not first:
+        return ""
+    group = min(first, key=lambda name: first[name])
+    row = first[group]
+    name, value = next(
+        (name, value)
+        for name, value in zip(COLUMNS[group], file.groups[group][row], strict=True)
+        if not isinstance(value, Fraction)
+    )
+    return f"{name} is {value} in row {row + 1}, t = {float(file.times[row]):g}"

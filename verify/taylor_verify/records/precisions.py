@@ -1,0 +1,63 @@
+"""The precision ladder: a record of every number format, and the names mpN of MPFR's numbers.
+
+To add a format is to add it to ``FORMATS``, and its number type to solvers/taylor/numbers.py.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True)
+class Format:
+    """A binary number format of hardware or of compilers.
+
+    It has ``bits`` of significand, and exponents from ``emin`` to ``emax`` as IEEE 754 counts them.
+    ``numpy`` is the name of NumPy's type, empty where NumPy has none. Pictures draw it in ``colour``, on a
+    dark page in ``dark``, with a line of ``width`` and markers of ``size`` points.
+    """
+
+    name: str
+    bits: int
+    emin: int
+    emax: int
+    numpy: str
+    colour: str
+    dark: str
+    marker: str
+    width: float
+    size: float
+
+
+# Light to dark and thin to thick with the digits that a format has: where formats agree, as they do at
+# coarse tolerances, the lines lie in each other.
+FORMATS: Final[Mapping[str, Format]] = {
+    each.name: each
+    for each in (
+        Format("f32", 24, -126, 127, "float32", "#3F9BD1", "#3F7FB0", "o", 0.9, 3.0),
+        Format("f64", 53, -1022, 1023, "float64", "#0072B2", "#58A6E0", "s", 1.5, 4.2),
+        Format("f80", 64, -16382, 16383, "longdouble", "#5A2A9A", "#A98BE8", "^", 2.1, 5.4),
+        Format("f128", 113, -16382, 16383, "", "#1A1040", "#D9C8FF", "D", 2.7, 5.6),
+    )
+}
+# The precisions that the standard set runs on.
+LADDER: Final = (*FORMATS, "mp237")
+RUNG_PATTERN: Final = f"^({'|'.join(FORMATS)}|mp[1-9][0-9]*)$"
+_MPFR: Final = re.compile(r"mp([1-9][0-9]{0,3})")
+
+
+def bits_of(rung: str) -> int:
+    """Return the bits of a rung's significand; 0 for a name that is no rung."""
+    if rung in FORMATS:
+        return FORMATS[rung].bits
+    match = _MPFR.fullmatch(rung)
+    return int(match[1]) if match else 0
+
+
+def place_of_rung(rung: str) -> tuple[int, int, str]:
+    """Return a key to sort rungs by: the named formats, then mpN by N, then any other name."""
+    bits = bits_of(rung)
+    return (0 if rung in FORMATS else 1 if bits else 2), bits, rung
