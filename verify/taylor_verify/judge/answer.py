@@ -35,13 +35,14 @@ from taylor_verify.judge.file_notes import (
     tracked,
 )
 from taylor_verify.judge.floor.arithmetic import truth_digits
-from taylor_verify.judge.floor.inputs import impulses, input_rounding
+from taylor_verify.judge.floor.inputs import input_rounding
 from taylor_verify.judge.floor.partial import partial_judgement
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.regraded import Graded, graded, merged, verdict_of
 from taylor_verify.judge.storage import with_file_kinds
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
+from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
@@ -49,7 +50,6 @@ from taylor_verify.records.quantities import COLUMNS, MOMENTA, VELOCITIES
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, summary
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
@@ -237,7 +237,7 @@ class _Answer(ByRows):
         return tuple(self.times[k] for k in self.places)
 
     def __iter__(self) -> Iterator[str]:
-        made = MOMENTA["kirchhoff"] if self.has_velocities else ()
+        made = MOMENTA[self.scene.model] if self.has_velocities else ()
         return iter((*self.file.groups, *made))
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
@@ -251,17 +251,16 @@ class _Answer(ByRows):
                 for name, reading in self.readings.items():
                     found[name] = reading.read(found[name], R)
         if self.has_velocities:
-            assert isinstance(self.scene.body, ImmersedBody)
             with mp.workprec(bits):
-                found |= impulses(self.scene.body, found)
+                found |= momenta(self.scene.body, found)
         return found
 
     @property
     def has_velocities(self) -> bool:
         """True if the impulses are made of the velocities, since the file has none of its own."""
         has = set(self.file.groups)
-        is_immersed = isinstance(self.scene.body, ImmersedBody)
-        return is_immersed and has.issuperset(VELOCITIES) and not has & set(MOMENTA["kirchhoff"])
+        stands_for = has_velocities(self.scene.body) and has.issuperset(VELOCITIES)
+        return stands_for and not has & set(MOMENTA[self.scene.model])
 
     def sides(self) -> list[_Answer]:
         """The rows after the start and those before it, each in the order away from the start."""

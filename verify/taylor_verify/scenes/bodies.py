@@ -59,6 +59,11 @@ class Body(Parted):
         """True if every motion has a closed form, by the symmetry of the body alone."""
         return False
 
+    @property
+    def is_revolved(self) -> bool:
+        """True if entries 11 and 22 of every matrix are one number, and nothing is off the diagonal."""
+        return False
+
 
 @dataclass(frozen=True)
 class RigidBody(Body):
@@ -137,6 +142,11 @@ class ImmersedBody(Body):
     def is_integrable(self) -> bool:
         """True for a free body of revolution: Clebsch's motion."""
         return self.is_free and self.axis_of_symmetry is not None
+
+    @property
+    def is_revolved(self) -> bool:
+        """True for T of Clebsch's form about axis 3."""
+        return self.clebsch is not None
 
     @cached_property
     def energy_matrix(self) -> Matrix:
