@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.manufactured import Loaded
+from taylor_verify.models.mechanics import components
 from taylor_verify.models.problem import Problem, numbers_of
 from taylor_verify.models.registry import mechanics
 from taylor_verify.scenes.bodies import Body
@@ -58,7 +59,7 @@ def whole_form(body: Body) -> Form:
     names = [
         name
         for letter in kind.body_letters
-        for name in letter.named(zeros.get(letter.shape, ((0,) * 3,) * 3))
+        for name in components(letter, zeros.get(letter.shape, ((0,) * 3,) * 3))
     ]
     places = {"attitude": _ATTITUDE, "centre": _CENTRE}
     frame = tuple(n for part in body.STATE.PARTS for n in places.get(part.name, ()))

@@ -18,15 +18,13 @@ from taylor_verify.models.kirchhoff import (
     kirchhoff_equations,
 )
 from taylor_verify.models.manufactured import KIRCHHOFF_INVERSE
-from taylor_verify.models.mechanics import Letter, Mechanics
+from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, largest, root, size
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Shape, Value
+from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Part, Shape, Value
 from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.tensors import Vector
 
 _LETTERS = {"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"}
 
@@ -36,10 +34,10 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
     """Kirchhoff's equations in the impulses."""
 
     body_letters = tuple(
-        Letter(_LETTERS[part.name], part.shape, part.dimension, part.is_load)
+        Part(_LETTERS[part.name], part.shape, part.dimension, part.is_load)
         for part in ImmersedBody.PARTS
     )
-    momenta = (Letter("x", Shape.VECTOR, IMPULSE), Letter("y", Shape.VECTOR, MOMENTUM))
+    momenta = (Part("x", Shape.VECTOR, IMPULSE), Part("y", Shape.VECTOR, MOMENTUM))
     inverse = KIRCHHOFF_INVERSE
 
     @property
@@ -55,21 +53,9 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
             raise ValueError("T is not positive definite")
         return body
 
-    def momentum(self, body: ImmersedBody, start: Impulse) -> Vector:
+    def change(self, body: ImmersedBody) -> Change:
         del body
-        return start.moving
-
-    def moving(self, body: ImmersedBody, momentum: Vector) -> Vector:
-        del body
-        return momentum
-
-    def motion_of_momenta(self, body: ImmersedBody, motion: Manufactured) -> Manufactured:
-        del body
-        return motion
-
-    def motion_of_state(self, body: ImmersedBody, motion: Manufactured) -> Manufactured:
-        del body
-        return motion
+        return Change()
 
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
         del rung

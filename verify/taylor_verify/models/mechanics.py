@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import ClassVar, Generic, TypeVar
 
@@ -17,49 +17,78 @@ from taylor_verify.models.choice import Choice
 from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import Inverse
 from taylor_verify.models.units import Units
+from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.parts import Dimension, Shape, Value
+from taylor_verify.scenes.parts import Part, Shape, Value
 from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 B = TypeVar("B", bound=Body)
 S = TypeVar("S", bound=State)
 
 
+def components(letter: Part, value: Value) -> dict[str, Fraction]:
+    """Return the components of a value by letter and indices; of a symmetric matrix the upper triangle."""
+    name = letter.name
+    if letter.shape is Shape.NUMBER:
+        return {name: value}
+    if letter.shape is Shape.VECTOR:
+        return {f"{name}{i}": entry for i, entry in enumerate(value, start=1)}
+    is_symmetric = letter.shape is Shape.SYMMETRIC
+    return {
+        f"{name}{i + 1}{k + 1}": value[i][k]
+        for i in range(3)
+        for k in range(i if is_symmetric else 0, 3)
+    }
+
+
 @dataclass(frozen=True)
-class Letter:
-    """A quantity of the equations, whose components are named by its letter and their indices."""
+class Change:
+    """The momenta by the moving part of a state, z: matrix z + shift; z itself without a matrix."""
 
-    letter: str
-    shape: Shape
-    dimension: Dimension
-    is_load: bool = False
+    matrix: Matrix | None = None
+    inverse: Matrix = ()
+    shift: Vector = ZERO_VECTOR
 
-    def named(self, value: Value) -> dict[str, Fraction]:
-        """Return the components by name; of a symmetric matrix the upper triangle."""
-        if self.shape is Shape.NUMBER:
-            return {self.letter: value}
-        if self.shape is Shape.VECTOR:
-            return {f"{self.letter}{i}": entry for i, entry in enumerate(value, start=1)}
-        first = (lambda i: i) if self.shape is Shape.SYMMETRIC else (lambda i: 0)
-        return {
-            f"{self.letter}{i + 1}{j + 1}": value[i][j]
-            for i in range(3)
-            for j in range(first(i), 3)
-        }
+    def momentum(self, moving: Vector) -> Vector:
+        """Return the momenta, one after the other."""
+        if self.matrix is None:
+            return moving
+        return tensors.plus(tensors.apply(self.matrix, moving), self.shift)
+
+    def moving(self, momentum: Vector) -> Vector:
+        """Return the moving part of the state that has these momenta."""
+        if self.matrix is None:
+            return momentum
+        return tensors.apply(self.inverse, tensors.minus(momentum, self.shift))
+
+    def motion_of_momenta(self, motion: Manufactured) -> Manufactured:
+        """Return the motion of the momenta, of one of the state."""
+        if self.matrix is None:
+            return motion
+        mapped = motion.mapped(self.matrix)
+        return replace(mapped, constant=tensors.plus(mapped.constant, self.shift))
+
+    def motion_of_state(self, motion: Manufactured) -> Manufactured:
+        """Return the motion of the state, of one of the momenta."""
+        if self.matrix is None:
+            return motion
+        constant = tensors.minus(motion.constant, self.shift)
+        return replace(motion, constant=constant).mapped(self.inverse)
 
 
 class Mechanics(ABC, Generic[B, S]):
     """What the equations of one kind of body are made of.
 
-    ``body_letters`` are its coefficients and loads, ``momenta`` the vectors that are integrated.
+    ``body_letters`` are its coefficients and loads, ``momenta`` the vectors that are integrated: parts
+    whose names are letters.
     ``inverse`` makes the loads of a manufactured motion.
     """
 
-    body_letters: ClassVar[tuple[Letter, ...]]
-    momenta: ClassVar[tuple[Letter, ...]]
+    body_letters: ClassVar[tuple[Part, ...]]
+    momenta: ClassVar[tuple[Part, ...]]
     inverse: ClassVar[Inverse]
 
     @property
@@ -70,7 +99,7 @@ class Mechanics(ABC, Generic[B, S]):
     @property
     def states(self) -> tuple[str, ...]:
         """The names of the components of the momenta."""
-        return tuple(f"{letter.letter}{i}" for letter in self.momenta for i in (1, 2, 3))
+        return tuple(f"{letter.name}{i}" for letter in self.momenta for i in (1, 2, 3))
 
     @abstractmethod
     def values(self, body: B) -> Mapping[str, Value]:
@@ -84,20 +113,8 @@ class Mechanics(ABC, Generic[B, S]):
         """
 
     @abstractmethod
-    def momentum(self, body: B, start: S) -> Vector:
-        """Return the momenta of a state, one after the other."""
-
-    @abstractmethod
-    def moving(self, body: B, momentum: Vector) -> Vector:
-        """Return the moving part of the state that has these momenta."""
-
-    @abstractmethod
-    def motion_of_momenta(self, body: B, motion: Manufactured) -> Manufactured:
-        """Return the motion of the momenta, of one of omega or of the impulses."""
-
-    @abstractmethod
-    def motion_of_state(self, body: B, motion: Manufactured) -> Manufactured:
-        """Return the motion of omega or of the impulses, of one of the momenta."""
+    def change(self, body: B) -> Change:
+        """Return how the momenta follow from omega or the impulses."""
 
     @abstractmethod
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:

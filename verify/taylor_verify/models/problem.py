@@ -7,7 +7,7 @@ so that an error is the solver's and never the data's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NoReturn
@@ -17,7 +17,7 @@ from mpmath import mp
 from taylor_verify.models import manufactured
 from taylor_verify.models.choice import Choice, constants_told
 from taylor_verify.models.form import Equations, Form
-from taylor_verify.models.mechanics import Letter
+from taylor_verify.models.mechanics import components
 from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
@@ -189,10 +189,9 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     """Form coefficients, loads and momenta exactly and round each once; all else follows exactly."""
     body, start = scene.body, scene.initial
     kind = mechanics(body)
-    values = _scaled(kind.body_letters, kind.values(body), units, rounded)
-    momenta = _scaled(
-        kind.momenta, _split(kind.momenta, kind.momentum(body, start)), units, rounded
-    )
+    values = _scaled(kind.body_letters, kind.values(body), units, rounded.each)
+    begin = _split(kind.momenta, kind.change(body).momentum(start.moving))
+    momenta = _scaled(kind.momenta, begin, units, rounded.each)
     try:
         given = kind.body(_physical(kind.body_letters, values, units))
     except ValueError as error:
@@ -203,7 +202,7 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
         for part in start.PARTS
         if part.name not in start.MOVING
     }
-    begun = start.with_parts(place).with_moving(kind.moving(given, momentum))
+    begun = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
     numbers = _named(kind.momenta, momenta) | _named(kind.body_letters, values)
     return _Data(kind.choice(numbers, rounded.rung), kind.states, given, begun)
 
@@ -211,12 +210,8 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
 def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
     """Return every coefficient and load of a body by name, in these units."""
     kind = mechanics(body)
-    values = kind.values(body)
-    scaled = {
-        one.letter: _counted(values[one.letter], units.of(one.dimension))
-        for one in kind.body_letters
-    }
-    return _named(kind.body_letters, scaled)
+    exact = _scaled(kind.body_letters, kind.values(body), units, lambda value: value)
+    return _named(kind.body_letters, exact)
 
 
 def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -> Value:
@@ -229,28 +224,29 @@ def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -
 
 # Letters of the equations with their values: exact, in units, rounded.
 
-_Letters = Sequence[Letter]
+_Letters = Sequence[Part]
 _Values = Mapping[str, Value]
 
 
-def _scaled(letters: _Letters, values: _Values, units: Units, rounded: _Rounding) -> _Values:
+def _scaled(
+    letters: _Letters, values: _Values, units: Units, rounded: Callable[[Value], Value]
+) -> _Values:
     return {
-        one.letter: rounded.each(_counted(values[one.letter], units.of(one.dimension)))
-        for one in letters
+        one.name: rounded(_counted(values[one.name], units.of(one.dimension))) for one in letters
     }
 
 
 def _physical(letters: _Letters, values: _Values, units: Units) -> _Values:
     """The values in the scene's own units."""
-    return {one.letter: _times(units.of(one.dimension), values[one.letter]) for one in letters}
+    return {one.name: _times(units.of(one.dimension), values[one.name]) for one in letters}
 
 
 def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
-    return {name: v for one in letters for name, v in one.named(values[one.letter]).items()}
+    return {name: v for one in letters for name, v in components(one, values[one.name]).items()}
 
 
 def _split(letters: _Letters, vector: Vector) -> _Values:
-    return {one.letter: vector[3 * k : 3 * k + 3] for k, one in enumerate(letters)}
+    return {one.name: vector[3 * k : 3 * k + 3] for k, one in enumerate(letters)}
 
 
 def _joined(values: _Values) -> Vector:
@@ -274,12 +270,12 @@ def _with_clock(data: _Data, scene: Scene, units: Units, rounded: _Rounding) -> 
     body = scene.body
     assert body.manufactured is not None
     kind = mechanics(body)
-    motion = kind.motion_of_momenta(body, body.manufactured)
+    motion = kind.change(body).motion_of_momenta(body.manufactured)
     sizes: Vector = tuple(units.of(one.dimension) for one in kind.momenta for _ in range(3))
     scaled = motion.in_units(tuple(1 / size for size in sizes), 1 / units.time)
     waves = rounded.waves(scaled)
     held = manufactured.begun(waves, tuple(data.numbers[name] for name in data.states))
-    given = kind.motion_of_state(data.body, held.in_units(sizes, units.time))
+    given = kind.change(data.body).motion_of_state(held.in_units(sizes, units.time))
     # The loads are formed of the general coefficients, whatever shorter equations do without.
     numbers = {**numbers_of(data.body, units), **data.numbers, **manufactured.numbers(held)}
     choice = replace(

@@ -13,13 +13,12 @@ from taylor_verify.models.choice import Choice, Numbers, holds
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler, differences, euler_equations
 from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import EULER_INVERSE
-from taylor_verify.models.mechanics import Letter, Mechanics
+from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, largest, root, size
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Shape, Value
+from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape, Value
 from taylor_verify.scenes.precision import Rung, floor_log2, power_of_two
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -33,10 +32,10 @@ class Rigid(Mechanics[RigidBody, Spin]):
     """Euler's equations in the angular momentum."""
 
     body_letters = (
-        Letter("K", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
-        Letter("M", Shape.VECTOR, MOMENT, is_load=True),
+        Part("K", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
+        Part("M", Shape.VECTOR, MOMENT, is_load=True),
     )
-    momenta = (Letter("H", Shape.VECTOR, MOMENTUM),)
+    momenta = (Part("H", Shape.VECTOR, MOMENTUM),)
     inverse = EULER_INVERSE
 
     @property
@@ -51,17 +50,8 @@ class Rigid(Mechanics[RigidBody, Spin]):
             raise ValueError("the inverse inertia tensor is not positive definite")
         return RigidBody(tensors.inverse(values["K"]), values["M"])
 
-    def momentum(self, body: RigidBody, start: Spin) -> Vector:
-        return tensors.apply(body.inertia, start.omega)
-
-    def moving(self, body: RigidBody, momentum: Vector) -> Vector:
-        return tensors.apply(body.inverse_inertia, momentum)
-
-    def motion_of_momenta(self, body: RigidBody, motion: Manufactured) -> Manufactured:
-        return motion.mapped(body.inertia)
-
-    def motion_of_state(self, body: RigidBody, motion: Manufactured) -> Manufactured:
-        return motion.mapped(body.inverse_inertia)
+    def change(self, body: RigidBody) -> Change:
+        return Change(body.inertia, body.inverse_inertia)
 
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
         return chosen_equations(numbers, rung)
@@ -82,7 +72,7 @@ class Rigid(Mechanics[RigidBody, Spin]):
     def derived(self, body: RigidBody, start: Spin) -> Mapping[str, Mapping[str, Value]]:
         return {
             "body": {"inverse_inertia": body.inverse_inertia},
-            "initial": {"angular_momentum": self.momentum(body, start)},
+            "initial": {"angular_momentum": tensors.apply(body.inertia, start.omega)},
         }
 
 

@@ -166,9 +166,9 @@ def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[st
     for name in kind.states:
         if name not in columns:
             columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
-    parts = (_vectors(columns, one.letter, units.of(one.dimension)) for one in kind.momenta)
+    parts = (_vectors(columns, one.name, units.of(one.dimension)) for one in kind.momenta)
     momenta = (tuple(chain.from_iterable(vectors)) for vectors in zip(*parts, strict=True))
-    moving = [kind.moving(given.body, momentum) for momentum in momenta]
+    moving = list(map(kind.change(given.body).moving, momenta))
     quantities = {
         name: [vector[3 * k : 3 * k + 3] for vector in moving]
         for k, name in enumerate(given.initial.MOVING)

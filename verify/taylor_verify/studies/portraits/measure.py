@@ -90,10 +90,10 @@ def portraits(names: Sequence[str], finished: Callable[[str], None]) -> list[Doc
     return documents(portrait, names, _expense, finished)
 
 
-def _expense(name: str) -> tuple[bool, int]:
+def _expense(name: str) -> tuple[int, int]:
     """The longest first: bodies in a fluid, and of these what is tracked."""
     scene = load(name)
-    return scene.model != "kirchhoff", -len(scene.track)
+    return -len(scene.initial.moving), -len(scene.track)
 
 
 def _comment(text: str) -> list[str]:

@@ -55,10 +55,10 @@ def references(names: Sequence[str], finished: Callable[[str], None]) -> list[di
     return documents(reference, names, _expense, finished)
 
 
-def _expense(name: str) -> tuple[int, bool]:
+def _expense(name: str) -> tuple[int, int]:
     """The longest first, so that no core is left with one at the end: what is tracked tells."""
     scene = load(name)
-    return -len(scene.track), scene.model != "kirchhoff"
+    return -len(scene.track), -len(scene.initial.moving)
 
 
 def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
