@@ -12,7 +12,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.floor.inputs import angular_velocity
+from taylor_verify.judge.velocities import angular_velocity
 from taylor_verify.models.problem import adopt
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import rung

@@ -21,17 +21,12 @@ from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models import euler
 from taylor_verify.models.algebra import add, apply, cross
-from taylor_verify.models.euler import heinbockel_moment, momentum_rate
-from taylor_verify.models.form import (
-    Equations,
-    Named,
-    euler_equations,
-    kirchhoff_equations,
-    labelled,
-)
-from taylor_verify.models.kirchhoff import velocities
+from taylor_verify.models.euler import euler_equations, heinbockel_moment, momentum_rate
+from taylor_verify.models.form import Equations, Named, labelled
+from taylor_verify.models.kirchhoff import kirchhoff_equations, velocities
 from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.registry import mechanics
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
@@ -304,7 +299,8 @@ class Twin(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         waves = len(motion_of(problem.given).waves)
-        return Taylor().solve(problem.with_equations(Loaded(self.free, waves)))
+        inverse = mechanics(problem.given.body).inverse
+        return Taylor().solve(problem.with_equations(Loaded(self.free, waves, inverse)))
 
 
 @pytest.mark.parametrize(("name", "broken"), BROKEN)

@@ -28,16 +28,11 @@ from mpmath import mp
 from taylor_verify.controls.defects import DEFECTS, Defect
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.attainable import floor
-from taylor_verify.models.form import (
-    Form,
-    Named,
-    clebsch_equations,
-    euler_equations,
-    kirchhoff_equations,
-)
+from taylor_verify.models.euler import euler_equations
+from taylor_verify.models.form import Form, Named
 from taylor_verify.models.frame import rotation
+from taylor_verify.models.kirchhoff import ClebschAbout, clebsch_equations, kirchhoff_equations
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.special import ClebschAbout
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody

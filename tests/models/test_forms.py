@@ -11,12 +11,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.models.choice import axis_of_symmetry
-from taylor_verify.models.form import CLEBSCH_NAMES, Form, clebsch_equations, kirchhoff_equations
+from taylor_verify.models.euler import PrincipalEuler, TensorEuler
+from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
+from taylor_verify.models.immersed import axis_of_symmetry
+from taylor_verify.models.kirchhoff import (
+    CLEBSCH_NAMES,
+    ClebschAbout,
+    clebsch_equations,
+    kirchhoff_equations,
+)
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.rates import Linearised
-from taylor_verify.models.special import ClebschAbout, PrincipalEuler, TensorEuler
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
@@ -207,7 +213,7 @@ def test_nothing_is_carried_along(name: str) -> None:
     assert form.entering() == form.parameters
     assert form.constants() == ()
     general = in_general_form(problem).form
-    assert len(form.states) <= len(general.states) <= len(whole_form(problem.scene.model).states)
+    assert len(form.states) <= len(general.states) <= len(whole_form(problem.given.body).states)
 
 
 def test_full_tensor_takes_a_sphere_away() -> None:

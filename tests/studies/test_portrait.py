@@ -26,13 +26,13 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.equations import equations
 from taylor_verify.studies.portraits.measure import (
     DIGITS,
     FIGURES,
     INTERVALS,
     PERIODS,
     TIMES,
-    equations,
     portrait,
     roots,
 )

@@ -28,7 +28,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.files.partial import partial_judgement
-from taylor_verify.judge.floor.inputs import impulses, velocities
+from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.models.problem import adopt
 from taylor_verify.records.quantities import COMPLETE, INITIAL
 from taylor_verify.records.status import Status
@@ -104,7 +104,7 @@ def test_impulses_are_made_exactly() -> None:
             "linear_impulse": np.array([[mp.convert(v) for v in start.linear]], dtype=object),
             "angular_impulse": np.array([[mp.convert(v) for v in start.angular]], dtype=object),
         }
-        back = impulses(body, velocities(body, state))
+        back = momenta(body, velocities(body, state))
         for name, values in state.items():
             assert max(abs(e) for e in (back[name] - values).flat) < mp.mpf(10) ** -55
 
@@ -250,7 +250,7 @@ def test_rounding_of_velocities_is_carried_through_the_inertia_matrix() -> None:
             name: np.array([[mp.mpf(float(v)) for v in row] for row in values], dtype=object)
             for name, values in exact.items()
         }
-        made = impulses(body, stored)
+        made = momenta(body, stored)
     verdicts = {
         carries: {
             verdict.quantity: verdict
@@ -265,7 +265,7 @@ def test_rounding_of_velocities_is_carried_through_the_inertia_matrix() -> None:
     # Not wider than it has to be: one component off by a millionth of its size is seen.
     stored["linear_velocity"][2, 0] *= 1 + mp.mpf(10) ** -6
     with mp.workdps(60):
-        made = impulses(body, stored)
+        made = momenta(body, stored)
     spoiled = partial_judgement(problem, Recorded(made, carries_velocities=True)).verdicts
     assert {v.quantity: v.verdict for v in spoiled}["impulse"] is Status.FAIL
 

@@ -122,14 +122,11 @@ def _expense(job: Job) -> float:
     It counts the tracked states, and ten times as much where the truth, or the flow between two samples of
     a loaded body, is no closed form; of long runs the radians.
     """
-    from taylor_verify.scenes.bodies import RigidBody
-    from taylor_verify.scenes.motion import Spin
     from taylor_verify.scenes.reading.reader import as_scene
 
     scene = as_scene(job.scene)
     body, start = scene.body, scene.initial
-    has_closed_form = body.is_free and (isinstance(body, RigidBody) or body.axis_of_symmetry)
-    states = {"euler": 3, "kirchhoff": 6}[scene.model] * (1 + 3 * len(scene.track))
-    spin = max(map(abs, start.omega)) if isinstance(start, Spin) else 0
+    states = len(start.moving) * (1 + 3 * len(scene.track))
+    spin = max(map(abs, start.parts().get("omega", (0,))))
     radians = float(spin * abs(scene.clock.elapsed[-1]))
-    return -states * (1 if has_closed_form else _TAYLOR) - radians / _RADIANS_PER_STATE
+    return -states * (1 if body.is_integrable else _TAYLOR) - radians / _RADIANS_PER_STATE

@@ -12,7 +12,7 @@ from typing import Final
 
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.motion import Clock, Motion, Spin, State
+from taylor_verify.scenes.motion import Clock, Motion, State
 from taylor_verify.scenes.scene import Scene
 
 DIGITS: Final = 60
@@ -33,7 +33,6 @@ def trajectory(
 def _trajectory(
     body: Body, start: State, times: tuple[Fraction, ...], digits: int, track: frozenset[str]
 ) -> Motion:
-    model = "euler" if isinstance(start, Spin) else "kirchhoff"
     name = "a trajectory of the ledger"
-    scene = Scene(name, name, model, track, body, start, Clock(Fraction(0), times))
+    scene = Scene(name, name, body.MODEL, track, body, start, Clock(Fraction(0), times))
     return TaylorSolution(scene).motion(times, digits)

@@ -12,20 +12,15 @@ its own energy and nobody's but its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.controls.defect import Defect
 from taylor_verify.models.algebra import add, apply, cross, minus
-from taylor_verify.models.euler import angular_velocity
-from taylor_verify.models.form import (
-    Form,
-    Named,
-    euler_equations,
-    kirchhoff_equations,
-)
-from taylor_verify.models.kirchhoff import impulse_rates, velocities
+from taylor_verify.models.euler import angular_velocity, euler_equations
+from taylor_verify.models.form import Named
+from taylor_verify.models.general import in_general_form
+from taylor_verify.models.kirchhoff import impulse_rates, kirchhoff_equations, velocities
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -85,29 +80,7 @@ def in_21_coefficients(problem: Problem) -> Problem:
     """The same body by the general equations, with all of y: Clebsch's have one of it for a constant."""
     if problem.form.equations is kirchhoff_equations:
         return problem
-    six = problem.given.body
-    units = problem.units
-    assert isinstance(six, ImmersedBody)
-    matrices = {
-        "A": (six.linear, units.inverse_mass),
-        "B": (six.coupling, units.coupling),
-        "C": (six.angular, units.inverse_inertia),
-    }
-    known = {**problem.parameter, **problem.state}
-    known |= {name: known.get(name, Fraction(0)) for name in ("y1", "y2", "y3")}
-    for letter, (matrix, unit) in matrices.items():
-        known |= {f"{letter}{i + 1}{i + 1}": matrix[i][i] / unit for i in range(3)}
-    frame = tuple(name for name in problem.form.states if name[0] in "ec")
-    states = ("x1", "x2", "x3", "y1", "y2", "y3", *frame)
-    present = tuple(k for k, v in known.items() if k not in states and v)
-    form = Form(kirchhoff_equations, states, present)
-    form = replace(form, parameters=form.entering())
-    return replace(
-        problem,
-        form=form,
-        parameters=tuple(known[name] for name in form.parameters),
-        initial_momenta=tuple(known[name] for name in states),
-    )
+    return in_general_form(problem)
 
 
 class InGeneralForm(Solver):

@@ -257,7 +257,7 @@ def _cost(scene: Scene, rung: str) -> dict[str, Any]:
         return {**unknown, "general": unknown, "same": unknown, "because": []}
     return {
         **_counts(problem.form),
-        "general": _counts(whole_form(scene.model)),
+        "general": _counts(whole_form(scene.body)),
         "same": _counts(in_general_form(problem).form),
         "because": [*problem.because, *_left_out(scene)],
     }
@@ -277,5 +277,5 @@ def _left_out(scene: Scene) -> list[str]:
     possible = TRACKED[scene.model]
     found = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
     if scene.body.is_free:
-        found.append("no moment" if scene.model == "euler" else "no force and no couple")
+        found.append(" and ".join(f"no {load}" for load in scene.body.load_names()))
     return found

@@ -3,6 +3,7 @@
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 M  moment, body axes                  I  inertia tensor, H = I omega
 D  differences of K's diagonal, D1 = K33 - K22, D2 = K11 - K33, D3 = K22 - K11; their sum is 0
+D11, D22  K11 - K33 and K22 - K33
 
 The integrated form is H' = H x K H + M. Whatever symmetric K is stored, it is a rigid body:
 |H|^2 is constant identically, which no pair of separately rounded I and I^-1 gives.
@@ -11,9 +12,11 @@ The integrated form is H' = H x K H + M. Whatever symmetric K is stored, it is a
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from taylor_verify.models.algebra import ABSENT, Terms, add, apply, cross, is_absent, minus, times
+from taylor_verify.models.form import Named, frame_rates, labelled
 
 
 def angular_velocity(H: Terms, K: Sequence[Terms]) -> list[Any]:
@@ -69,6 +72,57 @@ def _deviation(K: Sequence[Terms]) -> list[list[Any]]:
 
 def _is_diagonal(K: Sequence[Terms]) -> bool:
     return all(is_absent(K[i][j]) for i in range(3) for j in range(3) if i != j)
+
+
+# The equations of a form: values, so that two scenes that need the same ones share one compiled
+# integrator. An index that is ``formed`` is that of a difference which the rung cannot hold, and which the
+# arithmetic of the solver therefore forms, and rounds, itself.
+
+
+def euler_equations(n: Named) -> dict[str, Any]:
+    """H' = H x K H + M, and the attitude where it is tracked."""
+    H, K = n.vector("H"), n.symmetric("K")
+    rates = labelled("H", momentum_rate(H, K, n.vector("M")))
+    return rates | frame_rates(n, angular_velocity(H, K), U=None)
+
+
+@dataclass(frozen=True)
+class PrincipalEuler:
+    """Euler's equations in principal axes: a coefficient for each of the three products.
+
+    ``summed`` is the index of a difference that is minus the sum of the two others.
+    """
+
+    formed: tuple[int, ...] = ()
+    summed: int | None = None
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        H, K, D = n.vector("H"), n.symmetric("K"), n.vector("D")
+        for i in self.formed:
+            D[i - 1] = differences(K)[i - 1]
+        place = None if self.summed is None else self.summed - 1
+        rates = labelled("H", add(principal_rate(H, D, place), n.vector("M")))
+        return rates | frame_rates(n, angular_velocity(H, K), U=None)
+
+
+@dataclass(frozen=True)
+class TensorEuler:
+    """Euler's equations with products of inertia: a sphere is taken away from K."""
+
+    formed: tuple[int, ...] = ()
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        H, K = n.vector("H"), n.symmetric("K")
+        deviation = [list(row) for row in K]
+        deviation[2][2] = ABSENT
+        for i in (1, 2):
+            kept = minus(K[i - 1][i - 1], K[2][2]) if i in self.formed else n[f"D{i}{i}"]
+            deviation[i - 1][i - 1] = kept
+        rates = labelled("H", add(turning(H, deviation), n.vector("M")))
+        return rates | frame_rates(n, angular_velocity(H, K), U=None)
+
+
+# The form of the text.
 
 
 def heinbockel_moment(omega: Terms, omega_rate: Terms, I: Sequence[Terms]) -> list[Any]:

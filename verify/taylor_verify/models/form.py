@@ -13,12 +13,8 @@ from functools import lru_cache
 from typing import Any, Protocol, runtime_checkable
 
 from taylor_verify.models.algebra import ABSENT, is_absent
-from taylor_verify.models.euler import angular_velocity, momentum_rate
 from taylor_verify.models.frame import attitude_rate, centre_rate
-from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates, velocities
 from taylor_verify.models.symbol import Symbol, operations
-
-CLEBSCH_NAMES = ("p", "p'", "q", "q'", "r", "r'")
 
 
 class Named(dict[str, Any]):
@@ -120,32 +116,8 @@ def _entering(form: Form) -> tuple[str, ...]:
     return tuple(name for name in form.parameters if name in written)
 
 
-def euler_equations(n: Named) -> dict[str, Any]:
-    """H' = H x K H + M, and the attitude where it is tracked."""
-    H, K = n.vector("H"), n.symmetric("K")
-    rates = labelled("H", momentum_rate(H, K, n.vector("M")))
-    return rates | frame_rates(n, angular_velocity(H, K), U=None)
-
-
-def kirchhoff_equations(n: Named) -> dict[str, Any]:
-    """48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
-    x, y = n.vector("x"), n.vector("y")
-    U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
-    x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
-    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-
-def clebsch_equations(n: Named) -> dict[str, Any]:
-    """Clebsch's T about axis 3; y3 is a state only where a couple turns it."""
-    x, y = n.vector("x"), n.vector("y")
-    six = [n[name] for name in CLEBSCH_NAMES]
-    x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
-    p, p_prime, q, q_prime, r, r_prime = six
-    U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
-    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
-
-
 def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict[str, Any]:
+    """The rates of the attitude and of the centre, as far as these are states."""
     rates: dict[str, Any] = {}
     if "e0" in n:
         attitude = attitude_rate(n.quaternion(), omega)
@@ -156,8 +128,5 @@ def frame_rates(n: Named, omega: Sequence[Any], U: Sequence[Any] | None) -> dict
 
 
 def labelled(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
+    """The components of a vector by name, counted from 1."""
     return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
-
-
-def _axial(transverse: Any, axial: Any) -> list[list[Any]]:
-    return [[transverse, 0, 0], [0, transverse, 0], [0, 0, axial]]

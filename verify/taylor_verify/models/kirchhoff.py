@@ -10,9 +10,23 @@ p, p', q, q', r, r' are Clebsch's coefficients, 49 (1), with body axis 3 the axi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Final
 
-from taylor_verify.models.algebra import Terms, add, apply, cross, minus, plus, times, transpose
+from taylor_verify.models.algebra import (
+    ABSENT,
+    Terms,
+    add,
+    apply,
+    cross,
+    minus,
+    plus,
+    times,
+    transpose,
+)
+from taylor_verify.models.form import Named, frame_rates, labelled
+
+CLEBSCH_NAMES: Final = ("p", "p'", "q", "q'", "r", "r'")
 
 
 def velocities(
@@ -95,3 +109,57 @@ def _uncancelled(
 def _are_one(one: Terms, other: Terms) -> bool:
     """Identity, not equality: two numbers may be equal by chance, and in one body only."""
     return one[0] is other[0] and one[1] is other[1]
+
+
+# The equations of a form.
+
+
+def kirchhoff_equations(n: Named) -> dict[str, Any]:
+    """48 (3) and (4) with the general T, and attitude and centre where they are tracked."""
+    x, y = n.vector("x"), n.vector("y")
+    U, Omega = velocities(x, y, n.symmetric("A"), n.matrix("B"), n.symmetric("C"))
+    x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
+
+
+def clebsch_equations(n: Named) -> dict[str, Any]:
+    """Clebsch's T about axis 3; y3 is a state only where a couple turns it."""
+    x, y = n.vector("x"), n.vector("y")
+    six = [n[name] for name in CLEBSCH_NAMES]
+    x_rate, y_rate = clebsch_rates(x, y, six, n.vector("X"), n.vector("L"))
+    p, p_prime, q, q_prime, r, r_prime = six
+    U, Omega = velocities(x, y, _axial(p, p_prime), _axial(q, q_prime), _axial(r, r_prime))
+    return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
+
+
+def _axial(transverse: Any, axial: Any) -> list[list[Any]]:
+    return [[transverse, 0, 0], [0, transverse, 0], [0, 0, axial]]
+
+
+@dataclass(frozen=True)
+class ClebschAbout:
+    """Kirchhoff's equations for Clebsch's T about body axis 1, 2 or 3.
+
+    ``equal`` lists those of p, q, r that are the same along the axis as across it: p' is p then, and
+    has no name of its own.
+    """
+
+    axis: int = 3
+    equal: tuple[str, ...] = ()
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        six = [
+            n[name.removesuffix("'") if name[0] in self.equal else name] for name in CLEBSCH_NAMES
+        ]
+        # A cyclic change of names turns the axes and mirrors nothing.
+        order = [(self.axis + k) % 3 for k in range(3)]
+        x, y, X, L = ([n.vector(letter)[i] for i in order] for letter in ("x", "y", "X", "L"))
+        found = clebsch_rates(x, y, six, X, L)
+        x_rate, y_rate = ([rate[order.index(i)] for i in range(3)] for rate in found)
+        A, B, C = (self._about(six[k], six[k + 1]) for k in (0, 2, 4))
+        U, Omega = velocities(n.vector("x"), n.vector("y"), A, B, C)
+        return labelled("x", x_rate) | labelled("y", y_rate) | frame_rates(n, Omega, U)
+
+    def _about(self, transverse: Any, axial: Any) -> Sequence[Sequence[Any]]:
+        diagonal = [axial if i == self.axis - 1 else transverse for i in range(3)]
+        return [[diagonal[i] if i == j else ABSENT for j in range(3)] for i in range(3)]

@@ -20,10 +20,10 @@ that they load: what is wrong there is not undone here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 from taylor_verify.models.algebra import ABSENT, Terms, add, is_absent, minus, plus, times
 from taylor_verify.models.form import Equations, Named, labelled
@@ -32,34 +32,52 @@ from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.tensors import Vector
 
 # For each vector the letters of its start, its cosines and its sines.
-_MOMENTUM = (("h", "a", "b"),)
-_IMPULSES = (("h", "a", "b"), ("k", "f", "g"))
+_LETTERS = (("h", "a", "b"), ("k", "f", "g"))
+# A vector of the motion, and its rate.
+Moved = tuple[Sequence[Any], Sequence[Any]]
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """The equations of one kind of body turned round: the loads by name, of a motion of its momenta.
+
+    ``momenta`` has the letter of each momentum.
+    """
+
+    momenta: str
+    loads: Callable[..., dict[str, Any]]
 
 
 @dataclass(frozen=True)
 class Loaded:
     """The equations ``free`` of a body under the loads of its manufactured motion.
 
-    Values, as the equations of special.py: two scenes with as many waves share one compiled integrator.
+    Values: two scenes with as many waves share one compiled integrator.
     """
 
     free: Equations
     waves: int
+    inverse: Inverse
 
     def __call__(self, n: Named) -> dict[str, Any]:
-        loads = _loads(n, [_motion(n, letters, self.waves) for letters in _letters(n)])
+        motion = [_motion(n, letters, self.waves) for _, letters in self._vectors()]
+        loads = self.inverse.loads(n, *motion)
         return dict(self.free(Named({**n, **loads}))) | self._clock(n)
+
+    def _vectors(self) -> Iterator[tuple[str, tuple[str, str, str]]]:
+        """Each momentum with the letters of its motion."""
+        return zip(self.inverse.momenta, _LETTERS, strict=False)
 
     def lines(self, n: Named) -> dict[str, Any]:
         """The rates by M, or X and L, these by H*, or x* and y*, and these by the clock."""
         written: dict[str, Any] = {}
-        motion: list[_Part] = []
-        for letters, name in zip(_letters(n), "H" if "H1" in n else "xy", strict=True):
+        motion: list[Moved] = []
+        for name, letters in self._vectors():
             value, rate = _motion(n, letters, self.waves)
             parts = [_starred(name, "*", value), _starred(name, "*'", rate)]
             written |= parts[0] | parts[1]
             motion.append((_symbols(parts[0]), _symbols(parts[1])))
-        loads = _loads(n, motion)
+        loads = self.inverse.loads(n, *motion)
         named = {name: Symbol(name) for name, load in loads.items() if not is_absent(load)}
         rates = dict(self.free(Named({**n, **named}))) | self._clock(n)
         return {f"{name}'": rates[name] for name in rates if name in n} | loads | written
@@ -83,7 +101,7 @@ def numbers(motion: Manufactured) -> dict[str, Fraction]:
     The constant part does not enter: it is what the start, H0 or x0 and y0, leaves of it.
     """
     found: dict[str, Fraction] = {}
-    for place, (begin, cosine, sine) in enumerate(_IMPULSES[: len(motion.constant) // 3]):
+    for place, (begin, cosine, sine) in enumerate(_LETTERS[: len(motion.constant) // 3]):
         own = slice(3 * place, 3 * place + 3)
         found |= labelled(begin, motion.start[own])
         for k, wave in enumerate(motion.waves, start=1):
@@ -94,10 +112,11 @@ def numbers(motion: Manufactured) -> dict[str, Fraction]:
     return found
 
 
-def told(motion: Manufactured) -> tuple[str, ...]:
+def told(motion: Manufactured, inverse: Inverse) -> tuple[str, ...]:
     """What a reader of the equations should know."""
-    letters = "H* is the motion" if len(motion.constant) == 3 else "x* and y* are the motion"
-    told = [f"the loads are those under which {letters}"]
+    starred = " and ".join(f"{letter}*" for letter in inverse.momenta)
+    verb = "is" if len(inverse.momenta) == 1 else "are"
+    told = [f"the loads are those under which {starred} {verb} the motion"]
     if motion.waves:
         told.append(f"{', '.join(states(motion))} are states, so that time does not enter")
     return tuple(told)
@@ -114,27 +133,14 @@ def begun(waves: Sequence[Wave], start: Vector) -> Manufactured:
 # The loads.
 
 
-# A vector of the motion, and its rate.
-_Part = tuple[Sequence[Any], Sequence[Any]]
-
-
-def _letters(n: Named) -> tuple[tuple[str, str, str], ...]:
-    return _MOMENTUM if "H1" in n else _IMPULSES
-
-
-def _loads(n: Named, motion: Sequence[_Part]) -> dict[str, Any]:
-    """M, or X and L, by name."""
-    return _moment(n, *motion) if len(motion) == 1 else _force_and_couple(n, *motion)
-
-
-def _moment(n: Named, momentum: _Part) -> dict[str, Any]:
+def _moment(n: Named, momentum: Moved) -> dict[str, Any]:
     """M_i = H*_i' - e_ijk H*_j K_kl H*_l."""
     (H, H_rate), K = momentum, n.symmetric("K")
     omega = [_row(K[k], H) for k in range(3)]
     return labelled("M", [minus(H_rate[i], _permuted(i, H, omega)) for i in range(3)])
 
 
-def _force_and_couple(n: Named, linear: _Part, angular: _Part) -> dict[str, Any]:
+def _force_and_couple(n: Named, linear: Moved, angular: Moved) -> dict[str, Any]:
     """X_i = x*_i' - e_ijk x*_j Omega*_k and L_i = y*_i' - e_ijk (y*_j Omega*_k + x*_j U*_k)."""
     (x, x_rate), (y, y_rate) = linear, angular
     A, B, C = n.symmetric("A"), n.matrix("B"), n.symmetric("C")
@@ -144,6 +150,10 @@ def _force_and_couple(n: Named, linear: _Part, angular: _Part) -> dict[str, Any]
     turned = [plus(_permuted(i, y, Omega), _permuted(i, x, U)) for i in range(3)]
     L = [minus(y_rate[i], turned[i]) for i in range(3)]
     return labelled("X", X) | labelled("L", L)
+
+
+EULER_INVERSE: Final = Inverse("H", _moment)
+KIRCHHOFF_INVERSE: Final = Inverse("xy", _force_and_couple)
 
 
 def _starred(letter: str, mark: str, vector: Sequence[Any]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ so that an error is the solver's and never the data's.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NoReturn
@@ -15,19 +15,21 @@ from typing import NoReturn
 from mpmath import mp
 
 from taylor_verify.models import manufactured
-from taylor_verify.models.choice import Choice, constants_told, for_immersed_body, for_rigid_body
+from taylor_verify.models.choice import Choice, constants_told
 from taylor_verify.models.form import Equations, Form
+from taylor_verify.models.mechanics import components
+from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
-from taylor_verify.models.units import Units, natural_units
-from taylor_verify.records.quantities import IMPULSES
+from taylor_verify.models.units import Units
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
+from taylor_verify.scenes.motion import Clock, Quaternion, State
+from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
 from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import Vector
 
 
 class NotRepresentable(Exception):
@@ -147,48 +149,22 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 
 def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
     """Body and initial state, each number of the scene rounded once where it stands."""
-    one, body, start = Fraction(1), scene.body, scene.initial
     motion = _stored_motion(scene, rounded)
-    attitude = _rounded_quaternion(start.attitude, rounded)
-    if isinstance(body, RigidBody):
-        assert isinstance(start, Spin)
-        inertia = rounded.matrix(body.inertia, one)
-        if not tensors.is_positive_definite(inertia):
-            raise NotRepresentable(
-                f"rounded to {rounded.rung.name}, the inertia tensor is not positive definite"
-            )
-        solid = RigidBody(inertia, rounded.vector(body.moment, one), motion)
-        omega = rounded.vector(start.omega, one) if motion is None else motion.start
-        return solid, Spin(omega, attitude)
-    assert isinstance(start, Impulse)
-    immersed = ImmersedBody(
-        rounded.matrix(body.linear, one),
-        rounded.matrix(body.coupling, one),
-        rounded.matrix(body.angular, one),
-        rounded.vector(body.force, one),
-        rounded.vector(body.couple, one),
-        manufactured=motion,
-    )
-    if not tensors.is_positive_definite(immersed.energy_matrix):
-        raise NotRepresentable(f"rounded to {rounded.rung.name}, T is not positive definite")
-    linear, angular = rounded.vector(start.linear, one), rounded.vector(start.angular, one)
-    if motion is not None:
-        linear, angular = motion.start[:3], motion.start[3:]
-    return immersed, Impulse(linear, angular, attitude, rounded.vector(start.centre, one))
+    body = scene.body.changed(rounded.part).with_motion(motion)
+    if not tensors.is_positive_definite(body.energy_matrix):
+        raise NotRepresentable(
+            f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"
+        )
+    start = scene.initial.changed(rounded.part)
+    return body, start if motion is None else start.with_moving(motion.start)
 
 
 def _stored_motion(scene: Scene, rounded: _Rounding) -> Manufactured | None:
     """The manufactured motion, each of its numbers rounded once where it stands."""
-    motion, one = scene.body.manufactured, Fraction(1)
+    motion = scene.body.manufactured
     if motion is None:
         return None
-    return Manufactured(
-        rounded.vector(motion.constant, one),
-        tuple(
-            Wave(rounded(w.frequency), rounded.vector(w.cosine, one), rounded.vector(w.sine, one))
-            for w in motion.waves
-        ),
-    )
+    return Manufactured(rounded.each(motion.constant), rounded.waves(motion))
 
 
 @dataclass(frozen=True)
@@ -209,12 +185,80 @@ def _not_entering(numbers: Mapping[str, Fraction], form: Form) -> tuple[tuple[st
     return tuple((name, value) for name, value in numbers.items() if name not in form.parameters)
 
 
-def _rounded_data(scene: Scene, units: Units, rounding: _Rounding) -> _Data:
-    if isinstance(scene.body, RigidBody):
-        assert isinstance(scene.initial, Spin)
-        return _round_euler(scene.body, scene.initial, units, rounding)
-    assert isinstance(scene.initial, Impulse)
-    return _round_kirchhoff(scene.body, scene.initial, units, rounding)
+def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
+    """Form coefficients, loads and momenta exactly and round each once; all else follows exactly."""
+    body, start = scene.body, scene.initial
+    kind = mechanics(body)
+    values = _scaled(kind.body_letters, kind.values(body), units, rounded.each)
+    begin = _split(kind.momenta, kind.change(body).momentum(start.moving))
+    momenta = _scaled(kind.momenta, begin, units, rounded.each)
+    try:
+        given = kind.body(_physical(kind.body_letters, values, units))
+    except ValueError as error:
+        raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
+    momentum = _joined(_physical(kind.momenta, momenta, units))
+    place = {
+        part.name: _rounded_place(part, start.part(part), units, rounded)
+        for part in start.PARTS
+        if part.name not in start.MOVING
+    }
+    begun = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
+    numbers = _named(kind.momenta, momenta) | _named(kind.body_letters, values)
+    return _Data(kind.choice(numbers, rounded.rung), kind.states, given, begun)
+
+
+def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
+    """Return every coefficient and load of a body by name, in these units."""
+    kind = mechanics(body)
+    exact = _scaled(kind.body_letters, kind.values(body), units, lambda value: value)
+    return _named(kind.body_letters, exact)
+
+
+def _rounded_place(part: Part, value: Value, units: Units, rounded: _Rounding) -> Value:
+    """A part of the place, rounded in its unit."""
+    if part.shape is Shape.QUATERNION:
+        return rounded.quaternion(value)
+    unit = units.of(part.dimension)
+    return _times(unit, rounded.each(_counted(value, unit)))
+
+
+# Letters of the equations with their values: exact, in units, rounded.
+
+_Letters = Sequence[Part]
+_Values = Mapping[str, Value]
+
+
+def _scaled(
+    letters: _Letters, values: _Values, units: Units, rounded: Callable[[Value], Value]
+) -> _Values:
+    return {
+        one.name: rounded(_counted(values[one.name], units.of(one.dimension))) for one in letters
+    }
+
+
+def _physical(letters: _Letters, values: _Values, units: Units) -> _Values:
+    """The values in the scene's own units."""
+    return {one.name: _times(units.of(one.dimension), values[one.name]) for one in letters}
+
+
+def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
+    return {name: v for one in letters for name, v in components(one, values[one.name]).items()}
+
+
+def _split(letters: _Letters, vector: Vector) -> _Values:
+    return {one.name: vector[3 * k : 3 * k + 3] for k, one in enumerate(letters)}
+
+
+def _joined(values: _Values) -> Vector:
+    return tuple(entry for vector in values.values() for entry in vector)
+
+
+def _counted(value: Value, unit: Fraction) -> Value:
+    return entrywise(lambda entry: entry / unit, value)
+
+
+def _times(unit: Fraction, value: Value) -> Value:
+    return entrywise(lambda entry: unit * entry, value)
 
 
 def _with_clock(data: _Data, scene: Scene, units: Units, rounded: _Rounding) -> _Data:
@@ -225,40 +269,23 @@ def _with_clock(data: _Data, scene: Scene, units: Units, rounded: _Rounding) -> 
     """
     body = scene.body
     assert body.manufactured is not None
-    motion = body.manufactured
-    sizes: Vector = (units.impulse,) * 3 + (units.momentum,) * 3
-    if isinstance(body, RigidBody):
-        motion, sizes = motion.mapped(body.inertia), sizes[3:]
+    kind = mechanics(body)
+    motion = kind.change(body).motion_of_momenta(body.manufactured)
+    sizes: Vector = tuple(units.of(one.dimension) for one in kind.momenta for _ in range(3))
     scaled = motion.in_units(tuple(1 / size for size in sizes), 1 / units.time)
-    one = Fraction(1)
-    waves = [
-        Wave(rounded(w.frequency), rounded.vector(w.cosine, one), rounded.vector(w.sine, one))
-        for w in scaled.waves
-    ]
+    waves = rounded.waves(scaled)
     held = manufactured.begun(waves, tuple(data.numbers[name] for name in data.states))
-    given = held.in_units(sizes, units.time)
-    if isinstance(data.body, RigidBody):
-        given = given.mapped(data.body.inverse_inertia)
-    numbers = {**_coefficients(data.body, units), **data.numbers, **manufactured.numbers(held)}
+    given = kind.change(data.body).motion_of_state(held.in_units(sizes, units.time))
+    # The loads are formed of the general coefficients, whatever shorter equations do without.
+    numbers = {**numbers_of(data.body, units), **data.numbers, **manufactured.numbers(held)}
     choice = replace(
         data.choice,
-        equations=manufactured.Loaded(data.choice.equations, len(waves)),
+        equations=manufactured.Loaded(data.choice.equations, len(waves), kind.inverse),
         numbers=numbers,
-        because=(*data.choice.because, *manufactured.told(held)),
+        because=(*data.choice.because, *manufactured.told(held, kind.inverse)),
     )
     states = data.states + manufactured.states(held)
-    return _Data(choice, states, replace(data.body, manufactured=given), data.initial)
-
-
-def _coefficients(body: Body, units: Units) -> dict[str, Fraction]:
-    """Those of T that the loads are formed of, whatever shorter equations do without."""
-    if isinstance(body, RigidBody):
-        return {}
-    return {
-        **_upper_triangle("A", _rescaled(body.linear, 1 / units.inverse_mass)),
-        **_entries("B", _rescaled(body.coupling, 1 / units.coupling)),
-        **_upper_triangle("C", _rescaled(body.angular, 1 / units.inverse_inertia)),
-    }
+    return _Data(choice, states, data.body.with_motion(given), data.initial)
 
 
 def _with_frame(data: _Data, scene: Scene, rung: Rung) -> _Data:
@@ -286,67 +313,25 @@ class _Rounding:
         except OverflowError as error:
             raise NotRepresentable(str(error)) from error
 
-    def vector(self, vector: Vector, unit: Fraction) -> Vector:
-        return tuple(self(entry / unit) for entry in vector)
+    def each(self, value: Value) -> Value:
+        """Round every number of a value, whatever its shape."""
+        return entrywise(self, value)
 
-    def matrix(self, matrix: Matrix, unit: Fraction) -> Matrix:
-        return tuple(self.vector(row, unit) for row in matrix)
+    def part(self, part: Part, value: Value) -> Value:
+        """Round a part of a body or a state as it stands."""
+        return self.quaternion(value) if part.shape is Shape.QUATERNION else self.each(value)
 
+    def quaternion(self, quaternion: Quaternion) -> Quaternion:
+        """Round the components after an exact scaling to order one; the norm does not matter."""
+        unit = power_of_two(max(floor_log2(entry) for entry in quaternion if entry))
+        e0, e1, e2, e3 = (self(entry / unit) for entry in quaternion)
+        return (e0, e1, e2, e3)
 
-def _round_euler(body: RigidBody, initial: Spin, units: Units, rounded: _Rounding) -> _Data:
-    """K and H0 are formed exactly and rounded once; the body is K^-1, and omega0 = K H0, exactly."""
-    K = rounded.matrix(body.inverse_inertia, units.inverse_inertia)
-    H = rounded.vector(tensors.apply(body.inertia, initial.omega), units.momentum)
-    M = rounded.vector(body.moment, units.momentum / units.time)
-    if not tensors.is_positive_definite(K):
-        raise NotRepresentable(
-            f"rounded to {rounded.rung.name}, the inverse inertia tensor is not positive definite"
+    def waves(self, motion: Manufactured) -> tuple[Wave, ...]:
+        """Round frequencies and coefficients of a manufactured motion."""
+        return tuple(
+            Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
         )
-    physical_K = _rescaled(K, units.inverse_inertia)
-    omega = tensors.apply(physical_K, tensors.scaled(units.momentum, H))
-    given = RigidBody(tensors.inverse(physical_K), tensors.scaled(units.momentum / units.time, M))
-    numbers = _indexed("H", H) | _upper_triangle("K", K) | _indexed("M", M)
-    start = Spin(omega, _rounded_quaternion(initial.attitude, rounded))
-    choice = for_rigid_body(numbers, rounded.rung)
-    return _Data(choice, ("H1", "H2", "H3"), given, start)
-
-
-def _round_kirchhoff(
-    body: ImmersedBody, initial: Impulse, units: Units, rounded: _Rounding
-) -> _Data:
-    """The 21 coefficients are rounded once each; that T is the body."""
-    A = rounded.matrix(body.linear, units.inverse_mass)
-    B = rounded.matrix(body.coupling, units.coupling)
-    C = rounded.matrix(body.angular, units.inverse_inertia)
-    if not tensors.is_positive_definite(tensors.blocks(A, B, C)):
-        raise NotRepresentable(f"rounded to {rounded.rung.name}, T is not positive definite")
-    x = rounded.vector(initial.linear, units.impulse)
-    y = rounded.vector(initial.angular, units.momentum)
-    X = rounded.vector(body.force, units.impulse / units.time)
-    L = rounded.vector(body.couple, units.momentum / units.time)
-    given = ImmersedBody(
-        _rescaled(A, units.inverse_mass),
-        _rescaled(B, units.coupling),
-        _rescaled(C, units.inverse_inertia),
-        tensors.scaled(units.impulse / units.time, X),
-        tensors.scaled(units.momentum / units.time, L),
-    )
-    start = Impulse(
-        tensors.scaled(units.impulse, x),
-        tensors.scaled(units.momentum, y),
-        _rounded_quaternion(initial.attitude, rounded),
-        tensors.scaled(units.length, rounded.vector(initial.centre, units.length)),
-    )
-    numbers = _indexed("x", x) | _indexed("y", y) | _indexed("X", X) | _indexed("L", L)
-    numbers |= _upper_triangle("A", A) | _entries("B", B) | _upper_triangle("C", C)
-    return _Data(for_immersed_body(numbers), IMPULSES, given, start)
-
-
-def _rounded_quaternion(quaternion: Quaternion, rounded: _Rounding) -> Quaternion:
-    """The components rounded after an exact scaling to order one; the norm does not matter."""
-    unit = power_of_two(max(floor_log2(entry) for entry in quaternion if entry))
-    e0, e1, e2, e3 = rounded.vector(quaternion, unit)
-    return (e0, e1, e2, e3)
 
 
 def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
@@ -360,17 +345,5 @@ def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
     return (e0, e1, e2, e3)
 
 
-def _rescaled(matrix: Matrix, unit: Fraction) -> Matrix:
-    return tuple(tensors.scaled(unit, row) for row in matrix)
-
-
 def _indexed(letter: str, vector: Sequence[Fraction], start: int = 1) -> dict[str, Fraction]:
     return {f"{letter}{i}": entry for i, entry in enumerate(vector, start=start)}
-
-
-def _entries(letter: str, matrix: Matrix) -> dict[str, Fraction]:
-    return {f"{letter}{i + 1}{j + 1}": matrix[i][j] for i in range(3) for j in range(3)}
-
-
-def _upper_triangle(letter: str, matrix: Matrix) -> dict[str, Fraction]:
-    return {f"{letter}{i + 1}{j + 1}": matrix[i][j] for i in range(3) for j in range(i, 3)}

@@ -2,22 +2,71 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Final
+from typing import Any, ClassVar, Final, Self, cast
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.ellipsoid import inverse_inertias
 from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Impulse, Spin, State
+from taylor_verify.scenes.parts import FORCE, MOMENT, Dimension, Part, Parted, Shape, Value
 from taylor_verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 
 # Irrational coefficients become rationals of so many bits: 120 digits.
 COEFFICIENT_BITS: Final = 400
 
 
+class Body(Parted):
+    """A body by its exact numbers: what every room may ask of one, whatever its model.
+
+    The numbers are the PARTS. ``MODEL`` is the word of a scene's key ``model``, ``STATE`` the kind of
+    its initial state, and ``ENERGY`` what ``energy_matrix`` is called in messages. A new kind of body is
+    a class like those below; each room that has its physics has one table by these classes.
+    """
+
+    MODEL: ClassVar[str]
+    STATE: ClassVar[type[State]]
+    ENERGY: ClassVar[str]
+
+    manufactured: Manufactured | None
+
+    @property
+    def energy_matrix(self) -> Matrix:
+        """The positive definite matrix of 2T = z . energy_matrix z, z the moving part of the state."""
+        raise NotImplementedError
+
+    @classmethod
+    def load_names(cls) -> tuple[str, ...]:
+        """Return the names of the loads, in reading order."""
+        return tuple(part.name for part in cls.PARTS if part.is_load)
+
+    @property
+    def is_free(self) -> bool:
+        """True without loads: neither constant ones nor those of a manufactured motion."""
+        loads = (self.part(part) for part in self.PARTS if part.is_load)
+        return self.manufactured is None and not any(any(load) for load in loads)
+
+    def with_motion(self, motion: Manufactured | None) -> Self:
+        """Return the same body with this manufactured motion, or with none."""
+        changed: Self = replace(cast("Any", self), manufactured=motion)
+        return changed
+
+    @property
+    def is_integrable(self) -> bool:
+        """True if every motion has a closed form, by the symmetry of the body alone."""
+        return False
+
+    @property
+    def is_revolved(self) -> bool:
+        """True if entries 11 and 22 of every matrix are one number, and nothing is off the diagonal."""
+        return False
+
+
 @dataclass(frozen=True)
-class RigidBody:
+class RigidBody(Body):
     """A rigid body about a fixed point or its centre of mass.
 
     ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
@@ -29,18 +78,32 @@ class RigidBody:
     moment: Vector = ZERO_VECTOR
     manufactured: Manufactured | None = None
 
+    MODEL = "euler"
+    STATE = Spin
+    ENERGY = "the inertia tensor"
+    PARTS = (
+        Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0)),
+        Part("moment", Shape.VECTOR, MOMENT, is_load=True),
+    )
+
+    @property
+    def energy_matrix(self) -> Matrix:
+        """I: 2T = omega . I omega."""
+        return self.inertia
+
     @cached_property
     def inverse_inertia(self) -> Matrix:
         """K = I^-1, so that omega = K H."""
         return tensors.inverse(self.inertia)
 
     @property
-    def is_free(self) -> bool:
-        return not any(self.moment) and self.manufactured is None
+    def is_integrable(self) -> bool:
+        """True for a free body: Jacobi's motion."""
+        return self.is_free
 
 
 @dataclass(frozen=True)
-class ImmersedBody:
+class ImmersedBody(Body):
     """A solid in an ideal fluid: T = x.A x/2 + x.B y + y.C y/2, 21 coefficients.
 
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
@@ -58,9 +121,32 @@ class ImmersedBody:
     ellipsoid: Ellipsoid | None = None
     manufactured: Manufactured | None = None
 
+    MODEL = "kirchhoff"
+    STATE = Impulse
+    ENERGY = "T"
+    PARTS = (
+        Part("linear", Shape.SYMMETRIC, Dimension(-1, 0, 0)),
+        Part("coupling", Shape.MATRIX, Dimension(-1, -1, 0)),
+        Part("angular", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
+        Part("force", Shape.VECTOR, FORCE, is_load=True),
+        Part("couple", Shape.VECTOR, MOMENT, is_load=True),
+    )
+
+    def with_parts(self, values: Mapping[str, Value]) -> Self:
+        """Return the same with other values; other coefficients are no longer those of the ellipsoid."""
+        other = super().with_parts(values)
+        keeps_shape = values.keys() <= set(self.load_names())
+        return other if keeps_shape else replace(other, ellipsoid=None)
+
     @property
-    def is_free(self) -> bool:
-        return not any(self.force + self.couple) and self.manufactured is None
+    def is_integrable(self) -> bool:
+        """True for a free body of revolution: Clebsch's motion."""
+        return self.is_free and self.axis_of_symmetry is not None
+
+    @property
+    def is_revolved(self) -> bool:
+        """True for T of Clebsch's form about axis 3."""
+        return self.clebsch is not None
 
     @cached_property
     def energy_matrix(self) -> Matrix:
@@ -168,8 +254,6 @@ class Ellipsoid:
             ellipsoid=self,
         )
 
-
-Body = RigidBody | ImmersedBody
 
 __all__ = [
     "COEFFICIENT_BITS",

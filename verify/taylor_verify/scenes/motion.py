@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 if TYPE_CHECKING:
@@ -17,8 +19,34 @@ Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 IDENTITY: Quaternion = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
 
 
+_ATTITUDE = Part("attitude", Shape.QUATERNION, NUMBER)
+
+
+class State(Parted):
+    """The initial state of a body: what enters its own equations, then where the body is.
+
+    ``MOVING`` are the names of the parts that move by equations of their own, as files have them: omega,
+    or both impulses.
+    """
+
+    MOVING: ClassVar[tuple[str, ...]]
+    attitude: Quaternion
+
+    @property
+    def moving(self) -> Vector:
+        """The state that enters its own equations, as one vector of three or six."""
+        values = self.parts()
+        return tuple(entry for name in self.MOVING for entry in values[name])
+
+    def with_moving(self, vector: Vector) -> Self:
+        """Return the same place with another moving state."""
+        return self.with_parts(
+            {name: vector[3 * k : 3 * k + 3] for k, name in enumerate(self.MOVING)}
+        )
+
+
 @dataclass(frozen=True)
-class Spin:
+class Spin(State):
     """The initial state of a rigid body.
 
     ``omega`` is in body axes. ``attitude`` is a quaternion, scalar first, body to space, any norm but
@@ -28,9 +56,12 @@ class Spin:
     omega: Vector
     attitude: Quaternion = IDENTITY
 
+    MOVING = MOMENTA["euler"]
+    PARTS = (Part("omega", Shape.VECTOR, RATE), _ATTITUDE)
+
 
 @dataclass(frozen=True)
-class Impulse:
+class Impulse(State):
     """The initial state of a solid in a fluid.
 
     ``linear`` x and ``angular`` y, about the body's origin, are the impulses of body and fluid together,
@@ -42,8 +73,13 @@ class Impulse:
     attitude: Quaternion = IDENTITY
     centre: Vector = ZERO_VECTOR
 
-
-State = Spin | Impulse
+    MOVING = MOMENTA["kirchhoff"]
+    PARTS = (
+        Part("linear_impulse", Shape.VECTOR, IMPULSE, attribute="linear"),
+        Part("angular_impulse", Shape.VECTOR, MOMENTUM, attribute="angular"),
+        _ATTITUDE,
+        Part("centre", Shape.VECTOR, LENGTH),
+    )
 
 
 @dataclass(frozen=True)

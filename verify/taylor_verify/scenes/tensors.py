@@ -40,6 +40,10 @@ def plus(a: Vector, b: Vector) -> Vector:
     return tuple(p + q for p, q in zip(a, b, strict=True))
 
 
+def minus(a: Vector, b: Vector) -> Vector:
+    return tuple(p - q for p, q in zip(a, b, strict=True))
+
+
 def scaled(factor: Fraction, vector: Vector) -> Vector:
     return tuple(factor * entry for entry in vector)
 

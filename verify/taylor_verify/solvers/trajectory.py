@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,9 @@ from mpmath import mp
 
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import IMPULSES
+from taylor_verify.models.registry import mechanics
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Impulse, Motion
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.precision import held_exactly
 
@@ -148,10 +148,9 @@ def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 def _names(problem: Problem) -> tuple[str, ...]:
     """The quantities that the states of a problem hold."""
-    is_rigid = isinstance(problem.given.body, RigidBody)
-    names = ("omega",) if is_rigid else ("linear_impulse", "angular_impulse")
     frame = (("e0", "quaternion"), ("c1", "centre"))
-    return (*names, *(name for state, name in frame if state in problem.form.states))
+    moving = problem.given.initial.MOVING
+    return (*moving, *(name for state, name in frame if state in problem.form.states))
 
 
 def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[str, Any]:
@@ -163,22 +162,21 @@ def from_scaled(problem: Problem, rows: Sequence[Sequence[Fraction]]) -> dict[st
     """
     columns = dict(zip(problem.form.states, zip(*rows, strict=True), strict=True))
     units, given = problem.units, problem.given
-    quantities = {}
-    if isinstance(given.body, RigidBody):
-        K = tensors.inverse(given.body.inertia)
-        momenta = _vectors(columns, "H", units.momentum)
-        quantities["omega"] = [tensors.apply(K, H) for H in momenta]
-    else:
-        for name in IMPULSES:
-            if name not in columns:
-                columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
-        quantities["linear_impulse"] = _vectors(columns, "x", units.impulse)
-        quantities["angular_impulse"] = _vectors(columns, "y", units.momentum)
+    kind = mechanics(given.body)
+    for name in kind.states:
+        if name not in columns:
+            columns[name] = (problem.parameter.get(name, Fraction(0)),) * len(rows)
+    parts = (_vectors(columns, one.name, units.of(one.dimension)) for one in kind.momenta)
+    momenta = (tuple(chain.from_iterable(vectors)) for vectors in zip(*parts, strict=True))
+    moving = list(map(kind.change(given.body).moving, momenta))
+    quantities = {
+        name: [vector[3 * k : 3 * k + 3] for vector in moving]
+        for k, name in enumerate(given.initial.MOVING)
+    }
     if "e0" in columns:
         quantities["quaternion"] = list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
     if "c1" in columns:
-        assert isinstance(given.initial, Impulse)
-        start = given.initial.centre
+        start = given.initial.parts()["centre"]
         quantities["centre"] = [
             tensors.plus(start, c) for c in _vectors(columns, "c", units.length)
         ]

@@ -96,7 +96,7 @@ class Rigid(Kind[RigidBody, Spin]):
         body = scene.body
         assert isinstance(body, RigidBody)
         in_body = energy(body), momentum(body)
-        return (*in_body, space_momentum(body)) if scene.track else in_body
+        return (*in_body, space_momentum(body)) if "attitude" in scene.track else in_body
 
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
         body = scene.body

@@ -98,7 +98,7 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         integral = fourth_integral(scene)
         if integral is not None:
             found.append(fourth(integral))
-        if scene.track:
+        if "attitude" in scene.track:
             found.append(X_SPACE)
         if "centre" in scene.track:
             found.append(Y_SPACE)

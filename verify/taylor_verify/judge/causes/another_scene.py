@@ -16,7 +16,6 @@ from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -51,9 +50,7 @@ def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
 
 
 def _state(scene: Scene) -> Floats:
-    start = scene.initial
-    vectors = (start.omega,) if isinstance(start, Spin) else (start.linear, start.angular)
-    return np.array([float(value) for vector in vectors for value in vector])
+    return np.array([float(value) for value in scene.initial.moving])
 
 
 def _error(material: Material, scene: Scene, row: int) -> float:

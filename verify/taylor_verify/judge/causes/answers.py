@@ -15,15 +15,13 @@ from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import Conventions
-from taylor_verify.judge.floor.inputs import impulses
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MOMENTA, STATES, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -67,17 +65,17 @@ def _causes(material: Callable[[], Material | None], scene: Scene) -> tuple[Like
 def _of_file(
     file: TrajectoryFile, rung: Rung, found: Conventions, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """A file as material; None if the loads of its body are not constant."""
+    """A file as material; None if its body is of another kind or has loads that change."""
     times = found.world.times(file.times)
     given = adopt(found.world.scene, rung, times).given
-    if given.body.manufactured is not None:
+    if given.body.manufactured is not None or not Equations.are_known(given.body):
         return None
     attitudes = _attitudes(file, given, found)
     values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
     columns = [file.rows[name].doubles() for name in values]
-    if not values and isinstance(given.body, ImmersedBody) and set(VELOCITIES) <= set(file.groups):
+    if not values and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
         own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
-        values = {name: rows.astype(float) for name, rows in impulses(given.body, own).items()}
+        values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
     made = _material(given, values, _quaternions(attitudes), rung, verdicts)
     return replace(made, digits=file.digits, columns=np.hstack(columns) if columns else None)
 
@@ -85,9 +83,10 @@ def _of_file(
 def _of_trajectory(
     problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
 ) -> Material | None:
-    """A solver's trajectory as material; None if the loads of its body are not constant."""
+    """A solver's trajectory as material; None if its body is of another kind or has loads that change."""
     given, rows = problem.given, trajectory.quantities
-    if given.body.manufactured is not None or not rows:
+    is_other = given.body.manufactured is not None or not Equations.are_known(given.body)
+    if is_other or not rows:
         return None
     values = {name: _doubles(rows[name]) for name in MOMENTA[given.model]}
     q = _doubles(rows["quaternion"]) if "quaternion" in rows else None
@@ -105,10 +104,9 @@ def _material(
     needed, start = MOMENTA[given.model], given.initial
     nothing = np.full((len(given.clock.elapsed), 3), np.nan)
     attitude = np.array([float(value) for value in start.attitude])
-    begin = (start.omega,) if isinstance(start, Spin) else (start.linear, start.angular)
     return Material(
         Equations.of(given.body),
-        np.array([float(value) for vector in begin for value in vector]),
+        np.array([float(value) for value in start.moving]),
         attitude / np.linalg.norm(attitude),
         np.array([float(t) for t in given.clock.elapsed]),
         np.hstack([values.get(name, nothing) for name in needed]),

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.flow import Floats, bilinear
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.tensors import Matrix, Vector
+
+_KNOWN: Final = (RigidBody, ImmersedBody)
 
 
 @dataclass(frozen=True)
@@ -35,13 +37,17 @@ class Equations:
     damping: float = 0.0
     drag: float = 0.0
 
+    @staticmethod
+    def are_known(body: Body) -> bool:
+        """Return True if this kind of body has equations here."""
+        return type(body) in _KNOWN
+
     @classmethod
     def of(cls, body: Body) -> Equations:
         """Return the right equations of a body whose loads are constant."""
-        if isinstance(body, RigidBody):
-            return cls(doubles(body.inertia), doubles(body.moment))
-        assert isinstance(body, ImmersedBody)
-        return cls(doubles(body.energy_matrix), doubles((*body.force, *body.couple)))
+        values = body.parts()
+        loads = [entry for name in body.load_names() for entry in values[name]]
+        return cls(doubles(body.energy_matrix), doubles(tuple(loads)))
 
     @property
     def is_rigid(self) -> bool:

@@ -28,10 +28,9 @@ from taylor_verify.exact.solution import Quantities, Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
 from taylor_verify.judge.conventions.readings import Reading, readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
-from taylor_verify.judge.floor.inputs import velocities
+from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -339,7 +338,7 @@ def is_far(scene: Scene, times: Sequence[Fraction], spans: int = _MOST_SPANS) ->
 
 
 def _with_velocities(given: Scene, truth: Quantities) -> Quantities:
-    if isinstance(given.body, ImmersedBody):
+    if has_velocities(given.body):
         with mp.workdps(_DIGITS):
             return {**truth, **velocities(given.body, truth)}
     return truth

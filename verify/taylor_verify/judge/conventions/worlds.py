@@ -15,8 +15,8 @@ from typing import Final
 
 from taylor_verify.judge.conventions.axes import Frames
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import Matrix
 
 _SCALES: Final = (
     (Fraction(1, 1000), "thousandths of the scene's unit (milliseconds for seconds)"),
@@ -99,26 +99,37 @@ def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
-    """The same numbers by the other convention: products of inertia, and the order of the coupling."""
-    body = scene.body
-    if isinstance(body, RigidBody):
-        turned = tuple(
-            tuple(entry if i == k else -entry for k, entry in enumerate(row))
-            for i, row in enumerate(body.inertia)
-        )
-        if turned == body.inertia or not tensors.is_positive_definite(turned):
-            return []
-        words = (
-            "the body has its products of inertia with the other sign (a scene writes components of "
-            "the tensor, I_12 = -int xy dm)"
-        )
-        return [(replace(scene, body=replace(body, inertia=turned)), words)]
-    transposed = tensors.transpose(body.coupling)
-    other = replace(body, coupling=transposed)
-    if transposed == body.coupling or not tensors.is_positive_definite(other.energy_matrix):
-        return []
-    words = "the body has its coupling B transposed (a scene's T has x.B y: its rows go with x)"
-    return [(replace(scene, body=other), words)]
+    """The same numbers by the other convention, where a part of the body has one."""
+    body, found = scene.body, []
+    for name, value in body.parts().items():
+        if name not in _MISREAD:
+            continue
+        misread, words = _MISREAD[name]
+        other = body.with_parts({name: misread(value)})
+        if misread(value) != value and tensors.is_positive_definite(other.energy_matrix):
+            found.append((replace(scene, body=other), words))
+    return found
+
+
+def _with_products_negated(tensor: Matrix) -> Matrix:
+    return tuple(
+        tuple(entry if i == k else -entry for k, entry in enumerate(row))
+        for i, row in enumerate(tensor)
+    )
+
+
+# Parts that have two conventions: how to get from one to the other, and what a reader is told.
+_MISREAD: Final = {
+    "inertia": (
+        _with_products_negated,
+        "the body has its products of inertia with the other sign (a scene writes components of "
+        "the tensor, I_12 = -int xy dm)",
+    ),
+    "coupling": (
+        tensors.transpose,
+        "the body has its coupling B transposed (a scene's T has x.B y: its rows go with x)",
+    ),
+}
 
 
 def _late(shift: Fraction) -> str:

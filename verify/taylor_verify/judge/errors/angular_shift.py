@@ -18,9 +18,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors.shift import LEAVES, strays_from
 from taylor_verify.judge.errors.state import largest, norms
-from taylor_verify.judge.floor.inputs import Velocity, angular_velocity
+from taylor_verify.judge.velocities import Velocity, angular_velocity
 from taylor_verify.records.reason import Kind
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -132,13 +131,11 @@ class _Compared:
         return fit
 
     def fit(self, shift: Fraction, samples: Sequence[int]) -> _Fit:
-        body = self.given.body
-        assert isinstance(body, ImmersedBody)
         elapsed = [self.given.clock.elapsed[k] - shift for k in samples]
         h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
         later = [t + h for t in elapsed]
         both = self.exact.evaluate([*elapsed, *later], self.digits + _MORE_DIGITS)
-        rows = self.of(body, both)
+        rows = self.of(self.given.body, both)
         here, ahead = rows[: len(elapsed)], rows[len(elapsed) :]
         own = self.answer[list(samples)]
         return _Fit(shift, own, own - here, (ahead - here) / mp.convert(h))

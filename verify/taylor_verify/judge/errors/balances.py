@@ -169,7 +169,7 @@ def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> li
 
 def _free(scene: Scene, rows: Column) -> Column:
     """The rates of the body without loads; of second degree, so that differences are derivatives."""
-    free = replace(scene, body=replace(scene.body, manufactured=None), track=frozenset())
+    free = replace(scene, body=scene.body.with_motion(None), track=frozenset())
     zeros = np.array([mp.zero] * len(rows), dtype=object)
     found = rates(free, Motion(_parts(scene, rows), zeros))
     columns = [

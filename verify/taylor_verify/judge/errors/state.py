@@ -11,8 +11,8 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.judge.velocities import exact_matrix, velocity_forms
 from taylor_verify.records.quantities import Measure, Quantity, state_quantities
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -157,12 +157,10 @@ class Arc:
 
     def through(self, scene: Scene, truth: Motion) -> Any:
         """Take in further samples, at the instants of the scene, and return the whole length."""
-        body = scene.body
-        assert isinstance(body, ImmersedBody)
-        A, B = (to_mpfr(exact_matrix(matrix)) for matrix in (body.linear, body.coupling))
-        x, y = to_mpfr(truth["linear_impulse"]), to_mpfr(truth["angular_impulse"])
+        forms = velocity_forms(scene.body).forms["linear_velocity"]
+        terms = [(to_mpfr(truth[name]), to_mpfr(exact_matrix(m))) for name, m in forms.items()]
         with precision():
-            U = x @ A.T + y @ B.T
+            U = sum(rows @ matrix.T for rows, matrix in terms)
             speeds = to_mpf(sqrt(np.sum(U * U, axis=1)))
         for elapsed, speed in zip(scene.clock.elapsed, speeds, strict=True):
             time = mp.convert(elapsed)
@@ -171,11 +169,6 @@ class Arc:
             self.length = self.length + abs(time - since) * (before + speed) / 2
             self.end = time, speed
         return self.length
-
-
-def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Column:
-    """A matrix of rationals in the ambient precision."""
-    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
 
 
 def norms(rows: Column) -> Column:

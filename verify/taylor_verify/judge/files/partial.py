@@ -23,20 +23,23 @@ from taylor_verify.judge.errors.measured import MOST_SHIFTED, Comparison
 from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, floor
-from taylor_verify.judge.floor.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.judge.judgement import Judgement, judgement, numbers_of, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
+from taylor_verify.judge.velocities import (
+    Velocity,
+    angular_velocity,
+    linear_velocity,
+    velocity_forms,
+)
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.quantities import GROUPS, TRACKED, UNIT_QUATERNION, VELOCITIES
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.tensors import Matrix
 from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import ByRows, Outcome, rows_at
 
@@ -160,12 +163,6 @@ class _Kind:
     of: Velocity
     carried: Carried
 
-    def blocks(self, body: ImmersedBody) -> dict[str, Matrix]:
-        """The matrices of the two impulses."""
-        is_linear = self.group == "linear_velocity"
-        of_x, of_y = (body.linear, body.coupling) if is_linear else (body.coupling, body.angular)
-        return {"linear_impulse": of_x, "angular_impulse": of_y}
-
 
 _VELOCITIES: Final = {
     kind.group: kind
@@ -203,7 +200,6 @@ def _velocity(
 def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]:
     """The errors of a velocity, and its own size at every sample over the largest."""
     body = compared.scene.body
-    assert isinstance(body, ImmersedBody)
     states, sizes, radii = States(), Series(), Series()
     for block in compared.blocks(Costs()):
         with mp.workprec(compared.bits):
@@ -223,12 +219,10 @@ def _velocity_attainable(
     problem: Problem, solver: Recorded, kind: _Kind, sizes: Floats, scale: Any
 ) -> Floats:
     """What a rounding of x and y, and of the velocity itself, leaves."""
-    body = problem.given.body
-    assert isinstance(body, ImmersedBody)
     roundoff, by_velocities = problem.rung.unit_roundoff, solver.carries_velocities
     base = floor(problem.given, problem.scene, roundoff, 0, by_velocities)
     squares = (base.unit_roundoff * sizes) ** 2
-    for part, matrix in kind.blocks(body).items():
+    for part, matrix in velocity_forms(problem.given.body).forms[kind.group].items():
         norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
         alone = Errors(part, "", sizes, sizes, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2

@@ -16,10 +16,9 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.readings import Reading
 from taylor_verify.judge.conventions.search import Conventions
 from taylor_verify.judge.floor.arithmetic import truth_digits
-from taylor_verify.judge.floor.inputs import impulses
+from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import adopt
 from taylor_verify.records.quantities import COLUMNS, GROUPS, MAIN, MOMENTA, VELOCITIES
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -65,7 +64,7 @@ class FileRows(ByRows):
         return tuple(self.times[k] for k in self.places)
 
     def __iter__(self) -> Iterator[str]:
-        made = MOMENTA["kirchhoff"] if self.has_velocities else ()
+        made = MOMENTA[self.scene.model] if self.has_velocities else ()
         return iter((*self.file.groups, *made))
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
@@ -79,17 +78,16 @@ class FileRows(ByRows):
                 for name, reading in self.readings.items():
                     found[name] = reading.read(found[name], R)
         if self.has_velocities:
-            assert isinstance(self.scene.body, ImmersedBody)
             with mp.workprec(bits):
-                found |= impulses(self.scene.body, found)
+                found |= momenta(self.scene.body, found)
         return found
 
     @property
     def has_velocities(self) -> bool:
         """True if the impulses are made of the velocities, since the file has none of its own."""
         has = set(self.file.groups)
-        is_immersed = isinstance(self.scene.body, ImmersedBody)
-        return is_immersed and has.issuperset(VELOCITIES) and not has & set(MOMENTA["kirchhoff"])
+        stands_for = has_velocities(self.scene.body) and has.issuperset(VELOCITIES)
+        return stands_for and not has & set(MOMENTA[self.scene.model])
 
     def sides(self) -> list[FileRows]:
         """The rows after the start and those before it, each in the order away from the start."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
@@ -13,7 +13,7 @@ import numpy as np
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors.state import largest, norms
 from taylor_verify.judge.floor.attainable import condition
-from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -91,11 +91,17 @@ def _sizes(scene: Scene, elapsed: Sequence[Fraction]) -> _Sizes:
     found = solution(replace(scene, track=frozenset())).evaluate(elapsed, _DIGITS)
     at_most = {name: float(largest(norms(rows))) for name, rows in found.items()}
     at_first = {name: float(norms(rows)[0]) for name, rows in found.items()}
-    if isinstance(scene.body, RigidBody):
-        at_first = {"momentum": _momentum(scene.body, found["omega"][0])}
+    if momentum := _MOMENTUM.get(type(scene.body)):
+        at_first = {"momentum": momentum(scene.body, found["omega"][0])}
     return _Sizes(at_first, at_most)
 
 
-def _momentum(body: RigidBody, omega: Sequence[Any]) -> float:
+def _rigid_momentum(body: RigidBody, omega: Sequence[Any]) -> float:
     """|I omega|."""
     return float(np.linalg.norm(np.array(body.inertia, dtype=float) @ np.array(omega, dtype=float)))
+
+
+# By the class of a body, the size of the momentum of its state. One that is absent has momenta for it.
+_MOMENTUM: Final[Mapping[type[Body], Callable[[Any, Sequence[Any]], float]]] = {
+    RigidBody: _rigid_momentum,
+}

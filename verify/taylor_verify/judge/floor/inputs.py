@@ -17,7 +17,7 @@ the motion moved is that from the moved start, under the loads of the moved moti
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -27,15 +27,21 @@ from mpmath import mp
 
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Quantities, Unsettled
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.judge.errors.state import exact_matrix, norms, state_errors
+from taylor_verify.judge.errors.state import norms, state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import looked_at
-from taylor_verify.records.quantities import VELOCITIES
-from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.judge.velocities import (
+    Velocity,
+    angular_velocity,
+    has_velocities,
+    linear_velocity,
+)
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin, State
+from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.parts import Part, Shape, Value
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
@@ -45,7 +51,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 # Up to this many inputs one at a time; of more, this many draws give the sum to a third.
 _MOST_DRAWS: Final = 8
 _MORE_DIGITS: Final = 6
-_UPPER: Final = tuple((i, k) for i in range(3) for k in range(i, 3))
+_ALL: Final = tuple((i, k) for i in range(3) for k in range(3))
+_UPPER: Final = tuple((i, k) for i, k in _ALL if i <= k)
 
 
 @dataclass(frozen=True)
@@ -99,47 +106,17 @@ class _Response:
             change = invariant.value(there) - invariant.value(here)
             sizes = norms(change) if change.ndim > 1 else abs(change)
             found[invariant.name] = sizes / invariant.scale(here)
-        if isinstance(scene.body, ImmersedBody):
+        if has_velocities(scene.body):
             found["omega"] = _of_velocity(angular_velocity, scene.body, here, there)
             found["velocity"] = _of_velocity(linear_velocity, scene.body, here, there)
         return cls({name: values.astype(float) ** 2 for name, values in found.items()})
 
 
-def _of_velocity(of: Velocity, body: ImmersedBody, here: Motion, there: Motion) -> Any:
+def _of_velocity(of: Velocity, body: Body, here: Motion, there: Motion) -> Any:
     """|change of Omega| / max |Omega|, or of U likewise."""
     one, other = (of(body, m.quantities) for m in (here, there))
     largest = max(norms(one))
     return norms(other - one) / (largest or 1)
-
-
-# U or Omega of a body at every sample.
-Velocity = Callable[[ImmersedBody, Quantities], Any]
-
-
-def angular_velocity(body: ImmersedBody, quantities: Quantities) -> Any:
-    """Return Omega = B^T x + C y at every sample, from the exact coefficients."""
-    B, C = exact_matrix(body.coupling), exact_matrix(body.angular)
-    return quantities["linear_impulse"] @ B + quantities["angular_impulse"] @ C.T
-
-
-def linear_velocity(body: ImmersedBody, quantities: Quantities) -> Any:
-    """Return U = A x + B y at every sample, from the exact coefficients."""
-    A, B = exact_matrix(body.linear), exact_matrix(body.coupling)
-    return quantities["linear_impulse"] @ A.T + quantities["angular_impulse"] @ B.T
-
-
-def velocities(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
-    """Return U and Omega at every sample, by the names of their columns."""
-    of = {"linear_velocity": linear_velocity, "omega": angular_velocity}
-    return {group: velocity(body, quantities) for group, velocity in of.items()}
-
-
-def impulses(body: ImmersedBody, quantities: Quantities) -> dict[str, Any]:
-    """Return (x, y) = M (U, Omega) at every sample, by the exact mass matrix."""
-    M = exact_matrix(body.mass_matrix)
-    velocities = np.concatenate([quantities[name] for name in VELOCITIES], axis=1)
-    both = velocities @ M.T
-    return {"linear_impulse": both[:, :3], "angular_impulse": both[:, 3:]}
 
 
 def _mean_square(moved: Sequence[_Response], inputs: int) -> dict[str, Floats]:
@@ -193,18 +170,15 @@ Place = tuple[str, int, int]
 def _numbers(scene: Scene) -> list[Place]:
     """The places of all numbers that are not zero; what symmetry makes equal counts once."""
     body, start = scene.body, scene.initial
-    if isinstance(body, RigidBody):
-        assert isinstance(start, Spin)
-        places = _upper("inertia", body.inertia) + _row("moment", body.moment)
-        places += _row("omega", start.omega)
-    else:
-        assert isinstance(start, Impulse)
-        places = _coefficients(body) + _row("force", body.force) + _row("couple", body.couple)
-        places += _row("linear", start.linear) + _row("angular", start.angular)
-        if "centre" in scene.track:
-            places += _row("centre", start.centre)
-    places += _of_motion(body.manufactured)
-    return places + (_row("attitude", start.attitude) if "attitude" in scene.track else [])
+    asked = [part for part in start.PARTS if part.name in (*start.MOVING, *scene.track)]
+    vectors = [part for part in asked if part.shape is not Shape.QUATERNION]
+    frames = [part for part in asked if part.shape is Shape.QUATERNION]
+    return [
+        *(p for part in body.PARTS for p in _places(part, body.part(part), body.is_revolved)),
+        *(p for part in vectors for p in _places(part, start.part(part))),
+        *_of_motion(body.manufactured),
+        *(p for part in frames for p in _places(part, start.part(part))),
+    ]
 
 
 def _of_motion(motion: Manufactured | None) -> list[Place]:
@@ -220,17 +194,16 @@ def _of_motion(motion: Manufactured | None) -> list[Place]:
     return [*_row("constant", motion.constant), *waves, *frequencies]
 
 
-def _coefficients(body: ImmersedBody) -> list[Place]:
-    """Those of Clebsch's form by twos: rounding leaves it a body of revolution."""
-    if body.clebsch is None:
-        whole = [("coupling", i, k) for i in range(3) for k in range(3) if body.coupling[i][k]]
-        return _upper("linear_", body.linear) + whole + _upper("angular_", body.angular)
-    blocks = {"linear_": body.linear, "coupling": body.coupling, "angular_": body.angular}
-    return [(name, i, i) for name, m in blocks.items() for i in (0, 2) if m[i][i]]
-
-
-def _upper(name: str, matrix: Matrix) -> list[Place]:
-    return [(name, i, k) for i, k in _UPPER if matrix[i][k]]
+def _places(part: Part, value: Value, revolved: bool = False) -> list[Place]:
+    """The places of one part. Of a body of revolution entries go by twos: rounding leaves it one."""
+    if part.shape is Shape.NUMBER:
+        return _row(part.name, (value,))
+    if part.shape in (Shape.VECTOR, Shape.QUATERNION):
+        return _row(part.name, value)
+    if revolved:
+        return [(part.name, i, i) for i in (0, 2) if value[i][i]]
+    places = _UPPER if part.shape is Shape.SYMMETRIC else _ALL
+    return [(part.name, i, k) for i, k in places if value[i][k]]
 
 
 def _row(name: str, vector: Sequence[Fraction]) -> list[Place]:
@@ -243,18 +216,24 @@ def _with_factors(scene: Scene, factors: Mapping[Place, Fraction]) -> Scene:
     def row(name: str, vector: Sequence[Fraction]) -> tuple[Fraction, ...]:
         return tuple(entry * factors.get((name, i, i), 1) for i, entry in enumerate(vector))
 
-    def matrix(
-        name: str, entries: Matrix, revolved: bool = False, symmetric: bool = True
-    ) -> Matrix:
+    def matrix(part: Part, entries: Matrix) -> Matrix:
         def factor(i: int, k: int) -> Fraction | int:
-            if symmetric and i > k:
+            if part.shape is Shape.SYMMETRIC and i > k:
                 i, k = k, i
             # Axes 1 and 2 of a body of revolution are one number.
-            return factors.get((name, 0, 0) if revolved and i == k == 1 else (name, i, k), 1)
+            twins = scene.body.is_revolved and i == k == 1
+            return factors.get((part.name, 0, 0) if twins else (part.name, i, k), 1)
 
         return tuple(
             tuple(e * factor(i, k) for k, e in enumerate(line)) for i, line in enumerate(entries)
         )
+
+    def changed(part: Part, value: Value) -> Value:
+        if part.shape is Shape.NUMBER:
+            return row(part.name, (value,))[0]
+        if part.shape in (Shape.SYMMETRIC, Shape.MATRIX):
+            return matrix(part, value)
+        return row(part.name, value)
 
     def waves(motion: Manufactured | None) -> Manufactured | None:
         if motion is None:
@@ -268,26 +247,5 @@ def _with_factors(scene: Scene, factors: Mapping[Place, Fraction]) -> Scene:
             ),
         )
 
-    body, start = scene.body, scene.initial
-    motion = waves(body.manufactured)
-    moved_body: Body
-    moved_start: State
-    q0, q1, q2, q3 = row("attitude", start.attitude)
-    if isinstance(body, RigidBody):
-        assert isinstance(start, Spin)
-        moved_body = RigidBody(matrix("inertia", body.inertia), row("moment", body.moment), motion)
-        moved_start = Spin(row("omega", start.omega), (q0, q1, q2, q3))
-    else:
-        assert isinstance(start, Impulse)
-        revolved = body.clebsch is not None
-        moved_body = ImmersedBody(
-            matrix("linear_", body.linear, revolved),
-            matrix("coupling", body.coupling, revolved, symmetric=False),
-            matrix("angular_", body.angular, revolved),
-            row("force", body.force),
-            row("couple", body.couple),
-            manufactured=motion,
-        )
-        linear, angular = row("linear", start.linear), row("angular", start.angular)
-        moved_start = Impulse(linear, angular, (q0, q1, q2, q3), row("centre", start.centre))
-    return replace(scene, body=moved_body, initial=moved_start)
+    body = scene.body.changed(changed).with_motion(waves(scene.body.manufactured))
+    return replace(scene, body=body, initial=scene.initial.changed(changed))

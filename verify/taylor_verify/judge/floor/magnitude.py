@@ -27,12 +27,13 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
+from taylor_verify.judge.velocities import has_velocities
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 
@@ -104,13 +105,13 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
             unit = float(_unit(problem, block) / path.units[block])
             columns += [rounded[name] * unit for name in _COMPONENTS[block]]
     found: Floats = np.column_stack(columns)
-    if velocities and isinstance(given.body, ImmersedBody):
+    if velocities and has_velocities(given.body):
         by_inertia = _through_velocities(given.body, path)
         found[:, :6] = np.maximum(found[:, :6], by_inertia)
     return found
 
 
-def _through_velocities(body: ImmersedBody, path: Path) -> Floats:
+def _through_velocities(body: Body, path: Path) -> Floats:
     """m at every time, shape (n, 6), in the path's units."""
     units = [path.units[block] for block in path.blocks[:2] for _ in range(3)]
     energy, M = body.energy_matrix, tensors.inverse(body.energy_matrix)
@@ -139,9 +140,8 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
     if "attitude" in path.blocks:
         found |= {name: np.full(len(path.elapsed), _COMPONENT) for name in _QUATERNION}
     if "centre" in path.blocks:
-        assert isinstance(problem.given.initial, Impulse)
         length = problem.units.length
-        start = np.array([float(c / length) for c in problem.given.initial.centre])
+        start = np.array([float(c / length) for c in problem.given.initial.parts()["centre"]])
         rows = np.abs(path.centre * float(path.units["centre"] / length) + start)
         found |= dict(zip(_COMPONENTS["centre"], rows.T, strict=True))
     return found

@@ -179,7 +179,8 @@ def _resists(form: Table, ellipsoid: Ellipsoid) -> bool:
 
 def warnings(body: Body) -> tuple[str, ...]:
     """What no real solid does, although the equations do not mind."""
-    if isinstance(body, ImmersedBody) or obeys_triangle_inequality(body.inertia):
+    tensor = body.parts().get("inertia")
+    if tensor is None or obeys_triangle_inequality(tensor):
         return ()
     return (
         "one principal moment exceeds the sum of the other two: "

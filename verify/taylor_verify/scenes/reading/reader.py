@@ -10,15 +10,13 @@ import os
 import re
 import tomllib
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.records.quantities import MAIN, MOMENTA, TRACKED, with_needs
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.motion import Spin, State
+from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
@@ -205,14 +203,7 @@ def _manufactured(
             top.fault(expected, shown(list(given)), f"body.{load}", f"remove `{load}`")
     if body is None or motion is None or initial is None:
         return None, None
-    return replace(body, manufactured=motion), _begun(initial, motion)
-
-
-def _begun(initial: State, motion: Manufactured) -> State:
-    """The state with the vectors that the motion has at its start."""
-    if isinstance(initial, Spin):
-        return replace(initial, omega=motion.start)
-    return replace(initial, linear=motion.start[:3], angular=motion.start[3:])
+    return body.with_motion(motion), initial.with_moving(motion.start)
 
 
 MODELS: Final = {

@@ -22,6 +22,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Self
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import Rung, exact_value
 from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
 from taylor_verify.solvers.solver import Solver
@@ -123,7 +124,7 @@ class FixedStep(Solver):
         )
 
     def unsuited(self, problem: Problem) -> str:
-        if problem.scene.model != "euler":
+        if not isinstance(problem.given.body, RigidBody):
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
         if problem.given.body.manufactured is not None:
             return f"{self.name} is made for a body without a moment that changes with time"

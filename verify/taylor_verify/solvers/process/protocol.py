@@ -79,13 +79,12 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal, power_of_two
 from taylor_verify.scenes.reading.table import exact_number
-from taylor_verify.scenes.tensors import apply
 from taylor_verify.solvers.solver import columns
 
 VERSION = 1
@@ -154,40 +153,15 @@ def column_names(problem: Problem) -> list[str]:
 def _data(problem: Problem) -> dict[str, Any]:
     given, rung = problem.given, problem.rung
     body, initial, clock = given.body, given.initial, given.clock
-    numbers: dict[str, dict[str, Any]]
-    if isinstance(body, RigidBody):
-        assert isinstance(initial, Spin)
-        numbers = {
-            "body": {
-                "inertia": body.inertia,
-                "inverse_inertia": body.inverse_inertia,
-                "moment": body.moment,
-            },
-            "initial": {
-                "omega": initial.omega,
-                "angular_momentum": apply(body.inertia, initial.omega),
-                "attitude": initial.attitude,
-            },
-        }
-    else:
-        assert isinstance(initial, Impulse)
-        numbers = {
-            "body": {
-                "linear": body.linear,
-                "coupling": body.coupling,
-                "angular": body.angular,
-                "force": body.force,
-                "couple": body.couple,
-            },
-            "initial": {
-                "linear_impulse": initial.linear,
-                "angular_impulse": initial.angular,
-                "attitude": initial.attitude,
-                "centre": initial.centre,
-            },
-        }
+    derived = mechanics(body).derived(body, initial)
+    numbers: dict[str, dict[str, Any]] = {
+        "body": _merged(body.parts(), derived.get("body", {})),
+        "initial": _merged(initial.parts(), derived.get("initial", {})),
+    }
     if body.manufactured is not None:
-        numbers["manufactured"] = _waves(body, body.manufactured)
+        numbers["manufactured"] = _waves(
+            mechanics(body).change(body).motion_of_momenta(body.manufactured)
+        )
     numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
     return {
         table: {key: _written(value, rung) for key, value in entries.items()}
@@ -195,10 +169,14 @@ def _data(problem: Problem) -> dict[str, Any]:
     }
 
 
-def _waves(body: Body, motion: Manufactured) -> dict[str, Any]:
+def _merged(parts: Mapping[str, Value], derived: Mapping[str, Value]) -> dict[str, Value]:
+    """The parts, and behind the first of them what follows from it."""
+    first, *rest = parts
+    return {first: parts[first], **derived, **{name: parts[name] for name in rest}}
+
+
+def _waves(motion: Manufactured) -> dict[str, Any]:
     """The motion of what a program integrates: of H = I omega, or of x and y as it stands."""
-    if isinstance(body, RigidBody):
-        motion = motion.mapped(body.inertia)
     return {
         "frequencies": [wave.frequency for wave in motion.waves],
         "cosines": [wave.cosine for wave in motion.waves],

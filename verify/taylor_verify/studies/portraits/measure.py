@@ -30,12 +30,13 @@ from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix
+from taylor_verify.studies.portraits.equations import equations
 
 DIGITS: Final = 30
 # Times at which the values are given: these parts of the span.
@@ -89,10 +90,10 @@ def portraits(names: Sequence[str], finished: Callable[[str], None]) -> list[Doc
     return documents(portrait, names, _expense, finished)
 
 
-def _expense(name: str) -> tuple[bool, int]:
+def _expense(name: str) -> tuple[int, int]:
     """The longest first: bodies in a fluid, and of these what is tracked."""
     scene = load(name)
-    return scene.model != "kirchhoff", -len(scene.track)
+    return -len(scene.initial.moving), -len(scene.track)
 
 
 def _comment(text: str) -> list[str]:
@@ -102,81 +103,6 @@ def _comment(text: str) -> list[str]:
 
 def _tracked(scene: Scene) -> list[str]:
     return [MAIN[scene.model], *(name for name in TRACKED[scene.model] if name in scene.track)]
-
-
-# The equations of motion in general form, in LaTeX.
-
-
-_EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
-_MOMENTUM: Final = r"\mathbf H = \mathsf I \boldsymbol\omega"
-_WAVES: Final = r"\mathbf a_0 + \sum_n (\mathbf a_n \cos \nu_n t + \mathbf b_n \sin \nu_n t)"
-_MADE_OMEGA: Final = (
-    rf"\boldsymbol\omega^*(t) = {_WAVES}",
-    r"\mathbf M(t) = \mathsf I \dot{\boldsymbol\omega}^* + \boldsymbol\omega^* \times "
-    r"\mathsf I \boldsymbol\omega^*",
-)
-_LINEAR: Final = r"\dot{\mathbf x} = \mathbf x \times \boldsymbol\Omega"
-_ANGULAR: Final = (
-    r"\dot{\mathbf y} = \mathbf y \times \boldsymbol\Omega + \mathbf x \times \mathbf U"
-)
-_VELOCITIES: Final = (
-    r"\mathbf U = \frac{\partial T}{\partial \mathbf x}, \quad "
-    r"\boldsymbol\Omega = \frac{\partial T}{\partial \mathbf y}"
-)
-_ENERGY: Final = (
-    r"T = \frac{1}{2} \mathbf x \cdot \mathsf A \mathbf x + \mathbf x \cdot \mathsf B \mathbf y "
-    r"+ \frac{1}{2} \mathbf y \cdot \mathsf C \mathbf y"
-)
-_MADE_IMPULSE: Final = (
-    rf"(\mathbf x^*, \mathbf y^*)(t) = {_WAVES}",
-    r"\mathbf X(t) = \dot{\mathbf x}^* - \mathbf x^* \times \boldsymbol\Omega^*",
-    r"\mathbf L(t) = \dot{\mathbf y}^* - \mathbf y^* \times \boldsymbol\Omega^* "
-    r"- \mathbf x^* \times \mathbf U^*",
-)
-_CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
-
-
-def equations(scene: Scene) -> list[str]:
-    """A line for each equation that applies to the scene: its loads, and what it tracks.
-
-    H, x, y and their rates are in body axes, as are the loads; the attitude R takes body components
-    to space components, and c is the body's origin in space.
-    """
-    body = scene.body
-    if isinstance(body, RigidBody):
-        return [
-            *_euler_equations(body),
-            *_attitude(r"\boldsymbol\omega", "attitude" in scene.track),
-        ]
-    centre = [_CENTRE] if "centre" in scene.track else []
-    return [
-        *_kirchhoff_equations(body),
-        *_attitude(r"\boldsymbol\Omega", "attitude" in scene.track),
-        *centre,
-    ]
-
-
-def _euler_equations(body: RigidBody) -> list[str]:
-    loaded = "" if body.is_free else r" + \mathbf M"
-    if body.manufactured is not None:
-        return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
-    return [f"{_EULER}{loaded}", _MOMENTUM]
-
-
-def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
-    made: tuple[str, ...] = ()
-    if body.manufactured is not None:
-        loads, made = (r" + \mathbf X(t)", r" + \mathbf L(t)"), _MADE_IMPULSE
-    else:
-        loads = (
-            r" + \mathbf X" if any(body.force) else "",
-            r" + \mathbf L" if any(body.couple) else "",
-        )
-    return [f"{_LINEAR}{loads[0]}", f"{_ANGULAR}{loads[1]}", _VELOCITIES, _ENERGY, *made]
-
-
-def _attitude(rate: str, is_tracked: bool) -> list[str]:
-    return [rf"\dot{{\mathsf R}} = \mathsf R [{rate}]_\times"] if is_tracked else []
 
 
 # The numbers of the orbit.
@@ -268,9 +194,10 @@ def _rounded(entries: Sequence[mpf]) -> list[float]:
 
 def _ellipsoid_of_inertia(scene: Scene) -> Document | None:
     """The principal moments, and for each its axis in body components; None for a body in a fluid."""
-    if not isinstance(scene.body, RigidBody):
+    inertia = scene.body.parts().get("inertia")
+    if inertia is None:
         return None
-    moments, axes = principal_frame(scene.body.inertia)
+    moments, axes = principal_frame(inertia)
     return {
         "principal_moments": _plain(moments),
         "axes": [_rounded(axis) for axis in axes],

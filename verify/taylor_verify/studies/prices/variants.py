@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.models.form import euler_equations
+from taylor_verify.models.euler import euler_equations
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -92,18 +91,14 @@ def _of(name: str, *track: str, loaded: bool = False) -> Callable[[Rung], Proble
 
 def _pushed(scene: Scene) -> Scene:
     """The same under loads that change its motion little in the time of the scene."""
-    body = scene.body
-    if isinstance(body, RigidBody):
-        return replace(scene, body=replace(body, moment=_LOAD))
-    return replace(
-        scene, body=replace(body, force=_LOAD, couple=tensors.scaled(Fraction(-1), _LOAD))
-    )
+    opposed = tensors.scaled(Fraction(-1), _LOAD)
+    loads = dict(zip(scene.body.load_names(), (_LOAD, opposed), strict=False))
+    return replace(scene, body=scene.body.with_parts(loads))
 
 
 def _with_y3(rung: Rung) -> Problem:
     """Clebsch's equations with all six impulses among the states."""
     problem = _of(_CLEBSCH)(rung)
-    assert isinstance(problem.given.body, ImmersedBody)
     states = (*problem.form.states, "y3")
     parameters = tuple(name for name in problem.form.parameters if name != "y3")
     known = problem.parameter

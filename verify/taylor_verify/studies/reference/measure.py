@@ -5,7 +5,7 @@ The numbers are those of the scene's own rational values, not of values rounded 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final
 
@@ -13,9 +13,7 @@ from taylor_verify.batch.documents import documents
 from taylor_verify.exact.printed import decimal_text, document
 from taylor_verify.exact.route import solution
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -41,7 +39,7 @@ def reference(scene: Scene) -> dict[str, Any]:
         "regime": printed["regime"],
         "route": printed["route"],
         "digits": DIGITS,
-        "body": _body(scene.body),
+        "body": _exact_parts(scene.body.parts()),
         **_manufactured(scene.body.manufactured),
         "initial": _initial(scene),
         "columns": _columns(printed["rows"]),
@@ -57,10 +55,10 @@ def references(names: Sequence[str], finished: Callable[[str], None]) -> list[di
     return documents(reference, names, _expense, finished)
 
 
-def _expense(name: str) -> tuple[int, bool]:
+def _expense(name: str) -> tuple[int, int]:
     """The longest first, so that no core is left with one at the end: what is tracked tells."""
     scene = load(name)
-    return -len(scene.track), scene.model != "kirchhoff"
+    return -len(scene.track), -len(scene.initial.moving)
 
 
 def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
@@ -83,18 +81,6 @@ def _entries(value: Sequence[Any]) -> list[str]:
 # The question, in exact text.
 
 
-def _body(body: RigidBody | ImmersedBody) -> dict[str, Any]:
-    if isinstance(body, RigidBody):
-        return {"inertia": _exact(body.inertia), "moment": _exact(body.moment)}
-    return {
-        "linear": _exact(body.linear),
-        "coupling": _exact(body.coupling),
-        "angular": _exact(body.angular),
-        "force": _exact(body.force),
-        "couple": _exact(body.couple),
-    }
-
-
 def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
     """The motion of omega, or of x and y as one vector, with the time since the start; if there is one."""
     if motion is None:
@@ -106,17 +92,13 @@ def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
 def _initial(scene: Scene) -> dict[str, Any]:
     """The state at the time ``t``; of attitude and centre, what the scene tracks."""
     state = scene.initial
-    found: dict[str, Any] = {"t": _exact(scene.clock.start)}
-    if isinstance(state, Spin):
-        found["omega"] = _exact(state.omega)
-    else:
-        found["linear_impulse"] = _exact(state.linear)
-        found["angular_impulse"] = _exact(state.angular)
-    if "attitude" in scene.track:
-        found["attitude"] = _exact(state.attitude)
-    if isinstance(state, Impulse) and "centre" in scene.track:
-        found["centre"] = _exact(state.centre)
-    return found
+    asked = {*state.MOVING, *scene.track}
+    parts = {name: value for name, value in state.parts().items() if name in asked}
+    return {"t": _exact(scene.clock.start), **_exact_parts(parts)}
+
+
+def _exact_parts(parts: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: _exact(value) for name, value in parts.items()}
 
 
 def _exact(value: Any) -> Any:

@@ -23,6 +23,7 @@ from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -173,10 +174,10 @@ def _published(scene: Scene, with_outside: bool) -> Iterator[Setting]:
         yield setting(YARDSTICK[0], rung_named(name))
     for method, tolerances in _SCIPY.items():
         yield from library([method], tolerances, f64)
-    if scene.model == "euler":
+    if isinstance(scene.body, RigidBody):
         yield from geometric(scene, f64)
         yield setting("closed-form:ellipj", f64)
-    if scene.model == "euler" and not scene.track - {"omega"}:
+    if isinstance(scene.body, RigidBody) and not scene.track - {"omega"}:
         # Seconds a solve: the scene with the fewest equations says enough.
         yield setting(_ODEFUN, f64)
     if with_outside:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.models.units import natural_units
+from taylor_verify.models.registry import natural_units
 from taylor_verify.records.precisions import FORMATS
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
@@ -81,9 +82,9 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
         found += taylor(rung)
         if rung.name == "f64":
             found += library(_SCIPY, LIBRARY_TOLERANCES, rung)
-            found += geometric(scene, rung) if scene.model == "euler" else ()
+            found += geometric(scene, rung) if isinstance(scene.body, RigidBody) else ()
             found += odefun(scene, rung)
-            found += [setting(_ELLIPJ, rung)] if scene.model == "euler" else []
+            found += [setting(_ELLIPJ, rung)] if isinstance(scene.body, RigidBody) else []
     return tuple(found)
 
 

@@ -8,9 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 STARTS: Final = 4
 # Each component is moved by up to so much of itself, in steps of a hundredth of that.
@@ -32,12 +30,6 @@ def nearby(scene: Scene, seed: int, count: int = STARTS) -> list[Scene]:
 
 
 def _moved(scene: Scene, factor: Callable[[], Fraction]) -> Scene:
-    def moved(vector: Vector) -> Vector:
-        a, b, c = vector
-        return (a * factor(), b * factor(), c * factor())
-
     start = scene.initial
-    if isinstance(start, Spin):
-        return replace(scene, initial=replace(start, omega=moved(start.omega)))
-    linear, angular = moved(start.linear), moved(start.angular)
-    return replace(scene, initial=replace(start, linear=linear, angular=angular))
+    moved = tuple(component * factor() for component in start.moving)
+    return replace(scene, initial=start.with_moving(moved))

@@ -1,0 +1,86 @@
+"""Velocities of a body whose state is in momenta; a file may have them in place of these.
+
+U   velocity of the body's origin, body axes        Omega   angular velocity, body axes
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.solution import Quantities
+from taylor_verify.records.quantities import VELOCITIES
+from taylor_verify.scenes.bodies import Body, ImmersedBody
+from taylor_verify.scenes.tensors import Matrix, transpose
+
+Array = np.ndarray[Any, Any]
+# U or Omega of a body at every sample.
+Velocity = Callable[[Body, Quantities], Any]
+
+
+@dataclass(frozen=True)
+class VelocityForms:
+    """Each velocity, by its columns, as a sum of matrices times momenta; ``mass_matrix`` leads back."""
+
+    forms: Mapping[str, Mapping[str, Matrix]]
+    mass_matrix: Matrix
+
+
+def _immersed(body: ImmersedBody) -> VelocityForms:
+    """U = A x + B y and Omega = B^T x + C y."""
+    A, B, C = body.linear, body.coupling, body.angular
+    forms = {
+        "linear_velocity": {"linear_impulse": A, "angular_impulse": B},
+        "omega": {"linear_impulse": transpose(B), "angular_impulse": C},
+    }
+    return VelocityForms(forms, body.mass_matrix)
+
+
+# By the class of a body; one that is absent has omega itself for its state.
+_FORMS: Final[Mapping[type[Body], Callable[[Any], VelocityForms]]] = {ImmersedBody: _immersed}
+
+
+def has_velocities(body: Body) -> bool:
+    """Return True if velocities stand for the momenta of this body."""
+    return type(body) in _FORMS
+
+
+def velocity_forms(body: Body) -> VelocityForms:
+    """Return the velocities of a body that has them."""
+    return _FORMS[type(body)](body)
+
+
+def angular_velocity(body: Body, quantities: Quantities) -> Any:
+    """Return Omega at every sample, from the exact coefficients."""
+    return _velocity("omega", body, quantities)
+
+
+def linear_velocity(body: Body, quantities: Quantities) -> Any:
+    """Return U at every sample, from the exact coefficients."""
+    return _velocity("linear_velocity", body, quantities)
+
+
+def velocities(body: Body, quantities: Quantities) -> dict[str, Any]:
+    """Return every velocity at every sample, by the names of their columns."""
+    return {group: _velocity(group, body, quantities) for group in velocity_forms(body).forms}
+
+
+def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
+    """Return the momenta at every sample, by the exact mass matrix: (x, y) = M (U, Omega)."""
+    M = exact_matrix(velocity_forms(body).mass_matrix)
+    both = np.concatenate([quantities[name] for name in VELOCITIES], axis=1) @ M.T
+    return {name: both[:, 3 * k : 3 * k + 3] for k, name in enumerate(body.STATE.MOVING)}
+
+
+def _velocity(group: str, body: Body, quantities: Quantities) -> Any:
+    linear = velocity_forms(body).forms[group].items()
+    return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
+
+
+def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Array:
+    """A matrix of rationals in the ambient precision."""
+    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)

@@ -1,0 +1,116 @@
+"""A solid in a fluid in the numbers of Kirchhoff's equations: A, B, C, X, L and the impulses x and y.
+
+The 21 coefficients are rounded once each; that T is the body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import final
+
+from taylor_verify.models.choice import Choice, Numbers
+from taylor_verify.models.form import Equations
+from taylor_verify.models.kirchhoff import (
+    CLEBSCH_NAMES,
+    ClebschAbout,
+    clebsch_equations,
+    kirchhoff_equations,
+)
+from taylor_verify.models.manufactured import KIRCHHOFF_INVERSE
+from taylor_verify.models.mechanics import Change, Mechanics
+from taylor_verify.models.units import Units, binary, largest, root, size
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.motion import Impulse
+from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Part, Shape, Value
+from taylor_verify.scenes.precision import Rung
+
+_LETTERS = {"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"}
+
+
+@final
+class Immersed(Mechanics[ImmersedBody, Impulse]):
+    """Kirchhoff's equations in the impulses."""
+
+    body_letters = tuple(
+        Part(_LETTERS[part.name], part.shape, part.dimension, part.is_load)
+        for part in ImmersedBody.PARTS
+    )
+    momenta = (Part("x", Shape.VECTOR, IMPULSE), Part("y", Shape.VECTOR, MOMENTUM))
+    inverse = KIRCHHOFF_INVERSE
+
+    @property
+    def equations(self) -> Equations:
+        return kirchhoff_equations
+
+    def values(self, body: ImmersedBody) -> Mapping[str, Value]:
+        return {_LETTERS[name]: value for name, value in body.parts().items()}
+
+    def body(self, values: Mapping[str, Value]) -> ImmersedBody:
+        body = ImmersedBody(**{name: values[letter] for name, letter in _LETTERS.items()})
+        if not tensors.is_positive_definite(body.energy_matrix):
+            raise ValueError("T is not positive definite")
+        return body
+
+    def change(self, body: ImmersedBody) -> Change:
+        del body
+        return Change()
+
+    def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
+        del rung
+        return chosen_equations(numbers)
+
+    def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
+        # x keeps its norm without a force; y may start at zero and take up all the energy.
+        state, motion = start.moving, body.manufactured
+        if motion is not None:
+            state = motion.reach
+        doubled_energy = tensors.dot(state, tensors.apply(body.energy_matrix, state))
+        spun_up = root(doubled_energy / largest(body.angular)) if doubled_energy else Fraction(0)
+        impulse = size(state[:3]) or binary(size(body.force) * span)
+        momentum = max(size(state[3:]), spun_up) or binary(size(body.couple) * span)
+        impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
+        rate = max(
+            largest(body.linear) * impulse**2 / momentum,
+            largest(body.coupling) * impulse,
+            largest(body.angular) * momentum,
+            Fraction(0) if motion is None else motion.highest,
+        )
+        return Units(time=1 / binary(rate), momentum=momentum, impulse=impulse)
+
+
+def chosen_equations(numbers: Numbers) -> Choice:
+    """From x, y, X, L and the 21 coefficients."""
+    axis = axis_of_symmetry(numbers)
+    loads_and_state = {n: v for n, v in numbers.items() if n[0] not in "ABC"}
+    if axis is None:
+        zeros = sum(not value for name, value in numbers.items() if name[0] in "ABC")
+        left_out = (f"{zeros} of 21 coefficients are zero",) if zeros else ()
+        return Choice(kirchhoff_equations, {**loads_and_state, **numbers}, {}, left_out)
+    across = axis % 3 + 1
+    six = {
+        name: numbers[f"{matrix}{i}{i}"]
+        for name, (matrix, i) in zip(
+            CLEBSCH_NAMES, ((m, i) for m in "ABC" for i in (across, axis)), strict=True
+        )
+    }
+    equal = tuple(n for n in "pqr" if six[n] and six[n] == six[f"{n}'"])
+    replaced = {f"{n}'": six[f"{n}'"] for n in equal}
+    kept = {n: v for n, v in six.items() if n not in replaced}
+    said = [f"Clebsch's T about axis {axis}: 6 coefficients of 21"]
+    said += [f"{n}' = {n}" for n in equal]
+    plain = axis == 3 and not equal
+    equations = clebsch_equations if plain else ClebschAbout(axis, equal)
+    return Choice(equations, {**loads_and_state, **kept}, replaced, tuple(said))
+
+
+def axis_of_symmetry(numbers: Numbers) -> int | None:
+    """The body axis about which T is exactly Clebsch's; 3 where there is a choice."""
+    if any(value for name, value in numbers.items() if name[0] in "ABC" and name[1] != name[2]):
+        return None
+    for axis in (3, 1, 2):
+        i, j = (k for k in (1, 2, 3) if k != axis)
+        if all(numbers[f"{m}{i}{i}"] == numbers[f"{m}{j}{j}"] for m in "ABC"):
+            return axis
+    return None

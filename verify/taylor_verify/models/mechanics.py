@@ -1,0 +1,130 @@
+"""Mechanics of one kind of body: the numbers of its equations, their units, and the choice of equations.
+
+The equations hold coefficients, loads and momenta under letters: K, M and H of a rigid body; A, B, C, X, L,
+x and y of a solid in a fluid. A kind of body says how its letters follow from its parts and back; the rest
+(rounding, rescaling, naming) is one loop over the letters, in problem.py and general.py.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import ClassVar, Generic, TypeVar
+
+from taylor_verify.models.choice import Choice
+from taylor_verify.models.form import Equations
+from taylor_verify.models.manufactured import Inverse
+from taylor_verify.models.units import Units
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import State
+from taylor_verify.scenes.parts import Part, Shape, Value
+from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+
+B = TypeVar("B", bound=Body)
+S = TypeVar("S", bound=State)
+
+
+def components(letter: Part, value: Value) -> dict[str, Fraction]:
+    """Return the components of a value by letter and indices; of a symmetric matrix the upper triangle."""
+    name = letter.name
+    if letter.shape is Shape.NUMBER:
+        return {name: value}
+    if letter.shape is Shape.VECTOR:
+        return {f"{name}{i}": entry for i, entry in enumerate(value, start=1)}
+    is_symmetric = letter.shape is Shape.SYMMETRIC
+    return {
+        f"{name}{i + 1}{k + 1}": value[i][k]
+        for i in range(3)
+        for k in range(i if is_symmetric else 0, 3)
+    }
+
+
+@dataclass(frozen=True)
+class Change:
+    """The momenta by the moving part of a state, z: matrix z + shift; z itself without a matrix."""
+
+    matrix: Matrix | None = None
+    inverse: Matrix = ()
+    shift: Vector = ZERO_VECTOR
+
+    def momentum(self, moving: Vector) -> Vector:
+        """Return the momenta, one after the other."""
+        if self.matrix is None:
+            return moving
+        return tensors.plus(tensors.apply(self.matrix, moving), self.shift)
+
+    def moving(self, momentum: Vector) -> Vector:
+        """Return the moving part of the state that has these momenta."""
+        if self.matrix is None:
+            return momentum
+        return tensors.apply(self.inverse, tensors.minus(momentum, self.shift))
+
+    def motion_of_momenta(self, motion: Manufactured) -> Manufactured:
+        """Return the motion of the momenta, of one of the state."""
+        if self.matrix is None:
+            return motion
+        mapped = motion.mapped(self.matrix)
+        return replace(mapped, constant=tensors.plus(mapped.constant, self.shift))
+
+    def motion_of_state(self, motion: Manufactured) -> Manufactured:
+        """Return the motion of the state, of one of the momenta."""
+        if self.matrix is None:
+            return motion
+        constant = tensors.minus(motion.constant, self.shift)
+        return replace(motion, constant=constant).mapped(self.inverse)
+
+
+class Mechanics(ABC, Generic[B, S]):
+    """What the equations of one kind of body are made of.
+
+    ``body_letters`` are its coefficients and loads, ``momenta`` the vectors that are integrated: parts
+    whose names are letters.
+    ``inverse`` makes the loads of a manufactured motion.
+    """
+
+    body_letters: ClassVar[tuple[Part, ...]]
+    momenta: ClassVar[tuple[Part, ...]]
+    inverse: ClassVar[Inverse]
+
+    @property
+    @abstractmethod
+    def equations(self) -> Equations:
+        """The general equations, with every coefficient and load."""
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The names of the components of the momenta."""
+        return tuple(f"{letter.name}{i}" for letter in self.momenta for i in (1, 2, 3))
+
+    @abstractmethod
+    def values(self, body: B) -> Mapping[str, Value]:
+        """Return the coefficients and loads of a body by letter."""
+
+    @abstractmethod
+    def body(self, values: Mapping[str, Value]) -> B:
+        """Return the body of these coefficients and loads.
+
+        Raises ValueError, whose text says what is not positive definite, where there is none.
+        """
+
+    @abstractmethod
+    def change(self, body: B) -> Change:
+        """Return how the momenta follow from omega or the impulses."""
+
+    @abstractmethod
+    def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
+        """Return the shortest equations that are exactly those of these numbers."""
+
+    @abstractmethod
+    def units(self, body: B, start: S, span: Fraction) -> Units:
+        """Return the units in which the start and the fastest rate are of order one."""
+
+    def derived(self, body: B, start: S) -> Mapping[str, Mapping[str, Value]]:
+        """Return what a program may want besides the parts, by table of the question."""
+        del body, start
+        return {}

@@ -1,0 +1,99 @@
+"""Bodies and states as named exact numbers, each with its shape and its dimension.
+
+A room that treats every number of a body alike (rounds it, counts it in other units, moves it by a unit
+roundoff, writes it down) loops over the parts and asks for no type.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from fractions import Fraction
+from typing import Any, ClassVar, NamedTuple, Self
+
+# A number, a vector or quaternion, or a matrix, by the shape of its part.
+Value = Any
+
+
+class Shape(Enum):
+    """The shape of a part; a symmetric matrix is one number less for each pair of equal entries."""
+
+    NUMBER = auto()
+    VECTOR = auto()
+    QUATERNION = auto()
+    SYMMETRIC = auto()
+    MATRIX = auto()
+
+
+class Dimension(NamedTuple):
+    """The powers of mass, length and time that a quantity is measured in."""
+
+    mass: int = 0
+    length: int = 0
+    time: int = 0
+
+    def per_time(self) -> Dimension:
+        """Return the dimension of a rate of this quantity."""
+        return Dimension(self.mass, self.length, self.time - 1)
+
+
+NUMBER = Dimension()
+LENGTH = Dimension(length=1)
+RATE = Dimension(time=-1)
+# Linear impulse, and angular momentum or impulsive couple.
+IMPULSE = Dimension(1, 1, -1)
+MOMENTUM = Dimension(1, 2, -1)
+FORCE = IMPULSE.per_time()
+MOMENT = MOMENTUM.per_time()
+
+
+@dataclass(frozen=True)
+class Part:
+    """One named quantity of a body or a state.
+
+    ``name`` is the word of documents and files, ``attribute`` the name in Python where that is another.
+    A load makes a body that is not free as soon as it is not zero.
+    """
+
+    name: str
+    shape: Shape
+    dimension: Dimension
+    is_load: bool = False
+    attribute: str = ""
+
+    @property
+    def key(self) -> str:
+        """The name of the attribute that holds the value."""
+        return self.attribute or self.name
+
+
+@dataclass(frozen=True)
+class Parted:
+    """A frozen dataclass whose exact numbers are listed in PARTS, in reading order."""
+
+    PARTS: ClassVar[tuple[Part, ...]] = ()
+
+    def parts(self) -> dict[str, Value]:
+        """Return the value of every part by its name."""
+        return {part.name: self.part(part) for part in self.PARTS}
+
+    def part(self, part: Part) -> Value:
+        """Return the value of one part."""
+        return getattr(self, part.key)
+
+    def with_parts(self, values: Mapping[str, Value]) -> Self:
+        """Return the same with other values for the parts of these names."""
+        changes = {part.key: values[part.name] for part in self.PARTS if part.name in values}
+        return replace(self, **changes)
+
+    def changed(self, change: Callable[[Part, Value], Value]) -> Self:
+        """Return the same with every part changed, whatever its shape."""
+        return self.with_parts({part.name: change(part, self.part(part)) for part in self.PARTS})
+
+
+def entrywise(change: Callable[[Fraction], Any], value: Value) -> Value:
+    """Return the value with every number in it changed."""
+    if isinstance(value, tuple):
+        return tuple(entrywise(change, entry) for entry in value)
+    return change(value)

@@ -1,0 +1,81 @@
+"""The equations of motion in general form, in LaTeX: one table by the class of a body.
+
+H, x, y and their rates are in body axes, as are the loads; the attitude R takes body components to space
+components, and c is the body's origin in space.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.scene import Scene
+
+_EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
+_MOMENTUM: Final = r"\mathbf H = \mathsf I \boldsymbol\omega"
+_WAVES: Final = r"\mathbf a_0 + \sum_n (\mathbf a_n \cos \nu_n t + \mathbf b_n \sin \nu_n t)"
+_MADE_OMEGA: Final = (
+    rf"\boldsymbol\omega^*(t) = {_WAVES}",
+    r"\mathbf M(t) = \mathsf I \dot{\boldsymbol\omega}^* + \boldsymbol\omega^* \times "
+    r"\mathsf I \boldsymbol\omega^*",
+)
+_LINEAR: Final = r"\dot{\mathbf x} = \mathbf x \times \boldsymbol\Omega"
+_ANGULAR: Final = (
+    r"\dot{\mathbf y} = \mathbf y \times \boldsymbol\Omega + \mathbf x \times \mathbf U"
+)
+_VELOCITIES: Final = (
+    r"\mathbf U = \frac{\partial T}{\partial \mathbf x}, \quad "
+    r"\boldsymbol\Omega = \frac{\partial T}{\partial \mathbf y}"
+)
+_ENERGY: Final = (
+    r"T = \frac{1}{2} \mathbf x \cdot \mathsf A \mathbf x + \mathbf x \cdot \mathsf B \mathbf y "
+    r"+ \frac{1}{2} \mathbf y \cdot \mathsf C \mathbf y"
+)
+_MADE_IMPULSE: Final = (
+    rf"(\mathbf x^*, \mathbf y^*)(t) = {_WAVES}",
+    r"\mathbf X(t) = \dot{\mathbf x}^* - \mathbf x^* \times \boldsymbol\Omega^*",
+    r"\mathbf L(t) = \dot{\mathbf y}^* - \mathbf y^* \times \boldsymbol\Omega^* "
+    r"- \mathbf x^* \times \mathbf U^*",
+)
+_CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
+
+
+def equations(scene: Scene) -> list[str]:
+    """A line for each equation that applies to the scene: its loads, and what it tracks."""
+    written, omega = _EQUATIONS[type(scene.body)]
+    return [
+        *written(scene.body),
+        *(
+            [rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times"]
+            if "attitude" in scene.track
+            else []
+        ),
+        *([_CENTRE] if "centre" in scene.track else []),
+    ]
+
+
+def _euler_equations(body: RigidBody) -> list[str]:
+    loaded = "" if body.is_free else r" + \mathbf M"
+    if body.manufactured is not None:
+        return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
+    return [f"{_EULER}{loaded}", _MOMENTUM]
+
+
+def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
+    made: tuple[str, ...] = ()
+    if body.manufactured is not None:
+        loads, made = (r" + \mathbf X(t)", r" + \mathbf L(t)"), _MADE_IMPULSE
+    else:
+        loads = (
+            r" + \mathbf X" if any(body.force) else "",
+            r" + \mathbf L" if any(body.couple) else "",
+        )
+    return [f"{_LINEAR}{loads[0]}", f"{_ANGULAR}{loads[1]}", _VELOCITIES, _ENERGY, *made]
+
+
+# For each kind of body its equations, and what its angular velocity is called in them.
+_EQUATIONS: Final[Mapping[type[Body], tuple[Callable[[Any], list[str]], str]]] = {
+    RigidBody: (_euler_equations, r"\boldsymbol\omega"),
+    ImmersedBody: (_kirchhoff_equations, r"\boldsymbol\Omega"),
+}
