@@ -60,10 +60,10 @@ def check(
         list of these: answers of one solver at several steps. States have the shape (samples, n): row k is
         the state at ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3,
         centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body,
-        start and instants. A file is CSV, NPZ, Parquet, JSON or another of solvers.formats.reading. In
+        start and instants. A file is CSV, NPZ, Parquet, JSON or another of solvers.files.formats.reading. In
         memory it is a pandas or polars DataFrame, an xarray Dataset, a dict of arrays such as
         ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
-        OdeResult, whose states are in the order above (solvers.objects). Numbers are taken exactly.
+        OdeResult, whose states are in the order above (solvers.files.objects). Numbers are taken exactly.
     rung
         The precision of the arithmetic that made the answer.
     accept_conventions
@@ -84,13 +84,13 @@ def check(
     Returns
     -------
     judge.judgement.Judgement
-        The verdicts and their record. That of a file is a judge.answer.FileJudgement, which has the
-        conventions of the file that are not the scene's; that of a list a judge.files.FilesJudgement, which
+        The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has the
+        conventions of the file that are not the scene's; that of a list a judge.series.files.FilesJudgement, which
         has the order of convergence of each quantity.
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as

@@ -46,7 +46,7 @@ def run(
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no solver or no rung, and for a tolerance that is no positive number below 1 or
@@ -104,7 +104,7 @@ def solve(
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no solver or no rung.

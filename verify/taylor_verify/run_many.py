@@ -69,7 +69,7 @@ def run_many(
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For scenes that cannot be read, with every fault of all of them.
     ValueError
         For what is no solver, no rung, no number of processes or no tolerance, and for any other argument

@@ -67,7 +67,7 @@ def select(
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         With every fault of every scene that cannot be read.
     ValueError
         For a name that is no rung, and for what is neither scenes nor rungs.

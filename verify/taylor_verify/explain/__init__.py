@@ -30,7 +30,7 @@ def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dic
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no rung.

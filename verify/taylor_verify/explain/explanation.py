@@ -51,7 +51,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     A document as ``explain --json`` prints it: the equations built and their cost, the numbers of the
     orbit, its conditioning, and each gate with the terms of its bound. A number that the run did not
     come to is None. Without heyoka the exact motion, rounded to the rung, is judged in place of an
-    answer, and a warning says so. Raises scenes.faults.Refused for a scene that cannot be read.
+    answer, and a warning says so. Raises scenes.reading.faults.Refused for a scene that cannot be read.
     """
     scene = as_scene(scene)
     found, lacking = _judged(scene, rung_named(rung))

@@ -42,12 +42,12 @@ def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile
 
     Returns
     -------
-    solvers.file.TrajectoryFile
+    solvers.files.file.TrajectoryFile
         The trajectory. Its name is the type of the object.
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For columns that cannot be judged, with every fault.
     ValueError
         For an object of another kind.

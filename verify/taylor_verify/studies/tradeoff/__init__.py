@@ -27,7 +27,7 @@ def tradeoff(
     scene
         A Scene, a path, or the name of a shipped scene.
     asked
-        The settings to measure (trade.setting.chosen makes them of names); all that there are unless given.
+        The settings to measure (studies.tradeoff.setting.chosen makes them of names); all that there are unless given.
     repeats
         The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
     seed
@@ -35,13 +35,13 @@ def tradeoff(
 
     Returns
     -------
-    trade.trade_off.TradeOff
+    studies.tradeoff.trade_off.TradeOff
         A point for each setting: errors in the judge's units, processor seconds, and the front. A setting
         that cannot run is a point that says why. It takes from seconds to minutes.
 
     Raises
     ------
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
         For fewer than one of ``repeats``.
@@ -80,15 +80,15 @@ def recommend(
 
     Returns
     -------
-    trade.recommend.Recommendation
+    studies.tradeoff.recommendation.Recommendation
         The setting with its time and its errors. Rungs on which rounding alone leaves far more are not
         measured. It takes from seconds to minutes.
 
     Raises
     ------
-    trade.recommend.OutOfReach
+    studies.tradeoff.recommendation.OutOfReach
         Where no setting reaches the error.
-    scenes.faults.Refused
+    scenes.reading.faults.Refused
         For a scene that cannot be read.
     ValueError
         For an error that is no positive number.
