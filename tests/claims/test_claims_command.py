@@ -17,7 +17,7 @@ from taylor_verify.claims.ledger import claims
 from taylor_verify.claims.numbers import CITED
 from taylor_verify.cli import main
 from taylor_verify.publish.page import MADE_BY
-from taylor_verify.studies.claims.page import CLAIMS, PAGE, SHEET, page
+from taylor_verify.studies.claims.page import CLAIMS, page
 from taylor_verify.studies.claims.study import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
@@ -110,7 +110,7 @@ def test_what_is_stored_reads_back(tmp_path: Path) -> None:
     assert {tmp_path / name: text for name, text in again.items()} == {
         path: text for path, text in texts.items() if path != tmp_path / CLAIMS.name
     }
-    assert set(again) == {PAGE, SHEET}
+    assert set(again) == {"claims.md", "tables/claims.csv"}
     publish_document(tmp_path, PUBLISHED, CLAIMS, CLAIMS.load(tmp_path))
     assert {path: path.read_text(encoding="utf-8") for path in texts} == texts
 
@@ -122,7 +122,7 @@ def test_a_number_that_is_not_finite_is_null(tmp_path: Path) -> None:
     (stored,) = json.loads((tmp_path / CLAIMS.name).read_text(encoding="utf-8"))["claims"]
     assert stored["bound"] is None
     assert stored["residual"] == {"statement": None, "transcribed": None}
-    ledger = PUBLISHED.pages(tmp_path)[PAGE].partition("## The ledger")[2]
+    ledger = PUBLISHED.pages(tmp_path)["claims.md"].partition("## The ledger")[2]
     (line,) = (line for line in ledger.splitlines() if line.startswith(f"| `{lost.id}`"))
     assert "within not finite" in line
 

@@ -17,7 +17,6 @@ from builders import reports
 from taylor_verify.cli import main
 from taylor_verify.cli import publishing as command
 from taylor_verify.records import store
-from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import archive, bulk, registry
 
@@ -36,7 +35,7 @@ def report(tmp_path: Path) -> Path:
 
 
 def missing(place: Path) -> bulk.Missing:
-    return bulk.missing(place, {name: load(name).digest for name in names()})
+    return bulk.missing(place)
 
 
 def lacking(place: Path, what: str) -> Sequence[Any]:

@@ -32,7 +32,7 @@ def lines(text: str, *words: str) -> list[str]:
 @pytest.fixture
 def page(tmp_path: Path) -> str:
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
-    return (tmp_path / extremes.PAGE).read_text(encoding="utf-8")
+    return (tmp_path / STUDY.path).read_text(encoding="utf-8")
 
 
 def test_what_is_stored_reads_back(tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_a_row_of_an_earlier_version_has_its_reason(tmp_path: Path) -> None:
     row["because"] = "the truth is wider than the bound"
     del row["reason"]
     file.write_text(json.dumps(document), encoding="utf-8")
-    assert "the truth is wider than the bound" in STUDY.pages(tmp_path)[extremes.PAGE]
+    assert "the truth is wider than the bound" in STUDY.pages(tmp_path)[STUDY.path]
     publish_document(tmp_path, STUDY, extremes.EXTREMES, extremes.EXTREMES.load(tmp_path))
     (again,) = store.read_document(file)["verdicts"]
     assert again["reason"]["remarks"][0]["text"] == row["because"] == again["because"]
@@ -107,7 +107,7 @@ def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
     """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((lucky,), ("a mismatch",)))
-    (_, reason) = lines((tmp_path / extremes.PAGE).read_text(encoding="utf-8"), "`long`")
+    (_, reason) = lines((tmp_path / STUDY.path).read_text(encoding="utf-8"), "`long`")
     assert "| pass" in reason
     assert "**vacuous**" in reason
 
@@ -137,7 +137,7 @@ def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
     """With the tables of a run beside it, and linked from both pages; without data there is none."""
     write(tmp_path, [passed("euler/a", "f64", "omega")], [])
     publish(tmp_path)
-    assert not (tmp_path / extremes.PAGE).exists()
+    assert not (tmp_path / STUDY.path).exists()
     paths = publish_document(tmp_path, STUDY, extremes.EXTREMES, study())
     before = {path: path.read_bytes() for path in paths}
     for path in paths[1:]:

@@ -144,16 +144,16 @@ def test_publish_writes_data_picture_and_page(
     assert {file.name for file in written} >= {"growth.json", "growth.md"}
     assert all(file.stat().st_size for file in written)
     assert not list((tmp_path / "local" / "growth").glob("*.json"))
-    page = (tmp_path / pages.PAGE).read_text(encoding="utf-8")
+    page = (tmp_path / STUDY.path).read_text(encoding="utf-8")
     sheet = (tmp_path / "tables/growth.csv").read_text(encoding="utf-8")
-    assert STUDY.pages(tmp_path) == {pages.PAGE: page, "tables/growth.csv": sheet}
+    assert STUDY.pages(tmp_path) == {STUDY.path: page, "tables/growth.csv": sheet}
     assert "euler/about-max-axis on f64, taylor" in page
     assert "](../figures/" in page
     # The long ensemble stands beside the others, and leaves them as they are.
     before = (tmp_path / pages.GROWTH.name).read_bytes()
     assert main([*call, "--long"]) == 0
     assert (tmp_path / pages.GROWTH.name).read_bytes() == before
-    assert "euler/generic on f64, taylor" in (tmp_path / pages.PAGE).read_text(encoding="utf-8")
+    assert "euler/generic on f64, taylor" in (tmp_path / STUDY.path).read_text(encoding="utf-8")
 
 
 @pytest.mark.usefixtures("one_short_entry")

@@ -148,14 +148,14 @@ def test_page_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     """The worst family stands first; a ratio changed in worst.json is changed on the page."""
     rows = hunt.study([worst_of("euler-a", 1.5), worst_of("euler-b", 2.5)], 60.0, 3)
     worst.WORST.write(tmp_path, rows)
-    page = STUDY.pages(tmp_path)[worst.PAGE]
+    page = STUDY.pages(tmp_path)[STUDY.path]
     assert page.index("euler-b") < page.index("euler-a")
     assert "--seconds 60 --seed 3" in page
     file = tmp_path / worst.WORST.name
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["families"][0]["ratio"] = 7.75
     file.write_text(json.dumps(stored), encoding="utf-8")
-    changed = STUDY.pages(tmp_path)[worst.PAGE]
+    changed = STUDY.pages(tmp_path)[STUDY.path]
     assert changed.index("euler-a") < changed.index("euler-b")
     assert "7.75" in changed or "7.8" in changed
 

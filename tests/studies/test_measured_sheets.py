@@ -45,8 +45,8 @@ def number(cell: str) -> float | None:
 
 def test_growth_has_a_row_for_every_exponent() -> None:
     """Each quantity of each ensemble, with the ends of its interval and its gate, to the last bit."""
-    runs = growth.GROWTH.load(measured_report()).runs
-    found = read(growth.sheet(runs))
+    study = growth.GROWTH.load(measured_report())
+    runs, found = study.runs, read(growth.sheet(study))
     asked = [(run, row) for run in runs for row in run.quantities]
     assert len(found) == len(asked)
     for cells, (run, row) in zip(found, asked, strict=True):
@@ -122,8 +122,8 @@ def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
     (study,) = registry.find([name])
     found = study.pages(measured_report())
-    assert set(found) == {study.page, f"tables/{name}.csv"}
-    end = "".join(found[study.page].split("\n## ")[-2:])
+    assert set(found) == {study.path, f"tables/{name}.csv"}
+    end = "".join(found[study.path].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end
     assert "`taylor-verify publish" in end
 

@@ -107,7 +107,7 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) 
     assert {file.suffix for file in drawn} == {".svg", ".pdf"}
     text = made.read_text(encoding="utf-8")
     sheet = flat.read_text(encoding="utf-8")
-    assert STUDY.pages(tmp_path) == {page.PAGE: text, "tables/prices.csv": sheet}
+    assert STUDY.pages(tmp_path) == {STUDY.path: text, "tables/prices.csv": sheet}
     assert page.PRICES.load(tmp_path) == measured
     for row in measured.rows:
         assert f"| {row.variant} " in text

@@ -170,10 +170,10 @@ def test_pages_and_tables_are_made_of_the_published_data(clone: Path) -> None:
 def test_the_ledger_is_made_of_the_published_rows() -> None:
     """claims.md and its sheet are those of data/claims.json, entry by entry as the ledger has them."""
     stored = claims_page.CLAIMS.load(REPORTS)
-    assert text_of(claims_page.PAGE) == claims_page.page(stored)
-    assert text_of(claims_page.SHEET) == claims_page.sheet(stored)
+    assert text_of("claims.md") == claims_page.page(stored)
+    assert text_of("tables/claims.csv") == claims_page.sheet(stored)
     assert stored.cited == dict(CITED)
-    assert text_of(claims_page.PAGE).startswith(MADE_BY)
+    assert text_of("claims.md").startswith(MADE_BY)
     told = {row.id: row.statement for row in stored.claims}
     assert told == {claim.id: claim.statement for claim in claims()}
 
@@ -183,7 +183,7 @@ def test_the_published_ledger_can_be_remade() -> None:
     """The whole ledger, run anew, makes the page that is published."""
     rows = tuple(finding.row() for finding in examined(claims()))
     stored = replace(claims_page.CLAIMS.load(REPORTS), claims=rows)
-    assert claims_page.page(stored) == text_of(claims_page.PAGE)
+    assert claims_page.page(stored) == text_of("claims.md")
 
 
 def test_data_are_laid_out_as_the_code_writes_them() -> None:
@@ -260,7 +260,7 @@ def test_every_published_picture_can_be_drawn_again() -> None:
 
 def test_the_gallery_shows_every_picture() -> None:
     """The page has the pictures of the gallery, in their order, and names its maker."""
-    page = REPORTS / gallery.PAGE
+    page = REPORTS / "figures/README.md"
     stems = [one.picture.stem for one in gallery.shown(gallery.Stored(reports.for_gallery()))]
     assert first_line(page) == first_line_of(gallery.page([]))
     assert re.findall(r"\]\(([\w-]+)\.svg\)", page.read_text(encoding="utf-8")) == stems

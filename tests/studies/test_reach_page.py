@@ -72,9 +72,9 @@ def test_page_is_made_of_what_was_stored(tmp_path: Path) -> None:
     paths = publish_document(tmp_path, STUDY, page.REACH, study())
     assert {path.suffix for path in paths} == {".json", ".md", ".csv", ".svg", ".pdf"}
     assert all(path.exists() for path in paths)
-    text = (tmp_path / page.PAGE).read_text(encoding="utf-8")
+    text = (tmp_path / STUDY.path).read_text(encoding="utf-8")
     sheet = (tmp_path / "tables/reach.csv").read_text(encoding="utf-8")
-    assert STUDY.pages(tmp_path) == {page.PAGE: text, "tables/reach.csv": sheet}
+    assert STUDY.pages(tmp_path) == {STUDY.path: text, "tables/reach.csv": sheet}
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines()]
     assert ["f32", "1", "1e-2", "1e-1", NOTHING, "1e-2", "1e-1", NOTHING] in cells
     assert ["f64", "100", "1e-3 →", "1e-3 →", "1e-1", "1e-3 →", "1e-3 →", "1e-1"] in cells
@@ -113,7 +113,7 @@ def test_the_verb_measures_and_writes(
     monkeypatch.setattr(reach, "study", made)
     assert main(["publish", "reach", "--from", str(tmp_path), "--json"]) == 0
     out, err = capsys.readouterr()
-    assert str(tmp_path / page.PAGE) in json.loads(out)["written"]
+    assert str(tmp_path / STUDY.path) in json.loads(out)["written"]
     assert "axis d = 1e-1" in err
     assert page.REACH.load(tmp_path) == study()
 

@@ -45,7 +45,7 @@ class Sum:
     value: float
 
 
-SUM = Stored(f"{store.FOLDER}/smallest.json", Sum, "smallest")
+SUM = Stored(Sum, "smallest")
 
 
 def measure(folder: Path, progress: Progress, terms: int = 3) -> Measured:
@@ -58,13 +58,13 @@ def measure(folder: Path, progress: Progress, terms: int = 3) -> Measured:
     return Measured(SUM.write(folder, Sum(terms, 0.5 * terms)), ["it is odd"] * odd, odd)
 
 
-def texts(document: Sum, folder: Path) -> dict[str, str]:
-    del folder
-    row = f"{document.terms},{log(document.terms)}"
-    return {
-        "tables/smallest.md": f"{MADE_BY}\n# {document.value}\n",
-        "tables/smallest.csv": f"terms,logarithm\n{row}\n",
-    }
+def page(document: Sum, folder: Path) -> str:
+    assert folder.is_dir()
+    return f"{MADE_BY}\n# {document.value}\n"
+
+
+def sheet(document: Sum) -> str:
+    return f"terms,logarithm\n{document.terms},{log(document.terms)}\n"
 
 
 def draw(document: Sum) -> list[Picture]:
@@ -91,9 +91,9 @@ SMALLEST = Study(
     title="the smallest study there can be",
     duration="no time",
     measure=measure,
-    page="tables/smallest.md",
     find=SUM.find,
-    texts=texts,
+    page=page,
+    sheet=sheet,
     draw=draw,
     needs_heyoka=False,
     options=(Option("terms", "so many terms", int),),
@@ -170,13 +170,13 @@ def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
     SUM.write(folder, Sum(2, 7.0))
     store.write(folder, [], [])
     assert call(folder, "--pages") == 0
-    assert (folder / SMALLEST.page).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
+    assert (folder / SMALLEST.path).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
     assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
     index = (folder / "tables" / "README.md").read_text(encoding="utf-8")
     assert "| [smallest.md](smallest.md) | [csv](smallest.csv) |" in index
     (folder / SUM.name).unlink()
     assert call(folder) == 0
-    assert not (folder / SMALLEST.page).exists()
+    assert not (folder / SMALLEST.path).exists()
 
 
 def test_the_index_is_made_anew_after_a_measurement(folder: Path) -> None:
@@ -272,7 +272,7 @@ def test_every_study_has_a_name_of_its_own() -> None:
     assert all((place / name / "study.py").is_file() for name in names if name != "smallest")
     folders = {file.parent.name for file in place.glob("*/study.py")}
     assert folders == set(names) - {"smallest"}
-    for kind in ("page", "options"):
+    for kind in ("path", "options"):
         values = [value for study in STUDIES if (value := getattr(study, kind))]
         assert len(set(values)) == len(values)
 
@@ -286,6 +286,7 @@ def test_a_study_is_found_once() -> None:
 
 def test_the_paper_has_every_page_that_is_read() -> None:
     """Each page of a study in tables, and the ledger; none of a folder's own index."""
-    own = {study.page for study in STUDIES if study.page.startswith("tables/")} - {SMALLEST.page}
-    assert own | {"claims.md"} <= set(paper.PAGES)
+    own = {study.path for study in registry.others() if "README" not in study.path}
+    own -= {SMALLEST.path}
+    assert own | {"tables/accuracy.md", "claims.md"} <= set(paper.PAGES)
     assert {page.path for page in contents.others(Path(), paper.PAGES)} >= own

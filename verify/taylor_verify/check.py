@@ -60,8 +60,8 @@ def check(
         list of these: answers of one solver at several steps. States have the shape (samples, n): row k is
         the state at ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3,
         centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body,
-        start and instants. A file is CSV, NPZ, Parquet, JSON or another of solvers.files.formats.reading. In
-        memory it is a pandas or polars DataFrame, an xarray Dataset, a dict of arrays such as
+        start and instants. A file is CSV, NPZ, Parquet, JSON or another of
+        solvers.files.formats.reading. In memory it is a pandas or polars DataFrame, an xarray Dataset, a dict of arrays such as
         ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
         OdeResult, whose states are in the order above (solvers.files.objects). Numbers are taken exactly.
     rung
@@ -84,9 +84,9 @@ def check(
     Returns
     -------
     judge.judgement.Judgement
-        The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has the
-        conventions of the file that are not the scene's; that of a list a judge.series.files.FilesJudgement, which
-        has the order of convergence of each quantity.
+        The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has
+        the conventions of the file that are not the scene's; that of a list a
+        judge.series.files.FilesJudgement, which has the order of convergence of each quantity.
 
     Raises
     ------

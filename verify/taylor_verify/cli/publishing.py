@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -65,13 +64,11 @@ def _add_options_of_studies(verb: argparse.ArgumentParser) -> None:
     from taylor_verify.studies.registry import STUDIES
 
     for study in STUDIES:
-        own = verb.add_argument_group(f"options of {study.name}") if study.options else None
-        for option in study.options if own else ():
-            given: dict[str, Any] = (
-                {"metavar": option.metavar} if option.read else {"action": "store_true"}
-            )
-            assert own is not None
-            own.add_argument(f"--{option.name}", help=option.help, **given)
+        if study.options:
+            own = verb.add_argument_group(f"options of {study.name}")
+            for option in study.options:
+                given = {"metavar": option.metavar} if option.read else {"action": "store_true"}
+                own.add_argument(f"--{option.name}", help=option.help, **given)  # type: ignore[arg-type]
 
 
 def publish(options: argparse.Namespace) -> Answer:
@@ -82,29 +79,29 @@ def publish(options: argparse.Namespace) -> Answer:
         studies = find(options.studies)
     except UnknownStudy as error:
         raise WrongCall(str(error)) from error
-    others = {"list", "pages", "paper", "missing", "archive", "site"}
-    if studies and (other := next(filter(partial(getattr, options), sorted(others)), None)):
+    others = ("list", "pages", "paper", "missing", "archive", "site")
+    other = next((name for name in others if getattr(options, name)), "")
+    if studies and other:
         raise WrongCall(f"expected studies or --{other}, got both @ publish")
     given = {study.name: _options_of(study, options, study in studies) for study in STUDIES}
-    if options.list:
+    if other == "list":
         return _listed(STUDIES)
-    folder = reports_folder(options.folder, measures=any(s.name != "gallery" for s in studies))
-    if options.site is not None:
-        return _site(folder, str(writable(options.site, "--site")))
-    if options.archive is not None:
-        return _packed(Path(folder), writable(options.archive, "--archive"))
+    folder = Path(reports_folder(options.folder, any(study.name != "gallery" for study in studies)))
+    if other == "site":
+        return _site(folder, writable(options.site, "--site"))
+    if other == "archive":
+        return _packed(folder, writable(options.archive, "--archive"))
     for study in studies:
         _require_heyoka(study)
-    if studies or options.paper or options.missing:
-        place = writable(folder, "--from")
-        with alone_in(place, "--from"):
-            if studies:
-                return _measured(studies, place, given)
-            return _rendered(place) if options.paper else make_missing(place)
-    with _stored(folder), alone_in(Path(folder) if Path(folder).is_dir() else None, "--from"):
-        from taylor_verify.studies.report import publish as made
-
-        return files_written(made(folder))
+    if studies or other in {"paper", "missing"}:
+        writable(str(folder), "--from")
+    makes_a_folder = studies or other in {"paper", "missing"} or folder.is_dir()
+    with alone_in(folder if makes_a_folder else None, "--from"):
+        if studies:
+            return _measured(studies, folder, given)
+        if other == "missing":
+            return make_missing(folder)
+        return _rendered(folder) if other == "paper" else _pages(folder)
 
 
 def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) -> dict[str, Any]:
@@ -115,9 +112,8 @@ def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) 
         if value is None or value is False:
             continue
         if not is_asked:
-            raise WrongCall(
-                f"expected --{option.name} with `publish {study.name}`, got it without @ publish"
-            )
+            expected = f"expected --{option.name} with `publish {study.name}`"
+            raise WrongCall(f"{expected}, got it without @ publish")
         try:
             given[option.name] = option.read(value) if option.read else value
         except ValueError as error:
@@ -137,9 +133,7 @@ def _listed(studies: Sequence[Study[Any]]) -> Answer:
     """Return the studies, what each is, how long it takes and what it asks for."""
     rows = [
         {
-            "name": study.name,
-            "title": study.title,
-            "duration": study.duration,
+            **{name: getattr(study, name) for name in ("name", "title", "duration")},
             "needs_heyoka": study.needs_heyoka,
             "options": {option.name: option.help for option in study.options},
         }
@@ -162,9 +156,8 @@ def _measured(
     from taylor_verify.studies.report import publish_index
     from taylor_verify.studies.study import NotMeasured
 
+    answer = files_written([])
     written: list[Path] = []
-    messages: list[str] = []
-    status = PASS
     for study in studies:
         if len(studies) > 1:
             say(f"{study.name}: {study.title} ({study.duration})")
@@ -174,11 +167,11 @@ def _measured(
             raise WrongCall(f"{error} @ publish {study.name}") from error
         made = study.publish(folder)
         written += [*found.written, *made.written]
-        messages += [*found.messages, *made.messages]
-        status = graver(status, found.status)
+        messages = [*answer.messages, *found.messages, *made.messages]
+        answer = answer._replace(status=graver(answer.status, found.status), messages=messages)
     if (folder / store.FOLDER / store.VERDICTS).exists():
         written += publish_index(folder)
-    return files_written(written)._replace(status=status, messages=messages)
+    return files_written(written)._replace(status=answer.status, messages=answer.messages)
 
 
 def _progress() -> Progress:
@@ -188,8 +181,8 @@ def _progress() -> Progress:
 
 
 @contextmanager
-def _stored(folder: Path | str) -> Iterator[None]:
-    """Tell what a report folder lacks or has wrong as a wrong call."""
+def _wrong_calls(folder: Path, option: str) -> Iterator[None]:
+    """Tell what a report folder lacks or has wrong, and a package that is missing, as a wrong call."""
     from taylor_verify.records import store
 
     try:
@@ -199,41 +192,38 @@ def _stored(folder: Path | str) -> Iterator[None]:
             f"expected what `run --out {folder}` writes ({store.FOLDER}/{store.VERDICTS} first of all), "
             f"got no such file @ {error.filename}"
         ) from error
-    except ValueError as error:
-        raise WrongCall(str(error)) from error
-
-
-def _made_with(option: str, what: Callable[[], list[Path]]) -> Answer:
-    """Return the answer of a rendering, whose packages may be missing."""
-    try:
-        return files_written(what())
     except ImportError as error:
         name = error.name or error
-        raise WrongCall(
-            f"expected {name} (pip install it), got no such package @ {option}"
-        ) from error
+        raise WrongCall(f"expected {name} (pip install it), got no such package{option}") from error
     except ValueError as error:
-        raise WrongCall(f"{error} @ {option}") from error
+        raise WrongCall(f"{error}{option}") from error
+
+
+def _pages(folder: Path) -> Answer:
+    from taylor_verify.studies import report
+
+    with _wrong_calls(folder, ""):
+        return files_written(report.publish(folder))
 
 
 def _rendered(folder: Path) -> Answer:
-    """The pages that are there, as LaTeX and HTML."""
-    from taylor_verify.studies import paper
+    with _wrong_calls(folder, " @ --paper"):
+        from taylor_verify.studies import paper
 
-    return _made_with("--paper", partial(paper.write, folder))
+        return files_written(paper.write(folder))
 
 
-def _site(folder: str, target: str) -> Answer:
-    """The pages that a browser shows, from what the folder holds already."""
-
-    def build() -> list[Path]:
+def _site(folder: Path, target: Path) -> Answer:
+    with _wrong_calls(folder, " @ --site"):
         from taylor_verify.studies.site.builder import build
 
-        return build(folder, target)
-
-    with _stored(folder):
-        answer = _made_with("--site", build)
-        return answer._replace(messages=_missing_from_pages(Path(folder)))
+        made = files_written(build(folder, target))
+    lacking = _missing(folder).data
+    said = (
+        f"pages of the site are without {lacking}: `taylor-verify publish --missing` makes what "
+        f"{folder} lacks ({_TIME})"
+    )
+    return made._replace(messages=[said] if lacking else [])
 
 
 def make_missing(folder: Path) -> Answer:
@@ -250,30 +240,17 @@ def _packed(folder: Path, target: Path) -> Answer:
     from taylor_verify.studies.archive import pack
 
     lacking = _missing(folder)
-    if lacking.data or lacking.renderings:
-        renderings = f"{len(lacking.renderings)} renderings" if lacking.renderings else ""
+    renderings = f"{len(lacking.renderings)} renderings" if lacking.renderings else ""
+    if without := ", ".join(filter(None, (lacking.data, renderings))):
         raise WrongCall(
             "expected a whole report (`publish --missing`, then `publish --paper`), got one without "
-            f"{', '.join(filter(None, (lacking.data, renderings)))} @ --archive"
+            f"{without} @ --archive"
         )
     return files_written(pack(folder, target, f"{_ARCHIVE}-{__version__}"))
 
 
-def _missing_from_pages(folder: Path) -> list[str]:
-    """A message about the data that the pages of the site are without; none for a whole folder."""
-    lacking = _missing(folder)
-    if not lacking.data:
-        return []
-    return [
-        f"pages of the site are without {lacking.data}: `taylor-verify publish --missing` makes "
-        f"what {folder} lacks ({_TIME})"
-    ]
-
-
 def _missing(folder: Path) -> Missing:
-    from taylor_verify.scenes.library import names
-    from taylor_verify.scenes.reading.reader import load
     from taylor_verify.studies import bulk
 
-    with _stored(folder):
-        return bulk.missing(folder, {name: load(name).digest for name in names()})
+    with _wrong_calls(folder, ""):
+        return bulk.missing(folder)

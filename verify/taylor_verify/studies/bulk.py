@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import store
+from taylor_verify.scenes.library import names
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.studies import figures
 from taylor_verify.studies.paper import PAGES
 from taylor_verify.studies.registry import STUDIES
@@ -44,13 +46,14 @@ class Missing:
             yield from bulk.make(self.folder, lacking, progress)
 
 
-def missing(folder: Path, digests: Mapping[str, str]) -> Missing:
+def missing(folder: Path, digests: Mapping[str, str] | None = None) -> Missing:
     """Return what ``folder`` lacks, or has of other verdicts or of another text of a scene.
 
-    ``digests`` has the SHA-256 of every scene that can be run. Raises OSError for a folder without
-    verdicts, and ValueError for files that hold something else.
+    ``digests`` has the SHA-256 of every scene that can be run; of those that are shipped unless given.
+    Raises OSError for a folder without verdicts, and ValueError for files that hold something else.
     """
-    report = Published(folder, store.load(folder), digests)
+    known = {name: load(name).digest for name in names()} if digests is None else digests
+    report = Published(folder, store.load(folder), known)
     found = ((bulk, bulk.lacking(report)) for study in STUDIES for bulk in study.bulk)
     return Missing(
         folder,

@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from taylor_verify.publish.cells import NOTHING
-from taylor_verify.studies.registry import STUDIES
+from taylor_verify.studies.registry import others as studies_beside
 
 
 @dataclass(frozen=True)
@@ -53,5 +53,5 @@ def others(folder: Path, made: Collection[str] = ()) -> list[Page]:
     def is_there(path: str) -> bool:
         return path in made or (folder / path).exists()
 
-    pages = (*(Page(study.page, study.title) for study in STUDIES if study.page), *_BESIDES)
+    pages = (*(Page(study.path, study.title) for study in studies_beside()), *_BESIDES)
     return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]

@@ -23,7 +23,7 @@ PAGES: Final = (
     "tables/README.md",
     *("tables/accuracy.md", "tables/attainable.md", "tables/conserved.md"),
     # The README of another folder is an index of files, and no page to be read.
-    *(study.page for study in registry.STUDIES if study.page and "README" not in study.page),
+    *(study.path for study in registry.others() if "README" not in study.path),
     "tables/traps.md",
 )
 

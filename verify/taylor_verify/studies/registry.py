@@ -61,6 +61,11 @@ def _fault(name: str, known: list[str]) -> str:
     return f"expected a study, got {name!r}; {hint}"
 
 
+def others() -> list[Study[Any]]:
+    """Return the studies with a page beside those of accuracy, which are the report itself."""
+    return [study for study in STUDIES if study.path and study is not ACCURACY]
+
+
 def pictures(folder: Path) -> list[Picture]:
     """Return every picture of a report folder whose data are there.
 

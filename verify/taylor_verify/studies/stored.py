@@ -21,16 +21,21 @@ def made_by(study: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Stored(Generic[Document]):
-    """The place of a document below a report folder, its type, and the study that writes it.
+    """A type of documents, and the study that writes one: to data/NAME.json, after the study unless given.
 
     ``fields`` makes keys and values of a document, ``reader`` a document of a file.
     """
 
-    name: str
     kind: type[Document]
     study: str
     fields: Callable[[Document], Mapping[str, Any]] = complete
     reader: Callable[[Path, type[Document]], Document] = read
+    stem: str = ""
+
+    @property
+    def name(self) -> str:
+        """The path of the document below the folder."""
+        return f"{store.FOLDER}/{self.stem or self.study}.json"
 
     def write(self, folder: Path, document: Document) -> list[Path]:
         """Store a document below ``folder``. Raises OSError."""

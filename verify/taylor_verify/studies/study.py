@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
@@ -132,28 +132,38 @@ class Study(Generic[Document]):
     measure
         ``measure(folder, progress, **options)`` writes what it finds below the folder. It imports what it
         needs when it is called: the list of all studies stays light. Raises NotMeasured.
-    page
-        The path of the page that indexes link to.
     find
         Returns what is stored below a folder, None where nothing is.
-    texts
-        Returns every page and sheet made of a document, by its path below the folder, which is given too: a
-        page shows the pictures that lie there.
+    page
+        Makes the page of a document. It is given the folder too, and shows the pictures that lie there.
+    sheet
+        Makes the sheet of a document, with every digit.
+    beside
+        Further pages and sheets, by their paths below the folder.
     draw
         Returns the pictures made of a document.
+    place
+        The path of the page, where it is not tables/NAME.md.
     """
 
     name: str
     title: str
     duration: str
     measure: Callable[..., Measured]
-    page: str = ""
     find: Callable[[Path], Document | None] = _no_document
-    texts: Callable[[Document, Path], Mapping[str, str]] = lambda document, folder: {}
+    page: Callable[[Document, Path], str] | None = None
+    sheet: Callable[[Document], str] | None = None
+    beside: Mapping[str, Callable[[Document], str]] = field(default_factory=dict)
     draw: Callable[[Document], Iterable[Picture]] = lambda document: ()
+    place: str = ""
     needs_heyoka: bool = True
     options: tuple[Option, ...] = ()
     bulk: tuple[Bulk, ...] = ()
+
+    @property
+    def path(self) -> str:
+        """The page that indexes link to, below the folder; empty for a study without one."""
+        return self.place or (f"tables/{self.name}.md" if self.page else "")
 
     def pages(self, folder: Path) -> dict[str, str]:
         """Return pages and sheets of what is stored below ``folder``; nothing where nothing is.
@@ -189,4 +199,8 @@ class Study(Generic[Document]):
         file = data / f"{self.name}.json"
         place = file if file.exists() else data
         with store.expecting(f"what `publish {self.name}` writes", place):
-            return dict(self.texts(document, folder))
+            texts = {path: made(document) for path, made in self.beside.items()}
+            if self.sheet:
+                texts = {f"tables/{self.name}.csv": self.sheet(document), **texts}
+            page = self.page(document, folder) if self.page else ""
+            return {self.path: page, **texts} if page else texts

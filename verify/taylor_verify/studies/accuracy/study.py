@@ -40,24 +40,10 @@ def _find(folder: Path) -> Verdicts | None:
     return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
 
 
-def _texts(verdicts: Verdicts, folder: Path) -> dict[str, str]:
-    del folder
-    return {
-        "tables/accuracy.md": page.accuracy(verdicts),
-        "tables/accuracy.csv": sheet.accuracy(verdicts),
-        "tables/attainable.md": attainable(verdicts),
-        "tables/attainable.csv": sheet.attainable(verdicts),
-        "tables/conserved.md": page.conserved(verdicts),
-        "tables/conserved.csv": sheet.conserved(verdicts),
-        **_gates(verdicts),
-    }
-
-
 # What the repository leaves out: every sample of every run, and every verdict with its reason.
 
 
-def _gates(verdicts: Verdicts) -> dict[str, str]:
-    return {"tables/gates.md": page.gates(verdicts), "tables/gates.csv": sheet.gates(verdicts)}
+_GATES: Final = {"tables/gates.md": page.gates, "tables/gates.csv": sheet.gates}
 
 
 def _gates_lacking(report: Published) -> list[tuple[str, str]]:
@@ -67,7 +53,8 @@ def _gates_lacking(report: Published) -> list[tuple[str, str]]:
         file = report.folder / name
         return file.read_text(encoding="utf-8") if file.exists() else None
 
-    return [(name, text) for name, text in _gates(report.verdicts).items() if current(name) != text]
+    texts = {name: made(report.verdicts) for name, made in _GATES.items()}
+    return [(name, text) for name, text in texts.items() if current(name) != text]
 
 
 def _write_gates(
@@ -116,11 +103,17 @@ STUDY: Final = Study(
     duration="two minutes, all cores",
     measure=_measure,
     find=_find,
-    texts=_texts,
+    page=lambda verdicts, folder: page.accuracy(verdicts),
+    sheet=sheet.accuracy,
+    beside={
+        "tables/attainable.md": attainable,
+        "tables/attainable.csv": sheet.attainable,
+        "tables/conserved.md": page.conserved,
+        "tables/conserved.csv": sheet.conserved,
+        **_GATES,
+    },
     bulk=(
-        Bulk(
-            "tables of gates", ("tables/gates.csv", "tables/gates.md"), _gates_lacking, _write_gates
-        ),
+        Bulk("tables of gates", tuple(_GATES), _gates_lacking, _write_gates),
         Bulk("records of runs", ("data/records/",), _runs_lacking, _add_records),
     ),
 )

@@ -8,22 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
-from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.claims.document import ClaimRow, ClaimsStudy, Verdict
 from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.studies.stored import Stored
 
-PAGE: Final = "claims.md"
-SHEET: Final = "tables/claims.csv"
-CLAIMS: Final = Stored(
-    f"{store.FOLDER}/claims.json", ClaimsStudy, "claims", lambda study: study.document()
-)
+CLAIMS: Final = Stored(ClaimsStudy, "claims", lambda study: study.document())
 
 _INTRODUCTION: Final = (
     "Every numbered equation of two classic texts, and every sentence of theirs that claims something, "
@@ -41,7 +35,7 @@ _HOW: Final = (
 _REMAKE: Final = (
     "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "
     '`taylor-verify claims "hydromechanics 49 (17)"` shows one in full, and `--json` the same as data. '
-    f"`taylor-verify publish claims` rewrites this page, its [CSV]({SHEET}) and "
+    f"`taylor-verify publish claims` rewrites this page, its [CSV](tables/claims.csv) and "
     f"[claims.json]({CLAIMS.name}), which also names the versions, the processor and the command."
 )
 
@@ -69,12 +63,6 @@ def page(study: ClaimsStudy) -> str:
         "## To remake this",
         _REMAKE,
     )
-
-
-def texts(study: ClaimsStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below a folder."""
-    del folder
-    return {PAGE: page(study), SHEET: sheet(study)}
 
 
 def _of(rows: Sequence[ClaimRow], *verdicts: Verdict) -> list[ClaimRow]:

@@ -32,8 +32,9 @@ STUDY: Final = Study(
     title="every numbered equation of the two source texts, checked; errata in front",
     duration="a minute",
     measure=_measure,
-    page=page.PAGE,
     find=CLAIMS.find,
-    texts=page.texts,
+    page=lambda study, folder: page.page(study),
+    sheet=page.sheet,
+    place="claims.md",
     needs_heyoka=False,
 )

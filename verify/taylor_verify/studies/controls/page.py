@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure
@@ -25,7 +24,6 @@ from taylor_verify.studies.controls.proof import (
 )
 from taylor_verify.studies.controls.stored import CONTROLS
 
-PAGE: Final = "tables/controls.md"
 # Where the short table stands in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of controls -->"
@@ -67,12 +65,6 @@ _HOW: Final = (
     "solver says of itself.",
     "Defects that fewer conserved quantities see come first.",
 )
-
-
-def texts(study: ControlsStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below a folder."""
-    del folder
-    return {PAGE: page(study), "tables/controls.csv": sheet(study)}
 
 
 def page(study: ControlsStudy) -> str:

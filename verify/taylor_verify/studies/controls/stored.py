@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_study
@@ -38,6 +37,4 @@ def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
     return study
 
 
-CONTROLS: Final = Stored(
-    f"{store.FOLDER}/controls.json", ControlsStudy, "controls", _fields, _checked
-)
+CONTROLS: Final = Stored(ControlsStudy, "controls", _fields, _checked)

@@ -23,7 +23,7 @@ STUDY: Final = Study(
     title="what each gate sees of solvers that were broken on purpose",
     duration="a minute",
     measure=_measure,
-    page=page.PAGE,
     find=CONTROLS.find,
-    texts=page.texts,
+    page=lambda study, folder: page.page(study),
+    sheet=page.sheet,
 )

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.records import store
 from taylor_verify.studies.enclosure.document import EnclosureStudy
 from taylor_verify.studies.enclosure.picture import picture
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.study import Measured, Progress, Study
 
-ENCLOSURE: Final = Stored(f"{store.FOLDER}/enclosure.json", EnclosureStudy, "enclosure")
+ENCLOSURE: Final = Stored(EnclosureStudy, "enclosure")
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:

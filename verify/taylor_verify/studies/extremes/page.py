@@ -10,7 +10,6 @@ is a mismatch: the page tells the two apart and shows both.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.publish.cells import NOTHING, figure, judged, peak, ratio, reason, word
@@ -24,8 +23,6 @@ from taylor_verify.records.verdict import Verdict, read_study
 from taylor_verify.studies.accuracy import sheet as sheets
 from taylor_verify.studies.extremes.document import ExtremesStudy
 from taylor_verify.studies.stored import Stored
-
-PAGE: Final = "tables/extremes.md"
 
 _FOLDER: Final = "extremes/"
 
@@ -55,15 +52,7 @@ def _fields(study: ExtremesStudy) -> dict[str, Any]:
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
-EXTREMES: Final = Stored(
-    f"{store.FOLDER}/extremes.json", ExtremesStudy, "extremes", _fields, read_study
-)
-
-
-def texts(study: ExtremesStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below a folder."""
-    del folder
-    return {PAGE: page(study), "tables/extremes.csv": sheet(study)}
+EXTREMES: Final = Stored(ExtremesStudy, "extremes", _fields, read_study)
 
 
 # The page.

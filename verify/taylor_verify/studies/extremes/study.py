@@ -25,7 +25,7 @@ STUDY: Final = Study(
     title="what becomes of the hardest scenes, and what was expected of each",
     duration="minutes, all cores",
     measure=_measure,
-    page=page.PAGE,
     find=EXTREMES.find,
-    texts=page.texts,
+    page=lambda study, folder: page.page(study),
+    sheet=page.sheet,
 )

@@ -20,7 +20,6 @@ from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies import figures
 from taylor_verify.studies.controls import picture as shifts
 from taylor_verify.studies.controls.stored import CONTROLS
 from taylor_verify.studies.gallery.pictures import (
@@ -32,8 +31,6 @@ from taylor_verify.studies.gallery.pictures import (
 )
 from taylor_verify.studies.portraits import stored as portraits
 from taylor_verify.studies.reference import page as reference_files
-
-PAGE: Final = f"{figures.FOLDER}/README.md"
 
 _SOLVER: Final = "taylor"
 # The rung whose samples are marked on a polhode.
@@ -126,13 +123,6 @@ def gallery(folder: Path) -> list[Shown]:
     """Return every picture of the gallery. Raises FileNotFoundError and ValueError as `Stored` does."""
     with store.expecting("data of the gallery", folder / store.FOLDER):
         return list(shown(Stored(folder)))
-
-
-def texts(found: Sequence[Shown], folder: Path) -> dict[str, str]:
-    """Return the page of those that are drawn below ``folder`` already, by its path."""
-    place = folder / figures.FOLDER
-    drawn = [one for one in found if (place / f"{one.picture.stem}.svg").exists()]
-    return {PAGE: page(drawn)} if drawn else {}
 
 
 def shown(stored: Stored) -> Iterator[Shown]:

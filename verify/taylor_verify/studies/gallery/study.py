@@ -46,10 +46,13 @@ def _find(folder: Path) -> list[Shown] | None:
         return None
 
 
-def _texts(found: list[Shown], folder: Path) -> dict[str, str]:
-    from taylor_verify.studies.gallery.page import texts
+def _page(found: list[Shown], folder: Path) -> str:
+    """Return the page of those that are drawn already; nothing without any."""
+    from taylor_verify.studies.gallery.page import page
 
-    return texts(found, folder)
+    drawn = folder / FOLDER
+    shown = [one for one in found if (drawn / f"{one.picture.stem}.svg").exists()]
+    return page(shown) if shown else ""
 
 
 STUDY: Final = Study(
@@ -57,9 +60,9 @@ STUDY: Final = Study(
     title="pictures of some motions, and of their errors",
     duration="seconds",
     measure=_measure,
-    page=f"{FOLDER}/README.md",
     find=_find,
-    texts=_texts,
+    page=_page,
+    place=f"{FOLDER}/README.md",
     draw=lambda found: [one.picture for one in found],
     needs_heyoka=False,
 )

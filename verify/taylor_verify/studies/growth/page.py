@@ -15,7 +15,6 @@ from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records import store
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.studies import figures
@@ -29,9 +28,8 @@ from taylor_verify.studies.growth.document import (
 from taylor_verify.studies.growth.picture import picture
 from taylor_verify.studies.stored import Stored
 
-GROWTH: Final = Stored(f"{store.FOLDER}/growth.json", GrowthStudy, "growth")
-LONG: Final = Stored(f"{store.FOLDER}/growth-long.json", GrowthStudy, "growth")
-PAGE: Final = "tables/growth.md"
+GROWTH: Final = Stored(GrowthStudy, "growth")
+LONG: Final = Stored(GrowthStudy, "growth", stem="growth-long")
 
 _WHAT: Final = (
     "If every rounding is independent of all others, what they do to a conserved quantity is a random "
@@ -67,11 +65,6 @@ _LEANING: Final = (
     "hangs on the size of the other factor. An orbit that favours a size has a bias then, which no "
     "tolerance removes: round numbers make a handy example and a hard one."
 )
-
-
-def texts(study: GrowthStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below ``folder``."""
-    return {PAGE: page(study, folder), "tables/growth.csv": sheet(study.runs)}
 
 
 def find(folder: Path) -> GrowthStudy | None:
@@ -214,9 +207,9 @@ _SHEET: Final = (
 )
 
 
-def sheet(runs: Iterable[Ensemble]) -> str:
+def sheet(study: GrowthStudy) -> str:
     """Return a row for every quantity of every ensemble: its exponent with the interval, and its gate."""
-    return csv_sheet(_SHEET, (_grown(run, row) for run in runs for row in run.quantities))
+    return csv_sheet(_SHEET, (_grown(run, row) for run in study.runs for row in run.quantities))
 
 
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:

@@ -65,9 +65,9 @@ STUDY: Final = Study(
     title="how drift and phase grow over decades of time",
     duration="ten minutes, all cores; with --long an hour or more",
     measure=_measure,
-    page=page.PAGE,
     find=page.find,
-    texts=page.texts,
+    page=page.page,
+    sheet=page.sheet,
     draw=page.pictures,
     options=(
         Option("periods", "follow none for more than so many periods", _periods),

@@ -12,15 +12,13 @@ from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.studies import figures
 from taylor_verify.studies.prices.document import Interval, PriceRow, PricesStudy
 from taylor_verify.studies.prices.picture import picture
 from taylor_verify.studies.stored import Stored
 
-PRICES: Final = Stored(f"{store.FOLDER}/prices.json", PricesStudy, "prices")
-PAGE: Final = "tables/prices.md"
+PRICES: Final = Stored(PricesStudy, "prices")
 
 _ROOTS: Final = {"omega": "A rigid body", "impulse": "A solid in an ideal fluid"}
 _BAREST: Final = {"omega": "a rigid body", "impulse": "a solid in an ideal fluid"}
@@ -38,11 +36,6 @@ _WHAT: Final = (
     "multiple of that of the barest form of its model, *omega* or *impulse*, measured in the same "
     "round on the same machine."
 )
-
-
-def texts(study: PricesStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below ``folder``."""
-    return {PAGE: page(study, folder), "tables/prices.csv": sheet(study)}
 
 
 def pictures(study: PricesStudy) -> list[Picture]:

@@ -21,8 +21,8 @@ STUDY: Final = Study(
     title="what each thing costs that a scene may ask for",
     duration="minutes, a quiet machine",
     measure=_measure,
-    page=page.PAGE,
     find=PRICES.find,
-    texts=page.texts,
+    page=page.page,
+    sheet=page.sheet,
     draw=page.pictures,
 )

@@ -12,15 +12,13 @@ from taylor_verify.publish.markdown import bullets, prose, table
 from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records import store
 from taylor_verify.studies import figures
 from taylor_verify.studies.reach import picture as digits_map
 from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
 from taylor_verify.studies.reach.picture import ACHIEVED, ATTAINABLE, numbers_of
 from taylor_verify.studies.stored import Stored
 
-REACH: Final = Stored(f"{store.FOLDER}/reach.json", ReachStudy, "reach")
-PAGE: Final = "tables/reach.md"
+REACH: Final = Stored(ReachStudy, "reach")
 DIGITS: Final = (3, 6, 12)
 
 # Of the numbers of periods, those that have a line of their own.
@@ -47,11 +45,6 @@ _LEGEND: Final = (
     "Periods are those of omega or of the impulses, instants their quarters. Only omega or the "
     "impulses are compared, but where the attitude is named.",
 )
-
-
-def texts(study: ReachStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below ``folder``."""
-    return {PAGE: page(study, folder), "tables/reach.csv": sheet(study)}
 
 
 def pictures(study: ReachStudy) -> list[Picture]:

@@ -21,8 +21,8 @@ STUDY: Final = Study(
     title="how far each precision carries, and where it ends",
     duration="minutes, all cores",
     measure=_measure,
-    page=page.PAGE,
     find=REACH.find,
-    texts=page.texts,
+    page=page.page,
+    sheet=page.sheet,
     draw=page.pictures,
 )

@@ -40,7 +40,7 @@ STUDY: Final = Study[None](
     title="exact motions in digits, to test other programs with",
     duration="a minute, all cores",
     measure=_measure,
-    page=f"{page.FOLDER}/README.md",
+    place=f"{page.FOLDER}/README.md",
     needs_heyoka=False,
     bulk=(Bulk("exact trajectories as JSON", (f"{page.FOLDER}/*.json",), _lacking, _add),),
 )

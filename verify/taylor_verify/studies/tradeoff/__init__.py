@@ -27,7 +27,8 @@ def tradeoff(
     scene
         A Scene, a path, or the name of a shipped scene.
     asked
-        The settings to measure (studies.tradeoff.setting.chosen makes them of names); all that there are unless given.
+        The settings to measure (studies.tradeoff.setting.chosen makes them of names); all that there are
+        unless given.
     repeats
         The number of solves of which the best time counts; that of ``taylor-verify tradeoff`` unless given.
     seed

@@ -22,7 +22,6 @@ from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade, Trades
 from taylor_verify.studies.tradeoff.timing_method import how_it_was_timed, remake, what_is_timed
 
-PAGE: Final = "tables/tradeoff.md"
 DIGITS: Final = (6, 9, 12)
 _NOT_REACHED: Final = "not reached"
 _TAYLOR: Final = "taylor f64"
@@ -84,11 +83,6 @@ def page(found: Trades, folder: Path) -> str:
         "## To remake this",
         remake(found),
     )
-
-
-def texts(found: Trades, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below ``folder``."""
-    return {PAGE: page(found, folder), "tables/tradeoff.csv": sheet(found.trades)}
 
 
 def pictures(found: Trades) -> list[Picture]:
@@ -312,6 +306,6 @@ _FIELDS: Final = (
 )
 
 
-def sheet(trades: Sequence[Trade]) -> str:
+def sheet(found: Trades) -> str:
     """A row for every scene and setting, with every digit."""
-    return csv_sheet(_FIELDS, (row for trade in trades for row in trade.rows))
+    return csv_sheet(_FIELDS, (row for trade in found.trades for row in trade.rows))

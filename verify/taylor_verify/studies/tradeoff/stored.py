@@ -12,7 +12,6 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.standing import Standing
 from taylor_verify.studies.stored import Stored
@@ -24,8 +23,8 @@ from taylor_verify.studies.tradeoff.document import (
     TradeTimings,
 )
 
-NUMBERS: Final = Stored(f"{store.FOLDER}/tradeoff.json", TradeNumbers, "tradeoff")
-TIMINGS: Final = Stored(f"{store.FOLDER}/tradeoff-timings.json", TradeTimings, "tradeoff")
+NUMBERS: Final = Stored(TradeNumbers, "tradeoff")
+TIMINGS: Final = Stored(TradeTimings, "tradeoff", stem="tradeoff-timings")
 
 # What both files have of a setting.
 _NAMES: Final = ("scene", "solver", "rung")

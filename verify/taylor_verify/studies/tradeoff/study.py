@@ -22,9 +22,9 @@ STUDY: Final = Study(
     title="speed against accuracy, every solver, measured once",
     duration="minutes, a quiet machine; with --outside a quarter of an hour more",
     measure=_measure,
-    page=page.PAGE,
     find=load,
-    texts=page.texts,
+    page=page.page,
+    sheet=page.sheet,
     draw=page.pictures,
     options=(
         Option(

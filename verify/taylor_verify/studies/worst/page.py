@@ -10,14 +10,12 @@ from taylor_verify.publish.cells import figure
 from taylor_verify.publish.markdown import code, prose, table
 from taylor_verify.publish.page import traced, whole
 from taylor_verify.publish.sheet import sheet as csv_sheet
-from taylor_verify.records import store
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.studies.stored import Stored
 from taylor_verify.studies.worst.document import WorstOfFamily, WorstStudy
 
-WORST: Final = Stored(f"{store.FOLDER}/worst.json", WorstStudy, "worst")
-PAGE: Final = "tables/worst.md"
+WORST: Final = Stored(WorstStudy, "worst")
 
 _WHAT: Final = (
     "A gate stands at {factor} times what is attainable, which is what independent roundings of every "
@@ -36,12 +34,6 @@ def keep(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
     """Write scene files, by their names, in place of those that are there. Raises OSError."""
     texts = {f"{name}.toml": text for name, text in scenes.items()}
     return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
-
-
-def texts(study: WorstStudy, folder: Path) -> dict[str, str]:
-    """Return page and sheet by their paths below a folder."""
-    del folder
-    return {PAGE: page(study), "tables/worst.csv": sheet(study)}
 
 
 def page(study: WorstStudy) -> str:

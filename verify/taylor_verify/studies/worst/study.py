@@ -45,9 +45,9 @@ STUDY: Final = Study(
     title="the worst that a search has found, family by family",
     duration="ten minutes",
     measure=_measure,
-    page=page.PAGE,
     find=WORST.find,
-    texts=page.texts,
+    page=lambda study, folder: page.page(study),
+    sheet=page.sheet,
     options=(
         Option("seconds", "the time of the search; default: 600", _seconds, "S"),
         Option("seed", "the seed of the search; default: 1", _seed),
