@@ -281,4 +281,4 @@ def student(freedom: int, level: float) -> float:
         return within - level
 
     # t = sqrt(freedom) tan(theta) has its distribution on a bounded interval.
-    return sqrt(freedom) * tan(mpmath.findroot(excess, (0, mpmath.pi / 2), solver="illinois"))
+    return sqrt(freedom) * tan(mpmath.findroot(excess, (0, mpmath.pi / 2), solver="bisect"))
