@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -43,6 +45,23 @@ def one_instant(body: Body, start: State, *track: str) -> Scene:
     model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
     clock = Clock(Fraction(0), (Fraction(1),))
     return Scene("test", "test", model, frozenset(track), body, start, clock)
+
+
+def sample_scene(body: Body, *track: str, start: State | None = None) -> Scene:
+    """A scene of a body at one instant, from the state of its model above where none is given."""
+    state = SPIN if isinstance(body, RigidBody) else IMPULSE
+    return one_instant(body, start or state, *track)
+
+
+def asked_at(name: str, *instants: Fraction | int) -> Scene:
+    """A shipped scene that starts at 0, asked at instants of its own."""
+    return replace(load(name), clock=Clock(Fraction(0), tuple(map(Fraction, instants))))
+
+
+def tracking_all(scene: Scene) -> Scene:
+    """A scene with its attitude and, in a fluid, its centre."""
+    track = {"attitude"} if scene.model == "euler" else {"attitude", "centre"}
+    return replace(scene, track=frozenset(track))
 
 
 def spun(omega: Sequence[float], end: float, samples: int) -> Scene:
@@ -92,3 +111,10 @@ def remus_inertia() -> Matrix:
         tuple((solid[i] if i == j else 0) - Fraction(added.get((i, j), "0")) for j in range(6))
         for i in range(6)
     )
+
+
+def scene_file(folder: Path, text: str = THREE_INSTANTS) -> Path:
+    """Write a scene that is judged in a moment, and return its file."""
+    file = folder / "short.toml"
+    file.write_text(text, encoding="utf-8")
+    return file

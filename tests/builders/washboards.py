@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from mpmath import mp, mpf
 
+from builders.numbers import apart
 from builders.scenes import vector
 from taylor_verify.exact.euler.moments.washboard import Washboard
 from taylor_verify.scenes import tensors
@@ -35,13 +36,8 @@ def axial(axis: int, push: str, omega: Vector) -> Scene:
 
 def gap(one: Motion, other: Motion) -> mpf:
     """The largest distance of a row from its like, in parts of its norm."""
-    worst = mpf(0)
     with mp.workdps(3 * DIGITS):
-        for name, rows in one.quantities.items():
-            for p, q in zip(rows, other[name], strict=True):
-                size = mp.norm(list(p.flat))
-                worst = max(worst, mp.norm(list((p - q).flat)) / (size if size else 1))
-    return worst
+        return apart(one, other)
 
 
 def board(scene: Scene) -> Washboard:

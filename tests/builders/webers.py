@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cache
 
+from builders.scenes import vector
 from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, Curve, curve
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -14,10 +15,6 @@ from taylor_verify.scenes.tensors import Vector
 
 CLEBSCH = ("1", "3/2", "1/2")
 ALIKE = ("3/4", "3/4", "3/4")
-
-
-def exact(*texts: str | int) -> Vector:
-    return tuple(Fraction(text) for text in texts)
 
 
 def built(
@@ -40,18 +37,18 @@ def second(r: Vector, theta: Fraction, shared: Fraction = Fraction(4)) -> Vector
 
 # Starts, by what is special about them; y is across x in all.
 STARTS: dict[str, tuple[Vector, Vector]] = {
-    "plain": (exact("3/4", "-1/2", "1"), exact("1/2", "-1/4", "-1/2")),
-    "x_1 = 0": (exact("0", "-1/2", "1"), exact("1/2", "1", "1/2")),
-    "x along axis 2": (exact("0", "3/4", "0"), exact("1/2", "0", "-1/3")),
-    "x along axis 3": (exact("0", "0", "-1"), exact("1/2", "1/3", "0")),
-    "y = 0": (exact("3/4", "-1/2", "1"), exact("0", "0", "0")),
-    "y_3 = 0": (exact("3/4", "-1/2", "1"), exact("1/2", "3/4", "0")),
-    "fast": (exact("1/4", "1/2", "-1/3"), exact("2", "-1", "0")),
+    "plain": (vector("3/4", "-1/2", "1"), vector("1/2", "-1/4", "-1/2")),
+    "x_1 = 0": (vector("0", "-1/2", "1"), vector("1/2", "1", "1/2")),
+    "x along axis 2": (vector("0", "3/4", "0"), vector("1/2", "0", "-1/3")),
+    "x along axis 3": (vector("0", "0", "-1"), vector("1/2", "1/3", "0")),
+    "y = 0": (vector("3/4", "-1/2", "1"), vector("0", "0", "0")),
+    "y_3 = 0": (vector("3/4", "-1/2", "1"), vector("1/2", "3/4", "0")),
+    "fast": (vector("1/4", "1/2", "-1/3"), vector("2", "-1", "0")),
 }
 BODIES: dict[str, tuple[Vector, Vector]] = {
-    "r alike": (exact(*ALIKE), exact("1", "7/4", "1/2")),
-    "theta > 0": (exact(*CLEBSCH), second(exact(*CLEBSCH), Fraction(1, 2))),
-    "theta < 0": (exact("1/2", "1", "5/4"), second(exact("1/2", "1", "5/4"), Fraction(-3, 4))),
+    "r alike": (vector(*ALIKE), vector("1", "7/4", "1/2")),
+    "theta > 0": (vector(*CLEBSCH), second(vector(*CLEBSCH), Fraction(1, 2))),
+    "theta < 0": (vector("1/2", "1", "5/4"), second(vector("1/2", "1", "5/4"), Fraction(-3, 4))),
 }
 
 

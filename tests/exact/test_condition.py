@@ -8,8 +8,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import CLEBSCH, IMPULSE, LOADED, MOMENT, QUATERNION, SPIN, TENSOR, vector
-from mpmath import libmp, mp, mpf
+from builders.numbers import largest, matrix, rationals
+from builders.scenes import (
+    CLEBSCH,
+    IMPULSE,
+    LOADED,
+    MOMENT,
+    QUATERNION,
+    TENSOR,
+    sample_scene,
+    vector,
+)
+from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.condition import Path, transition
 from taylor_verify.exact.conditioning.differences import Derivatives, derivatives
@@ -18,11 +28,10 @@ from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Motion, Quaternion, Spin
+from taylor_verify.scenes.motion import Impulse, Motion, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import (
     Matrix,
-    Vector,
     apply,
     diagonal,
     inverse,
@@ -38,35 +47,18 @@ EULER_BLOCKS = ("momentum", "attitude")
 KIRCHHOFF_BLOCKS = ("linear_impulse", "angular_impulse", "attitude", "centre")
 
 
-def scene(
-    body: RigidBody | ImmersedBody, *track: str, start: Spin | Impulse | None = None
-) -> Scene:
-    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
-    initial = start or (SPIN if model == "euler" else IMPULSE)
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", model, frozenset(track), body, initial, clock)
-
-
-LOADED_EULER = scene(RigidBody(TENSOR, MOMENT), "attitude")
-LOADED_KIRCHHOFF = scene(LOADED, "attitude", "centre")
+LOADED_EULER = sample_scene(RigidBody(TENSOR, MOMENT), "attitude")
+LOADED_KIRCHHOFF = sample_scene(LOADED, "attitude", "centre")
 
 
 def times(*entries: float | str) -> list[Fraction]:
     return list(vector(*entries))
 
 
-def largest(values: Array) -> mpf:
-    return max(abs(value) for value in np.asarray(values).flat)
-
-
-def matrix(rows: Matrix) -> Array:
-    return np.array([[mp.convert(entry) for entry in row] for row in rows], dtype=object)
-
-
 def test_axisymmetric_body() -> None:
     """For moments (J, J, S) the transition matrix is a rotation and a shear, known exactly."""
     body = RigidBody(diagonal(vector(1, 1, 2)))
-    spinning = scene(body, start=Spin(vector("0.6", "0.8", "0.5")))
+    spinning = sample_scene(body, start=Spin(vector("0.6", "0.8", "0.5")))
     instants = times(0, "0.7", 3, 40)
     found = transition(spinning, instants)
     momentum = TaylorSolution(spinning).motion(instants, 30)["omega"].astype(float) * [1, 1, 2]
@@ -147,7 +139,7 @@ def _cross(columns: Array, v: Array) -> Array:
     [
         (LOADED_EULER, ("omega", *EULER_BLOCKS)),
         (LOADED_KIRCHHOFF, KIRCHHOFF_BLOCKS),
-        (scene(CLEBSCH, "attitude", "centre"), KIRCHHOFF_BLOCKS),
+        (sample_scene(CLEBSCH, "attitude", "centre"), KIRCHHOFF_BLOCKS),
     ],
     ids=["euler", "kirchhoff", "clebsch"],
 )
@@ -171,7 +163,7 @@ def test_a_restarted_orbit_has_the_same_norms(start: Scene, names: tuple[str, ..
 def _state(scene: Scene, time: Fraction) -> Spin | Impulse:
     """The state at that time, to 40 digits, as an initial state."""
     motion = solution(scene, "taylor").motion([time], 40)
-    rows = {name: _rational(rows[0]) for name, rows in motion.quantities.items()}
+    rows = {name: rationals(rows[0]) for name, rows in motion.quantities.items()}
     turn = tuple(rows["attitude"][i : i + 3] for i in (0, 3, 6))
     quaternion: Quaternion = (
         1 + turn[0][0] + turn[1][1] + turn[2][2],
@@ -182,12 +174,6 @@ def _state(scene: Scene, time: Fraction) -> Spin | Impulse:
     if scene.model == "euler":
         return Spin(rows["omega"], quaternion)
     return Impulse(rows["linear_impulse"], rows["angular_impulse"], quaternion, rows["centre"])
-
-
-def _rational(values: Array) -> Vector:
-    return tuple(
-        Fraction(*(int(part) for part in libmp.to_rational(value._mpf_))) for value in values.flat
-    )
 
 
 def test_place_moves_with_the_path() -> None:
@@ -239,7 +225,7 @@ def test_flows_conserve_volume() -> None:
 def test_growth_beside_an_unstable_rotation() -> None:
     """About the intermediate axis an error grows as cosh of the classical rate, for 10^20 too."""
     body = RigidBody(diagonal(vector(1, 2, 3)))
-    steady = scene(body, start=Spin(vector(0, 1, 0)))
+    steady = sample_scene(body, start=Spin(vector(0, 1, 0)))
     # H2 = 2; H1' = H2 (K3 - K2) H3, H3' = H2 (K2 - K1) H1, so rate^2 = 4 (1/6)(1/2) = 1/3.
     rate = np.sqrt(1 / 3)
     found = transition(steady, times(0, 10, 80)).norms("momentum", "momentum")
@@ -256,7 +242,7 @@ def test_growth_beside_an_unstable_rotation() -> None:
 
 def test_a_body_at_rest() -> None:
     """At rest momentum stays as it is, and turns the body by K per unit of momentum and time."""
-    resting = scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0), QUATERNION))
+    resting = sample_scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0), QUATERNION))
     found = transition(resting, times(0, 2, 6))
     inverse_inertia = np.array(inverse(TENSOR), dtype=float)
     stiffest = np.linalg.norm(inverse_inertia, 2)
@@ -268,7 +254,7 @@ def test_a_body_at_rest() -> None:
 
 def test_norms_follow_the_units() -> None:
     """In another unit of impulse, a million times larger, each norm scales as its units do."""
-    solid = scene(CLEBSCH, "attitude", "centre")
+    solid = sample_scene(CLEBSCH, "attitude", "centre")
     body = CLEBSCH
     factor = Fraction(2**20)
     # x, y -> factor x, y; the same motion needs T's coefficients divided by the factor.
@@ -280,7 +266,7 @@ def test_norms_follow_the_units() -> None:
         angular=tuple(factor * e for e in IMPULSE.angular),
     )
     light_norms = transition(solid, times(0, 2))
-    heavy_norms = transition(scene(heavy, "attitude", "centre", start=start), times(0, 2))
+    heavy_norms = transition(sample_scene(heavy, "attitude", "centre", start=start), times(0, 2))
     for out, into, scale in (
         ("linear_impulse", "angular_impulse", 1.0),
         ("attitude", "linear_impulse", 2.0**-20),
@@ -293,7 +279,7 @@ def test_norms_follow_the_units() -> None:
 
 def test_what_is_not_tracked_is_not_known() -> None:
     """Asking for the attitude of a scene that tracks omega alone raises KeyError."""
-    found = transition(scene(RigidBody(TENSOR)), times(0, 1))
+    found = transition(sample_scene(RigidBody(TENSOR)), times(0, 1))
     with pytest.raises(KeyError, match="attitude"):
         found.norms("attitude", "momentum")
 
@@ -304,8 +290,8 @@ def test_what_is_not_tracked_is_not_known() -> None:
     [
         LOADED_EULER,
         LOADED_KIRCHHOFF,
-        scene(CLEBSCH, "attitude", "centre"),
-        scene(RigidBody(TENSOR)),
+        sample_scene(CLEBSCH, "attitude", "centre"),
+        sample_scene(RigidBody(TENSOR)),
     ],
     ids=["loaded euler", "loaded kirchhoff", "clebsch", "full tensor"],
 )
@@ -336,5 +322,5 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     turn: Matrix = ((c, -s, Fraction(0)), (s, c, Fraction(0)), vector(0, 0, 1))
     turned = product(product(turn, diagonal(vector(1, 2, 3))), transpose(turn))
     near = vector("1e-40", 1, "1e-40")
-    saddle = scene(RigidBody(turned), start=Spin(apply(turn, near)))
+    saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None

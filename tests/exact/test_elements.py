@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -33,10 +34,6 @@ DIGITS = 30
 # A number of 30 digits, times rates of some units, moves a motion by less than this.
 CLOSE = mpf("1e-26")
 CLOCK = Clock(Fraction(0), (Fraction(1),))
-
-
-def vector(*entries: str) -> Vector:
-    return tuple(Fraction(entry) for entry in entries)
 
 
 def rigid(inertia: Vector, omega: Vector) -> Scene:

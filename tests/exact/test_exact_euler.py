@@ -9,6 +9,9 @@ from fractions import Fraction
 from operator import mul
 
 import pytest
+from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, rotation, spinning, turned
+from builders.numbers import rational
+from builders.scenes import vector
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -22,7 +25,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import Matrix
 
 DIGITS = 50
 ELLIPTIC = (Regime.MAX_AXIS, Regime.MIN_AXIS)
@@ -31,40 +34,11 @@ ELLIPTIC = (Regime.MAX_AXIS, Regime.MIN_AXIS)
 # Bodies, exactly
 
 
-def vector(*entries: int | str | Fraction) -> Vector:
-    return tuple(Fraction(entry) for entry in entries)
-
-
-def rotation(*quaternion: int) -> Matrix:
-    """The exact rational rotation of an integer quaternion, scalar first."""
-    w, x, y, z = (Fraction(entry) for entry in quaternion)
-    n = w * w + x * x + y * y + z * z
-    rows = (
-        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
-    )
-    return tuple(tuple(entry / n for entry in row) for row in rows)
-
-
-def turned(matrix: Matrix, spin: FreeSpin) -> FreeSpin:
-    """The same motion in axes turned (or permuted) by an orthogonal matrix Q: (Q I Q^T, Q w)."""
-    inertia = tensors.product(tensors.product(matrix, spin.inertia), tensors.transpose(matrix))
-    return FreeSpin(inertia, tensors.apply(matrix, spin.omega))
-
-
-def spinning(moments: Vector, omega: Vector) -> FreeSpin:
-    return FreeSpin(tensors.diagonal(moments), omega)
-
-
 def as_doubles(matrix: Matrix) -> Matrix:
     """A tensor as it comes out of double precision: every entry rounded, symmetry kept."""
     return tuple(tuple(Fraction(float(entry)) for entry in row) for row in matrix)
 
 
-OBLIQUE = rotation(3, 1, -2, 1)
-# J_a (J_a - J_b) w_a^2 = J_c (J_b - J_c) w_c^2 with J = 4, 5/2, 1 asks for w_c = 2 w_a.
-ON_SEPARATRIX = spinning(vector(4, "5/2", 1), vector("1/3", "-3/5", "2/3"))
 # J = 2, 2, 9 about an axis along (1, 2, 3), whose length is irrational.
 IRRATIONAL_AXIS: Matrix = tuple(
     tuple(Fraction(2 * (i == j)) + Fraction((i + 1) * (j + 1), 2) for j in range(3))
@@ -107,12 +81,6 @@ PLANES = {
     for omega in omegas
     for oblique in (False, True)
 }
-
-
-def near_separatrix(tiny: Fraction) -> FreeSpin:
-    """ON_SEPARATRIX with one component changed, so that m' is a number like ``tiny``."""
-    a, b, c = ON_SEPARATRIX.omega
-    return FreeSpin(ON_SEPARATRIX.inertia, (a * (1 + tiny), b, c))
 
 
 LONG = Fraction(10) ** 12
@@ -197,12 +165,6 @@ def omega_at(spin: FreeSpin, *times: Fraction | int, digits: int = DIGITS) -> li
 
 def numbers(entries: Sequence[Fraction]) -> list[mpf]:
     return [mp.convert(entry) for entry in entries]
-
-
-def rational(value: mpf) -> Fraction:
-    """The exact value of a binary number."""
-    sign, mantissa, exponent, _ = value._mpf_
-    return Fraction((-1) ** sign * int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def distance(p: Sequence[mpf], q: Sequence[mpf]) -> mpf:

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, rotation, spinning, turned
+from builders.scenes import vector
 from flint import acb, arb, arb_mat, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -31,7 +33,6 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 50
 LONG = Fraction(10) ** 12
@@ -41,43 +42,6 @@ TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
 
 
 # Bodies, exactly
-
-
-def vector(*entries: int | str | Fraction) -> Vector:
-    return tuple(Fraction(entry) for entry in entries)
-
-
-def rotation(*quaternion: int) -> Matrix:
-    """The exact rational rotation of an integer quaternion, scalar first."""
-    w, x, y, z = (Fraction(entry) for entry in quaternion)
-    n = w * w + x * x + y * y + z * z
-    rows = (
-        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
-    )
-    return tuple(tensors.scaled(1 / n, row) for row in rows)
-
-
-def turned(matrix: Matrix, spin: FreeSpin) -> FreeSpin:
-    """The same motion in other body axes: (Q I Q^T, Q w)."""
-    inertia = tensors.product(tensors.product(matrix, spin.inertia), tensors.transpose(matrix))
-    return FreeSpin(inertia, tensors.apply(matrix, spin.omega))
-
-
-def spinning(moments: Vector, omega: Vector) -> FreeSpin:
-    return FreeSpin(tensors.diagonal(moments), omega)
-
-
-OBLIQUE = rotation(3, 1, -2, 1)
-# J_a (J_a - J_b) w_a^2 = J_c (J_b - J_c) w_c^2 with J = 4, 5/2, 1 asks for w_c = 2 w_a.
-ON_SEPARATRIX = spinning(vector(4, "5/2", 1), vector("1/3", "-3/5", "2/3"))
-
-
-def near_separatrix(tiny: Fraction) -> FreeSpin:
-    """ON_SEPARATRIX with one component changed, so that m' is a number like ``tiny``."""
-    a, b, c = ON_SEPARATRIX.omega
-    return FreeSpin(ON_SEPARATRIX.inertia, (a * (1 + tiny), b, c))
 
 
 # Every regime, about every axis and in either sense, and the borders between them.

@@ -7,20 +7,19 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import pytest
+from builders.clebsch import GENERIC, PLAIN, Six, State, around, body, derivative, slope, velocities
+from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.kirchhoff.jacobi import closed_form
 from taylor_verify.exact.kirchhoff.quartic import Nutation, RealRoots, value
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
-from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector, diagonal
-
-State = Sequence[Fraction]  # x1 x2 x3 y1 y2 y3
-Six = list[mpf]
 
 DIGITS = 40
 # The solution promises DIGITS of |x| and of |y| apart, which here are below 100 each; the Taylor
@@ -28,22 +27,12 @@ DIGITS = 40
 AGREEMENT = Fraction(1, 10 ** (DIGITS - 2))
 
 
-def exact(*texts: str | int | Fraction) -> tuple[Fraction, ...]:
-    return tuple(Fraction(text) for text in texts)
-
-
-def body(*six: str | int | Fraction) -> Clebsch:
-    """p, p', q, q', r, r'."""
-    return Clebsch(*exact(*six))
-
-
 def scene(
     solid: Clebsch | ImmersedBody, start: State, track: frozenset[str] = frozenset()
 ) -> Scene:
     immersed = solid.body() if isinstance(solid, Clebsch) else solid
     x, y = tuple(start[:3]), tuple(start[3:])
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", "kirchhoff", track, immersed, Impulse(x, y), clock)
+    return one_instant(immersed, Impulse(x, y), *track)
 
 
 def states(solution: Solution, times: Sequence[Fraction], digits: int) -> list[Six]:
@@ -66,27 +55,6 @@ def distance(a: Sequence[mpf | Fraction], b: Sequence[mpf | Fraction], digits: i
 
 
 # The equations, written here once more, and their Taylor series: nothing elliptic, nothing shared.
-
-
-def velocities(solid: Clebsch, s: Sequence[mpf]) -> tuple[Six, Six]:
-    """U = dT/dx and Omega = dT/dy of Hydromechanics 49 (1)."""
-    linear = [mp.convert(c) for c in (solid.p, solid.p, solid.p_prime)]
-    screw = [mp.convert(c) for c in (solid.q, solid.q, solid.q_prime)]
-    angular = [mp.convert(c) for c in (solid.r, solid.r, solid.r_prime)]
-    U = [linear[i] * s[i] + screw[i] * s[3 + i] for i in range(3)]
-    Omega = [screw[i] * s[i] + angular[i] * s[3 + i] for i in range(3)]
-    return U, Omega
-
-
-def cross(a: Sequence[mpf], b: Sequence[mpf]) -> Six:
-    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
-
-
-def derivative(solid: Clebsch, s: Sequence[mpf]) -> Six:
-    """x' = x x Omega, y' = y x Omega + x x U."""
-    U, Omega = velocities(solid, s)
-    turning = zip(cross(s[3:], Omega), cross(s[:3], U), strict=True)
-    return cross(s[:3], Omega) + [a + b for a, b in turning]
 
 
 def series(solid: Clebsch, s: Six, order: int) -> list[Six]:
@@ -139,43 +107,41 @@ def taylor(solid: Clebsch, start: State, time: Fraction, digits: int = DIGITS) -
 SHARP = body(1, 2, "1/10", "3/10", 1, "1/2")  # p' > p: four real roots
 BLUNT = body(2, 1, "1/10", "3/10", 1, "1/2")  # p' < p: two or four
 EVEN = body(1, 1, "1/10", "3/10", 1, "1/2")  # p' = p: a cubic
-PLAIN = body(1, 2, 0, 0, 1, "1/2")  # no screw coupling
 CHIRAL = body("3/2", 1, "1/5", "1/5", "4/5", "1/2")  # q' = q
-GENERIC = exact("1/2", "1/3", 1, "1/5", "-1/4", 1)
 TINY = Fraction(1, 10**10)
 
 CASES = {
     "four real roots": (SHARP, GENERIC, "four-roots"),
     "four real roots, the two largest": (
         body(3, 1, "-1/10", "7/20", 2, 1),
-        exact(1, 1, "3/4", "1/4", "-1/4", "-1/8"),
+        vector(1, 1, "3/4", "1/4", "-1/4", "-1/8"),
         "four-roots",
     ),
     "four real roots, the two smallest": (
         body(5, 1, "1/10", "-2/5", 2, 1),
-        exact("1/2", "-1/2", -1, "1/8", "3/8", "1/8"),
+        vector("1/2", "-1/2", -1, "1/8", "3/8", "1/8"),
         "four-roots",
     ),
     "two real roots": (BLUNT, GENERIC, "two-roots"),
     "cubic, third root above": (EVEN, GENERIC, "cubic"),
-    "cubic, third root below": (EVEN, exact("1/2", "1/3", 1, "1/5", "-1/4", -1), "cubic"),
+    "cubic, third root below": (EVEN, vector("1/2", "1/3", 1, "1/5", "-1/4", -1), "cubic"),
     "no screw coupling": (PLAIN, GENERIC, "four-roots"),
     "q' = q": (CHIRAL, GENERIC, "two-roots"),
-    "start at the lower turning point": (SHARP, exact(1, 1, 2, "1/3", "1/3", 2), "four-roots"),
-    "start at the upper turning point": (BLUNT, exact(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
-    "through the pole": (SHARP, exact("3/5", 0, "4/5", "1/3", 2, 1), "four-roots"),
-    "through the lower pole": (BLUNT, exact("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
-    "start on the axis": (EVEN, exact(0, 0, 1, "1/3", "1/7", 2), "cubic"),
-    "start on the axis, two roots": (BLUNT, exact(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
+    "start at the lower turning point": (SHARP, vector(1, 1, 2, "1/3", "1/3", 2), "four-roots"),
+    "start at the upper turning point": (BLUNT, vector(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
+    "through the pole": (SHARP, vector("3/5", 0, "4/5", "1/3", 2, 1), "four-roots"),
+    "through the lower pole": (BLUNT, vector("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
+    "start on the axis": (EVEN, vector(0, 0, 1, "1/3", "1/7", 2), "cubic"),
+    "start on the axis, two roots": (BLUNT, vector(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
     "planar, over both poles": (
         BLUNT,
-        exact("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
+        vector("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
         "four-roots",
     ),
-    "planar, |x| irrational": (BLUNT, exact(1, 1, 2, 1, -1, 0), "four-roots"),
+    "planar, |x| irrational": (BLUNT, vector(1, 1, 2, 1, -1, 0), "four-roots"),
     "near the pole": (
         BLUNT,
-        (*exact("3/5", 0, "4/5", "1/3", "1/7"), 1 - TINY),
+        (*vector("3/5", 0, "4/5", "1/3", "1/7"), 1 - TINY),
         "two-roots",
     ),
     "near the separatrix": (
@@ -191,7 +157,7 @@ CASES = {
     ),
     "steady": (
         body(1, "92/81", "1/10", "3/10", 1, "1/2"),  # p' solves f'(4/5) = 0
-        exact("3/5", 0, "4/5", "1/3", 0, 1),
+        vector("3/5", 0, "4/5", "1/3", 0, 1),
         "steady",
     ),
 }
@@ -212,22 +178,12 @@ def test_starts_where_it_is_told_to(solid: Clebsch, start: State, regime: str) -
 @by_case
 def test_obeys_the_equations_of_motion(solid: Clebsch, start: State, regime: str) -> None:
     """x' = x x Omega and y' = y x Omega + x x U, at a time beyond several periods."""
-    # Eighth-order differences at h: the error is h^8 D^9/630. No rate here is above 10 per unit of
-    # time, so it is below 1e-48 * 1e9 / 630; rounding leaves 10^-digits / h.
+    # No rate here is above 10 per unit of time: differences err by less than 1e-48 * 1e9 / 630.
     h, digits = Fraction(1, 10**6), DIGITS + 10
-    weights = (Fraction(4, 5), Fraction(-1, 5), Fraction(4, 105), Fraction(-1, 280))
-    middle = Fraction(-239, 7)
-    steps = range(-len(weights), len(weights) + 1)
-    near = states(closed_form(scene(solid, start)), [middle + k * h for k in steps], digits)
+    times = around(Fraction(-239, 7), h)
+    near = states(closed_form(scene(solid, start)), times, digits)
     with mp.workdps(digits + 10):
-        found = [
-            sum(
-                mp.convert(weight / h) * (near[4 + k][i] - near[4 - k][i])
-                for k, weight in enumerate(weights, 1)
-            )
-            for i in range(6)
-        ]
-        assert distance(found, derivative(solid, near[4]), digits) <= AGREEMENT
+        assert distance(slope(near, h), derivative(solid, near[4]), digits) <= AGREEMENT
 
 
 @by_case
@@ -366,17 +322,17 @@ def test_one_evaluation_gets_better_with_its_digits() -> None:
 
 def test_rest_stays_at_rest() -> None:
     """Without impulse nothing moves."""
-    solution = closed_form(scene(SHARP, exact(0, 0, 0, 0, 0, 0)))
+    solution = closed_form(scene(SHARP, vector(0, 0, 0, 0, 0, 0)))
     assert solution.regime == "rest"
     assert states(solution, [Fraction(10**6)], 30)[0] == [0] * 6
 
 
 REFUSED = {
     "not of Clebsch's form": scene(
-        ImmersedBody(SHARP.body().linear, SHARP.body().coupling, diagonal(exact(1, 2, 3))),
+        ImmersedBody(SHARP.body().linear, SHARP.body().coupling, diagonal(vector(1, 2, 3))),
         GENERIC,
     ),
-    "a force or a couple": scene(SHARP.body(force=exact(0, 0, 1)), GENERIC),
+    "a force or a couple": scene(SHARP.body(force=vector(0, 0, 1)), GENERIC),
 }
 
 
@@ -417,7 +373,7 @@ def test_the_quartic_is_the_square_of_the_speed(seed: int) -> None:
     solid, start = random_body(seed, "")
     nutation = Nutation.of(solid, Impulse(tuple(start[:3]), tuple(start[3:])))
     assert value(nutation.f, nutation.z) == nutation.speed**2
-    start = (*exact("3/5", 0, "-4/5"), *start[3:])  # F = 1
+    start = (*vector("3/5", 0, "-4/5"), *start[3:])  # F = 1
     nutation = Nutation.of(solid, Impulse(tuple(start[:3]), tuple(start[3:])))
     for side in (1, -1):
         pull = solid.r * (nutation.FG - side * nutation.y3)

@@ -14,6 +14,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.clebsch import (
+    FALLING,
+    GENERIC,
+    PLAIN,
+    STOUT,
+    UPRIGHT,
+    State,
+    at_the_border,
+    body,
+    falling,
+)
+from builders.scenes import one_instant, vector
 from flint import acb, arb, ctx
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -31,7 +43,7 @@ from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -41,22 +53,10 @@ WHOLE = frozenset({"attitude", "centre"})
 TILTED = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))  # not of unit length
 AWAY = (Fraction(1, 3), Fraction(-2), Fraction(5))
 
-State = Sequence[Fraction]  # x1 x2 x3 y1 y2 y3
-
-
-def exact(*texts: str | int | Fraction) -> tuple[Fraction, ...]:
-    return tuple(Fraction(text) for text in texts)
-
-
-def body(*six: str | int | Fraction) -> Clebsch:
-    """p, p', q, q', r, r'."""
-    return Clebsch(*exact(*six))
-
 
 def scene(solid: Clebsch, start: State, track: frozenset[str] = WHOLE) -> Scene:
     impulse = Impulse(tuple(start[:3]), tuple(start[3:]), TILTED, AWAY)
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", "kirchhoff", track, solid.body(), impulse, clock)
+    return one_instant(solid.body(), impulse, *track)
 
 
 # Bodies and starts: one per regime and per difficulty.
@@ -64,89 +64,68 @@ def scene(solid: Clebsch, start: State, track: frozenset[str] = WHOLE) -> Scene:
 SHARP = body(1, 2, "1/10", "3/10", 1, "1/2")  # p' > p
 BLUNT = body(2, 1, "1/10", "3/10", 1, "1/2")  # p' < p
 EVEN = body(1, 1, "1/10", "3/10", 1, "1/2")  # p' = p
-PLAIN = body(1, 2, 0, 0, 1, "1/2")  # no screw coupling
 ALIKE = body(1, 1, "1/10", "1/10", 1, "1/2")  # p' = p, q' = q
-GENERIC = exact("1/2", "1/3", 1, "1/5", "-1/4", 1)
-FALLING = exact("3/5", 0, "4/5", "1/6", "1/2", "1/2")  # F = 1, FG = y3
-UPRIGHT = exact(0, 0, 1, "1/3", "1/7", 1)
 
 
-def falling(solid: Clebsch, start: State) -> Clebsch:
-    """The body with p' such that x3 = F is a double root of f, from a start with FG = F y3, F = 1."""
-    y1, y2, y3 = start[3:]
-    drop = 1 - start[2]
-    rise = solid.r * (y1**2 + y2**2) + 2 * (solid.q - solid.q_prime) * y3 * drop
-    return replace(solid, p_prime=solid.p + rise / (drop * (1 + start[2])))
-
-
-def at_the_border(solid: Clebsch, start: State) -> Clebsch:
-    """The same with q' too, such that the root is triple."""
-    y1, y2, y3 = start[3:]
-    drop, r = 1 - start[2], solid.r
-    s = ((2 - drop) * r * y3 / 4 - r * (y1**2 + y2**2) / (drop * y3)) / drop
-    return falling(replace(solid, q_prime=solid.q - s), start)
-
-
-STOUT = body(6, 6, "1/3", "1/3", 1, 2)
 CASES: dict[str, tuple[Clebsch, State, str]] = {
     "four real roots": (SHARP, GENERIC, "four-roots"),
     "four real roots, the two largest": (
         body(3, 1, "-1/10", "7/20", 2, 1),
-        exact(1, 1, "3/4", "1/4", "-1/4", "-1/8"),
+        vector(1, 1, "3/4", "1/4", "-1/4", "-1/8"),
         "four-roots",
     ),
     "two real roots": (BLUNT, GENERIC, "two-roots"),
     "cubic": (EVEN, GENERIC, "cubic"),
     "cubic, third root below": (EVEN, (*GENERIC[:5], Fraction(-1)), "cubic"),
     "no screw coupling": (PLAIN, GENERIC, "four-roots"),
-    "start at a turning point": (SHARP, exact(1, 1, 2, "1/3", "1/3", 2), "four-roots"),
-    "start at the upper turning point": (BLUNT, exact(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
-    "through the pole": (SHARP, exact("3/5", 0, "4/5", "1/3", "1/7", 1), "four-roots"),
-    "through the lower pole": (BLUNT, exact("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
+    "start at a turning point": (SHARP, vector(1, 1, 2, "1/3", "1/3", 2), "four-roots"),
+    "start at the upper turning point": (BLUNT, vector(1, 1, 2, "1/3", "1/3", 3), "two-roots"),
+    "through the pole": (SHARP, vector("3/5", 0, "4/5", "1/3", "1/7", 1), "four-roots"),
+    "through the lower pole": (BLUNT, vector("3/5", 0, "4/5", 3, "1/7", -1), "two-roots"),
     # A third is no ball of radius zero: that the pole is a root is then told by rationals alone.
     "through the pole, F = 1/3": (
         SHARP,
-        exact("1/5", 0, "4/15", "1/3", "1/7", 1),
+        vector("1/5", 0, "4/15", "1/3", "1/7", 1),
         "four-roots",
     ),
     "through the lower pole, F = 1/3": (
         BLUNT,
-        exact("1/5", 0, "4/15", -3, "1/7", 1),
+        vector("1/5", 0, "4/15", -3, "1/7", 1),
         "two-roots",
     ),
     "at a turning point and to the pole, F = 1/3": (
         SHARP,
-        exact("1/5", 0, "4/15", "1/3", 0, 1),
+        vector("1/5", 0, "4/15", "1/3", 0, 1),
         "four-roots",
     ),
     "from the axis": (EVEN, UPRIGHT, "cubic"),
-    "from the axis, two roots": (BLUNT, exact(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
+    "from the axis, two roots": (BLUNT, vector(0, 0, -2, "1/3", "1/7", 2), "two-roots"),
     "planar, over both poles": (
         BLUNT,
-        exact("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
+        vector("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
         "four-roots",
     ),
-    "from rest beside the axis": (SHARP, exact("1/100", 0, 1, 0, 0, 0), "four-roots"),
+    "from rest beside the axis": (SHARP, vector("1/100", 0, 1, 0, 0, 0), "four-roots"),
     "quadratic": (ALIKE, GENERIC, "trigonometric"),
     "quadratic, screw": (EVEN, (*GENERIC[:5], Fraction(0)), "trigonometric"),
     "quadratic, from the axis": (ALIKE, UPRIGHT, "trigonometric"),
     "falling from the pole": (falling(PLAIN, FALLING), FALLING, "hyperbolic"),
     "falling from the pole, screw": (falling(EVEN, FALLING), FALLING, "hyperbolic"),
     "border": (at_the_border(STOUT, FALLING), FALLING, "algebraic"),
-    "heteroclinic": (PLAIN, exact("3/5", 0, "4/5", 0, "3/5", 0), "heteroclinic"),
+    "heteroclinic": (PLAIN, vector("3/5", 0, "4/5", 0, "3/5", 0), "heteroclinic"),
     "heteroclinic downwards, F irrational": (
         body(1, 2, "1/5", "-1/3", 1, "1/2"),
-        exact("1/2", 1, 1, 1, "-1/2", 0),
+        vector("1/2", 1, 1, 1, "-1/2", 0),
         "heteroclinic",
     ),
     "steady": (
         body(1, "92/81", "1/10", "3/10", 1, "1/2"),  # p' solves f'(4/5) = 0
-        exact("3/5", 0, "4/5", "1/3", 0, 1),
+        vector("3/5", 0, "4/5", "1/3", 0, 1),
         "steady",
     ),
-    "along the axis": (SHARP, exact(0, 0, 1, 0, 0, 1), "steady"),
-    "top": (EVEN, exact(0, 0, 0, "1/5", "-1/4", "2/3"), "euler-top"),
-    "rest": (EVEN, exact(0, 0, 0, 0, 0, 0), "rest"),
+    "along the axis": (SHARP, vector(0, 0, 1, 0, 0, 1), "steady"),
+    "top": (EVEN, vector(0, 0, 0, "1/5", "-1/4", "2/3"), "euler-top"),
+    "rest": (EVEN, vector(0, 0, 0, 0, 0, 0), "rest"),
 }
 by_case = pytest.mark.parametrize(("solid", "start", "kind"), list(CASES.values()), ids=list(CASES))
 
@@ -199,7 +178,7 @@ def agrees_with_jacobi(problem: Scene, times: Sequence[Fraction]) -> bool:
     return is_narrow(found, DIGITS) and overlap(found, closed_form(problem).motion(times, DIGITS))
 
 
-BOTH_WAYS = exact("3/2", 4, "-7/3", 0, "1/1000000007")
+BOTH_WAYS = vector("3/2", 4, "-7/3", 0, "1/1000000007")
 
 
 @by_case
@@ -213,7 +192,7 @@ def test_agrees_with_taylor(solid: Clebsch, start: State, kind: str) -> None:
 @by_case
 def test_agrees_with_jacobi_for_long(solid: Clebsch, start: State, kind: str) -> None:
     """Jacobi's functions lead to the same impulses, also after a time of 1e12."""
-    times = exact("13/3", -120, Fraction(10) ** 12)
+    times = vector("13/3", -120, Fraction(10) ** 12)
     if kind in ("hyperbolic", "heteroclinic"):
         times = times[:2]  # Then nothing but the double root is left.
     assert agrees_with_jacobi(scene(solid, start), times)
@@ -222,7 +201,7 @@ def test_agrees_with_jacobi_for_long(solid: Clebsch, start: State, kind: str) ->
 @by_case
 def test_begins_as_told(solid: Clebsch, start: State, kind: str) -> None:
     """At time zero everything is exact; a centre at the origin and a y of zero included."""
-    for centre in (AWAY, exact(0, 0, 0)):
+    for centre in (AWAY, vector(0, 0, 0)):
         problem = scene(solid, start)
         problem = replace(
             problem,
@@ -243,7 +222,7 @@ def test_a_ball_at_any_precision_holds_the_truth(
     solid: Clebsch, start: State, kind: str, bits: int
 ) -> None:
     """Component by component, however coarse: what is found with 80 digits lies in every ball."""
-    problem, times = scene(solid, start), exact("3/2", -40, 1000)
+    problem, times = scene(solid, start), vector("3/2", -40, 1000)
     if kind in ("hyperbolic", "heteroclinic"):
         times = times[:2]
     fine = enclosed(problem).motion(times, 80)
@@ -273,7 +252,7 @@ LEFT = mpf("1e-25")
 @by_case
 def test_obeys_the_equations_of_motion(solid: Clebsch, start: State, kind: str) -> None:
     """x' = x x Omega, y' = y x Omega + x x U, R' = R [Omega]x and centre' = R U."""
-    middles = exact("-39/7", "13/3", 0)
+    middles = vector("-39/7", "13/3", 0)
     times = [middle + k * STEP for middle in middles for k in (-1, 0, 1)]
     motion = enclosed(scene(solid, start)).motion(times, 70)
     with mp.workdps(80):
@@ -321,26 +300,26 @@ ADVERSARIAL: dict[str, tuple[Clebsch, State]] = {
     "beside falling": (beside(falling(PLAIN, FALLING), TINY), FALLING),
     "beyond falling": (beside(falling(EVEN, FALLING), -(TINY**2)), FALLING),
     "beside the border": (beside(at_the_border(STOUT, FALLING), TINY), FALLING),
-    "beside heteroclinic": (PLAIN, exact("3/5", 0, "4/5", 0, "3/5", TINY)),
-    "beside heteroclinic, faster": (PLAIN, exact("3/5", 0, "4/5", 0, Fraction(3, 5) + TINY, 0)),
-    "beside steady": (SHARP, exact(TINY, 0, 1, 0, TINY / 3, 3)),
+    "beside heteroclinic": (PLAIN, vector("3/5", 0, "4/5", 0, "3/5", TINY)),
+    "beside heteroclinic, faster": (PLAIN, vector("3/5", 0, "4/5", 0, Fraction(3, 5) + TINY, 0)),
+    "beside steady": (SHARP, vector(TINY, 0, 1, 0, TINY / 3, 3)),
     "p' nearly p": (body(1, 1 + TINY, "1/10", "3/10", 1, "1/2"), GENERIC),
     "p' nearly p, below": (body(1, 1 - TINY, "1/10", "3/10", 1, "1/2"), GENERIC),
     "q' nearly q": (body(1, 2, "1/10", Fraction(1, 10) + TINY, 1, "1/2"), GENERIC),
     "both nearly": (body(1, 1 + TINY, "1/10", Fraction(1, 10) - TINY, 1, "1/2"), GENERIC),
     "q' nearly q, p' = p": (body(1, 1, "1/10", Fraction(1, 10) + TINY, 1, "1/2"), GENERIC),
-    "nearly through the pole": (BLUNT, exact("3/5", 0, "4/5", "1/3", "1/7", 1 - TINY)),
-    "nearly through the lower pole": (BLUNT, exact("3/5", 0, "4/5", 3, "1/7", -1 + TINY)),
-    "nearly from the axis": (EVEN, exact(TINY, 0, 1, "1/3", "1/7", 1)),
+    "nearly through the pole": (BLUNT, vector("3/5", 0, "4/5", "1/3", "1/7", 1 - TINY)),
+    "nearly through the lower pole": (BLUNT, vector("3/5", 0, "4/5", 3, "1/7", -1 + TINY)),
+    "nearly from the axis": (EVEN, vector(TINY, 0, 1, "1/3", "1/7", 1)),
     "slender and heavy": (
         body("1e-6", "1e6", 0, 0, "1e-3", "1e3"),
-        exact("1e-3", 0, "1e-6", 1, 1, "1e-3"),
+        vector("1e-3", 0, "1e-6", 1, 1, "1e-3"),
     ),
-    "weak impulse": (SHARP, exact("1e-12", "2e-12", "-1e-12", "1/3", "1/7", 1)),
-    "no G": (SHARP, exact(1, 0, 0, 0, "1/3", "1/4")),
-    "no y3": (BLUNT, exact(1, "1/2", "1/3", 1, "1/3", 0)),
-    "no x3": (BLUNT, exact(1, "1/2", 0, "1/5", "1/3", "1/4")),
-    "only y": (BLUNT, exact(1, 0, 0, 0, 1, 0)),
+    "weak impulse": (SHARP, vector("1e-12", "2e-12", "-1e-12", "1/3", "1/7", 1)),
+    "no G": (SHARP, vector(1, 0, 0, 0, "1/3", "1/4")),
+    "no y3": (BLUNT, vector(1, "1/2", "1/3", 1, "1/3", 0)),
+    "no x3": (BLUNT, vector(1, "1/2", 0, "1/5", "1/3", "1/4")),
+    "only y": (BLUNT, vector(1, 0, 0, 0, 1, 0)),
 }
 by_difficulty = pytest.mark.parametrize(
     ("solid", "start"), list(ADVERSARIAL.values()), ids=list(ADVERSARIAL)
@@ -350,19 +329,19 @@ by_difficulty = pytest.mark.parametrize(
 @by_difficulty
 def test_difficult_bodies_agree_with_taylor(solid: Clebsch, start: State) -> None:
     """Beside every degenerate motion, and with the least and the largest of coefficients."""
-    assert agrees_with_taylor(scene(solid, start), exact("3/2", -3))
+    assert agrees_with_taylor(scene(solid, start), vector("3/2", -3))
 
 
 @by_difficulty
 def test_difficult_bodies_agree_with_jacobi_for_long(solid: Clebsch, start: State) -> None:
     """And so they do after 1e6 units of time, beside a separatrix and elsewhere."""
-    assert agrees_with_jacobi(scene(solid, start), exact("17/3", Fraction(-(10**6))))
+    assert agrees_with_jacobi(scene(solid, start), vector("17/3", Fraction(-(10**6))))
 
 
 @by_difficulty
 def test_difficult_bodies_settle_to_few_digits_and_to_many(solid: Clebsch, start: State) -> None:
     """Three digits are not refused because the way there takes hundreds, and hold what 150 find."""
-    problem, times = scene(solid, start), exact(2, Fraction(-(10**12)), Fraction(1, 10**100))
+    problem, times = scene(solid, start), vector(2, Fraction(-(10**12)), Fraction(1, 10**100))
     few, many = (enclosed(problem).motion(times, digits) for digits in (3, 150))
     assert is_narrow(few, 3)
     assert is_narrow(many, 150)
@@ -373,7 +352,7 @@ def test_difficult_bodies_settle_to_few_digits_and_to_many(solid: Clebsch, start
 def test_a_strong_impulse_only_runs_faster(power: int) -> None:
     """x and y multiplied by c, and time divided by it, leave the path as it is, to c = 1e12."""
     c = Fraction(10) ** power
-    slow = enclosed(scene(SHARP, GENERIC)).motion(exact("3/2"), DIGITS)
+    slow = enclosed(scene(SHARP, GENERIC)).motion(vector("3/2"), DIGITS)
     strong = [c * component for component in GENERIC]
     fast = enclosed(scene(SHARP, strong)).motion([Fraction(3, 2) / c], DIGITS)
     scaled = dict(fast.quantities)
@@ -505,7 +484,7 @@ def _course(problem: Scene) -> Course:
 
 def test_other_bodies_have_no_closed_form_here() -> None:
     """Loads, and an energy that is not of Clebsch's form, are declined with the reason."""
-    loaded = replace(scene(SHARP, GENERIC), body=SHARP.body(force=exact(0, 0, 1)))
+    loaded = replace(scene(SHARP, GENERIC), body=SHARP.body(force=vector(0, 0, 1)))
     with pytest.raises(NoClosedForm, match="force or a couple"):
         enclosed(loaded)
     with pytest.raises(NoClosedForm, match="not of Clebsch's form"):
@@ -572,7 +551,7 @@ TURNING = scene(BLUNT, GENERIC)  # a0 < 0 and q' != q: the argument of sigma ent
 )
 def test_a_broken_twin_is_noticed(twin: Twin, monkeypatch: pytest.MonkeyPatch) -> None:
     """Taylor's motion agrees with the closed form, and not with any of its twins."""
-    times = exact(3, 20)
+    times = vector(3, 20)
     assert agrees_with_taylor(TURNING, times)
     twin(monkeypatch)
     assert not agrees_with_taylor(TURNING, times)
@@ -581,5 +560,5 @@ def test_a_broken_twin_is_noticed(twin: Twin, monkeypatch: pytest.MonkeyPatch) -
 def test_windings_are_lost_only_after_a_turn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Within half a turn the principal argument is the continuous one: only a long time tells."""
     lost_windings(monkeypatch)
-    assert agrees_with_taylor(TURNING, exact("1/10"))
-    assert not agrees_with_taylor(TURNING, exact(3, 20))
+    assert agrees_with_taylor(TURNING, vector("1/10"))
+    assert not agrees_with_taylor(TURNING, vector(3, 20))

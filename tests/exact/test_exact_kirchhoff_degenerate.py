@@ -8,6 +8,20 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.clebsch import (
+    FALLING,
+    GENERIC,
+    PLAIN,
+    STOUT,
+    UPRIGHT,
+    around,
+    at_the_border,
+    body,
+    derivative,
+    falling,
+    slope,
+)
+from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
@@ -16,7 +30,7 @@ from taylor_verify.exact.kirchhoff.regime import regime
 from taylor_verify.exact.solution import Quantities
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import Clebsch
-from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 40
@@ -24,14 +38,8 @@ DIGITS = 40
 AGREEMENT = Fraction(1, 10 ** (DIGITS - 2))
 
 
-def exact(*texts: str | int | Fraction) -> tuple[Fraction, ...]:
-    return tuple(Fraction(text) for text in texts)
-
-
 def scene(solid: Clebsch, start: Sequence[Fraction]) -> Scene:
-    clock = Clock(Fraction(0), (Fraction(1),))
-    impulse = Impulse(tuple(start[:3]), tuple(start[3:]))
-    return Scene("test", "test", "kirchhoff", frozenset(), solid.body(), impulse, clock)
+    return one_instant(solid.body(), Impulse(tuple(start[:3]), tuple(start[3:])))
 
 
 def nutation(solid: Clebsch, start: Sequence[Fraction]) -> Nutation:
@@ -84,79 +92,52 @@ def positive(solid: Clebsch) -> Clebsch | None:
     return solid if across and along else None
 
 
-def falling_from_pole(start: Sequence[Fraction], solid: Clebsch) -> Clebsch:
-    """The body with p' such that the motion has the constants of the spin at x3 = F = 1."""
-    y1, y2, y3 = start[3:]
-    drop = 1 - start[2]
-    assert nutation(solid, start).FG == y3
-    rise = solid.r * (y1**2 + y2**2) + 2 * (solid.q - solid.q_prime) * y3 * drop
-    return replace(solid, p_prime=solid.p + rise / (drop * (1 + start[2])))
-
-
-def at_the_border(start: Sequence[Fraction], solid: Clebsch) -> Clebsch:
-    """The same with q' too, such that A = 0 in Hydromechanics 49 (25): a triple root at F = 1."""
-    y1, y2, y3 = start[3:]
-    drop, r = 1 - start[2], solid.r
-    s = ((2 - drop) * r * y3 / 4 - r * (y1**2 + y2**2) / (drop * y3)) / drop
-    return falling_from_pole(start, replace(solid, q_prime=solid.q - s))
-
-
 def required(solid: Clebsch | None) -> Clebsch:
     assert solid is not None
     return solid
 
 
-def body(*six: str | int | Fraction) -> Clebsch:
-    """p, p', q, q', r, r'."""
-    return Clebsch(*exact(*six))
-
-
-PLAIN = body(1, 2, 0, 0, 1, "1/2")
 EVEN = body(1, 1, "1/10", "1/10", 1, "1/2")  # p' = p, q' = q
 SCREW = body(1, 1, "1/10", "3/10", 1, "1/2")  # p' = p
-STOUT = body(6, 6, "1/3", "1/3", 1, 2)
-GENERIC = exact("1/2", "1/3", 1, "1/5", "-1/4", 1)
-FALLING = exact("3/5", 0, "4/5", "1/6", "1/2", "1/2")  # F = 1, FG = y3
 TAIL = Fraction(1, 10**6)
 TAIL_Z = (1 - TAIL**2) / (1 + TAIL**2)
 TAIL_X = 2 * TAIL / (1 + TAIL**2)
 FAR_OUT = (TAIL_X, Fraction(0), TAIL_Z, (1 - TAIL_Z) / (2 * TAIL_X), TAIL_X / 3, Fraction(1, 2))
-UPRIGHT = exact(0, 0, 1, "1/3", "1/7", 1)
-TURNING = exact("1/2", "1/3", "1/2", "1/4", "1/6", "-1/2")  # y parallel to x across the axis
+TURNING = vector("1/2", "1/3", "1/2", "1/4", "1/6", "-1/2")  # y parallel to x across the axis
 
 CASES = {
-    "falling from the pole": (falling_from_pole(FALLING, PLAIN), FALLING, "hyperbolic"),
-    "falling from the pole, screw": (falling_from_pole(FALLING, SCREW), FALLING, "hyperbolic"),
-    "falling from the pole, far out": (falling_from_pole(FAR_OUT, PLAIN), FAR_OUT, "hyperbolic"),
+    "falling from the pole": (falling(PLAIN, FALLING), FALLING, "hyperbolic"),
+    "falling from the pole, screw": (falling(SCREW, FALLING), FALLING, "hyperbolic"),
+    "falling from the pole, far out": (falling(PLAIN, FAR_OUT), FAR_OUT, "hyperbolic"),
     "falling from the pole, a cubic": (
-        # q' makes the rise of falling_from_pole vanish, so that p' = p.
+        # q' makes the rise of `falling` vanish, so that p' = p.
         body(1, 1, 0, "25/18", 1, 9),
-        exact("3/5", 0, "4/5", "1/6", "1/2", "1/2"),
+        vector("3/5", 0, "4/5", "1/6", "1/2", "1/2"),
         "hyperbolic",
     ),
     "quadratic": (EVEN, GENERIC, "trigonometric"),
     "quadratic, y3 = 0": (SCREW, (*GENERIC[:5], Fraction(0)), "trigonometric"),
     "quadratic, over both poles": (
         SCREW,
-        exact("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
+        vector("3/5", "1/5", "4/5", "1/5", "-3/5", 0),
         "trigonometric",
     ),
     "quadratic, from the axis": (EVEN, UPRIGHT, "trigonometric"),
     "quadratic, from the axis, over both poles": (
         SCREW,
-        exact(0, 0, -1, "1/3", "1/7", 0),
+        vector(0, 0, -1, "1/3", "1/7", 0),
         "trigonometric",
     ),
     "quadratic, from a turning point": (EVEN, TURNING, "trigonometric"),
-    "border": (at_the_border(FALLING, STOUT), FALLING, "algebraic"),
-    "heteroclinic": (PLAIN, exact("3/5", 0, "4/5", 0, "3/5", 0), "heteroclinic"),
+    "border": (at_the_border(STOUT, FALLING), FALLING, "algebraic"),
+    "heteroclinic": (PLAIN, vector("3/5", 0, "4/5", 0, "3/5", 0), "heteroclinic"),
     "heteroclinic downwards, F irrational": (
         body(1, 2, "1/5", "-1/3", 1, "1/2"),
-        exact("1/2", 1, 1, 1, "-1/2", 0),
+        vector("1/2", 1, 1, 1, "-1/2", 0),
         "heteroclinic",
     ),
-    "top": (SCREW, exact(0, 0, 0, "1/5", "-1/4", "2/3"), "euler-top"),
-    "top about its axis": (SCREW, exact(0, 0, 0, 0, 0, "2/3"), "euler-top"),
+    "top": (SCREW, vector(0, 0, 0, "1/5", "-1/4", "2/3"), "euler-top"),
+    "top about its axis": (SCREW, vector(0, 0, 0, 0, 0, "2/3"), "euler-top"),
 }
 
 by_case = pytest.mark.parametrize(("solid", "start", "kind"), list(CASES.values()), ids=list(CASES))
@@ -186,40 +167,13 @@ def test_obeys_the_equations_of_motion(
     solid: Clebsch, start: Sequence[Fraction], kind: str
 ) -> None:
     """x' = x x Omega and y' = y x Omega + x x U, before and after the start."""
-    # Eighth-order differences at h: the error is h^8 D^9/630. No rate here is above 10 per unit of
-    # time, so it is below 1e-48 * 1e9 / 630; rounding leaves 10^-digits / h.
+    # No rate here is above 10 per unit of time: differences err by less than 1e-48 * 1e9 / 630.
     h, digits = Fraction(1, 10**6), DIGITS + 10
-    weights = (Fraction(4, 5), Fraction(-1, 5), Fraction(4, 105), Fraction(-1, 280))
-    steps = range(-len(weights), len(weights) + 1)
     solution = closed_form(scene(solid, start))
     for middle in (Fraction(-39, 7), Fraction(13, 3)):
-        near = rows(solution.evaluate([middle + k * h for k in steps], digits))
+        near = rows(solution.evaluate(around(middle, h), digits))
         with mp.workdps(digits + 10):
-            found = [
-                sum(
-                    mp.convert(weight / h) * (near[4 + k][i] - near[4 - k][i])
-                    for k, weight in enumerate(weights, 1)
-                )
-                for i in range(6)
-            ]
-            assert distance(found, velocity(solid, near[4])) <= AGREEMENT
-
-
-def velocity(solid: Clebsch, s: Sequence[mpf]) -> list[mpf]:
-    """x' and y'."""
-    x, y = s[:3], s[3:]
-    p, q, r = ([mp.convert(c)] for c in (solid.p, solid.q, solid.r))
-    linear = p * 2 + [mp.convert(solid.p_prime)]
-    screw = q * 2 + [mp.convert(solid.q_prime)]
-    angular = r * 2 + [mp.convert(solid.r_prime)]
-    U = [a * b + c * e for a, b, c, e in zip(linear, x, screw, y, strict=True)]
-    Omega = [a * b + c * e for a, b, c, e in zip(screw, x, angular, y, strict=True)]
-    turning = zip(cross(y, Omega), cross(x, U), strict=True)
-    return cross(x, Omega) + [a + b for a, b in turning]
-
-
-def cross(a: Sequence[mpf], b: Sequence[mpf]) -> list[mpf]:
-    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+            assert distance(slope(near, h), derivative(solid, near[4])) <= AGREEMENT
 
 
 def random_start(rng: random.Random, place: str) -> tuple[Fraction, ...]:
@@ -374,7 +328,7 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 def test_a_single_repeated_root_is_found(factor: tuple[int, ...], times: int) -> None:
     """The repeated root is exact, whatever the others are."""
     root = Fraction(-7, 3)
-    polynomial = exact(*factor)
+    polynomial = vector(*factor)
     for _ in range(times):
         polynomial = _times(polynomial, (Fraction(1), -root))
     assert value(polynomial, root) == 0
@@ -384,5 +338,5 @@ def test_a_single_repeated_root_is_found(factor: tuple[int, ...], times: int) ->
 @pytest.mark.parametrize("square", [(1, 0, -2), (1, 0, 1), (1, -1, 0)])
 def test_two_repeated_roots_are_not_one(square: tuple[int, ...]) -> None:
     """A square of a quadratic with distinct roots has no single repeated root."""
-    assert repeated_root(_times(exact(*square), exact(*square))) is None
-    assert repeated_root(exact(*square)) is None
+    assert repeated_root(_times(vector(*square), vector(*square))) is None
+    assert repeated_root(vector(*square)) is None

@@ -10,6 +10,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from builders.numbers import apart as distance
+from builders.scenes import vector
+from builders.washboards import loaded
 from flint import ctx
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -25,7 +28,7 @@ from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Spin
+from taylor_verify.scenes.motion import IDENTITY, Motion, Spin
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -33,7 +36,6 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 40
 ROUTES = ("arb", "mpmath")
-FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 
 REGIMES = {
     "spin-up": "axial-moment",
@@ -45,17 +47,6 @@ REGIMES = {
     "moment-oblique-symmetry": "axial-moment",
     "moment-backward": "oblique-moment",
 }
-
-
-def vector(*entries: int | str) -> Vector:
-    return tuple(Fraction(entry) for entry in entries)
-
-
-def loaded(inertia: Matrix, moment: Vector, omega: Vector, attitude: bool = False) -> Scene:
-    track = frozenset({"attitude"} if attitude else ())
-    clock = Clock(Fraction(0), (Fraction(0), Fraction(1)))
-    body, start = RigidBody(inertia, moment), Spin(omega, FRAME)
-    return Scene("drawn", "drawn", "euler", track, body, start, clock)
 
 
 def revolved(axis: Vector, simple: Fraction, double: Fraction) -> Matrix:
@@ -72,14 +63,8 @@ def revolved(axis: Vector, simple: Fraction, double: Fraction) -> Matrix:
 
 def apart(one: Motion, other: Motion) -> mpf:
     """The largest distance of a row from its like, in parts of its norm."""
-    assert set(one.quantities) == set(other.quantities)
-    worst = mpf(0)
     with mp.workdps(3 * DIGITS):
-        for name, rows in one.quantities.items():
-            for p, q in zip(rows, other[name], strict=True):
-                size = mp.norm(list(p.flat))
-                worst = max(worst, mp.norm(list((p - q).flat)) / (size if size else 1))
-    return worst
+        return distance(one, other)
 
 
 # What two numbers of so many digits may differ by.

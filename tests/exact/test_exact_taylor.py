@@ -9,34 +9,28 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, vector
-from mpmath import libmp, mp, mpf
+from builders.numbers import largest, matrix, rational
+from builders.scenes import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, one_instant, vector
+from mpmath import mp, mpf
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution, arcs
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector, diagonal, scaled
+from taylor_verify.scenes.tensors import Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 
 
 def euler(body: RigidBody, *track: str, omega: Vector = OMEGA) -> Scene:
-    return scene("euler", body, Spin(omega, QUATERNION), track)
+    return one_instant(body, Spin(omega, QUATERNION), *track)
 
 
 def kirchhoff(body: ImmersedBody, *track: str) -> Scene:
     start = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3))
-    return scene("kirchhoff", body, start, track)
-
-
-def scene(
-    model: str, body: RigidBody | ImmersedBody, start: Spin | Impulse, track: Sequence[str]
-) -> Scene:
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", model, frozenset(track), body, start, clock)
+    return one_instant(body, start, *track)
 
 
 EVERYTHING = [
@@ -48,10 +42,6 @@ EVERYTHING = [
 each_scene = pytest.mark.parametrize(
     "scene", EVERYTHING, ids=["euler", "euler loaded", "kirchhoff", "kirchhoff loaded"]
 )
-
-
-def matrix(rows: Matrix) -> Array:
-    return np.array([[mp.convert(entry) for entry in row] for row in rows], dtype=object)
 
 
 def rates(scene: Scene, motion: Motion, row: int) -> dict[str, Array]:
@@ -74,15 +64,6 @@ def rates(scene: Scene, motion: Motion, row: int) -> dict[str, Array]:
         found["centre"] = motion["attitude"][row] @ velocity
     found["attitude"] = motion["attitude"][row] @ np.cross(omega, np.eye(3, dtype=int)).T
     return found
-
-
-def largest(values: Array) -> mpf:
-    return max(abs(value) for value in values.flat)
-
-
-def rational(value: mpf) -> Fraction:
-    """The exact value of an mpf; its tuple has the sign, which man_exp has not."""
-    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
 
 
 @each_scene

@@ -9,35 +9,26 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.numbers import largest, rational
 from builders.scenes import (
     CLEBSCH,
     COUPLE,
     FORCE,
     GENERAL,
-    IMPULSE,
     MOMENT,
-    SPIN,
     TENSOR,
+    sample_scene,
     vector,
 )
-from mpmath import libmp, mp, mpf
+from mpmath import mp, mpf
 
 from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
-
-
-def scene(
-    body: RigidBody | ImmersedBody, *track: str, start: Spin | Impulse | None = None
-) -> Scene:
-    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
-    initial = start or (SPIN if model == "euler" else IMPULSE)
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", model, frozenset(track), body, initial, clock)
 
 
 def named(scene: Scene) -> dict[str, Invariant]:
@@ -48,20 +39,16 @@ def sampled(scene: Scene, times: Sequence[Fraction], digits: int = 40) -> Motion
     return TaylorSolution(scene).motion(times, digits)
 
 
-def largest(values: Array) -> mpf:
-    return max(abs(value) for value in values.flat)
-
-
 @pytest.mark.parametrize(
     ("scene", "names"),
     [
-        (scene(RigidBody(TENSOR)), "T H2"),
-        (scene(RigidBody(TENSOR), "attitude"), "T H2 H_space"),
-        (scene(GENERAL), "T F2 FG"),
-        (scene(CLEBSCH), "T F2 FG y3"),
-        (scene(GENERAL, "attitude"), "T F2 FG x_space"),
-        (scene(GENERAL, "attitude", "centre"), "T F2 FG x_space y_space"),
-        (scene(CLEBSCH, "attitude", "centre"), "T F2 FG y3 x_space y_space"),
+        (sample_scene(RigidBody(TENSOR)), "T H2"),
+        (sample_scene(RigidBody(TENSOR), "attitude"), "T H2 H_space"),
+        (sample_scene(GENERAL), "T F2 FG"),
+        (sample_scene(CLEBSCH), "T F2 FG y3"),
+        (sample_scene(GENERAL, "attitude"), "T F2 FG x_space"),
+        (sample_scene(GENERAL, "attitude", "centre"), "T F2 FG x_space y_space"),
+        (sample_scene(CLEBSCH, "attitude", "centre"), "T F2 FG y3 x_space y_space"),
     ],
 )
 def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
@@ -79,8 +66,8 @@ def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
 def test_they_tell_one_motion_from_another() -> None:
     """Under loads every one of them changes: none is constant by its form."""
     rigid, solid = (
-        scene(RigidBody(TENSOR, MOMENT), "attitude"),
-        scene(replace(CLEBSCH, force=FORCE, couple=COUPLE), "attitude", "centre"),
+        sample_scene(RigidBody(TENSOR, MOMENT), "attitude"),
+        sample_scene(replace(CLEBSCH, force=FORCE, couple=COUPLE), "attitude", "centre"),
     )
     for loaded in (rigid, solid):
         motion = sampled(loaded, [Fraction(0), Fraction(1)])
@@ -92,7 +79,7 @@ def test_they_tell_one_motion_from_another() -> None:
 
 def test_y3_of_a_loaded_clebsch_body() -> None:
     """For a body of Clebsch's form y3 grows by the axial couple alone: y3 = y3(0) + N t."""
-    loaded = scene(replace(CLEBSCH, force=FORCE, couple=COUPLE))
+    loaded = sample_scene(replace(CLEBSCH, force=FORCE, couple=COUPLE))
     motion = sampled(loaded, [Fraction(4)])
     with mp.workdps(50):
         expected = mp.convert(Fraction(1) + 4 * COUPLE[2])
@@ -101,7 +88,7 @@ def test_y3_of_a_loaded_clebsch_body() -> None:
 
 def test_energy_grows_by_the_work_of_a_moment() -> None:
     """T(t) - T(0) is the integral of M . omega, and R I omega grows by the integral of R M."""
-    loaded = scene(RigidBody(TENSOR, MOMENT), "attitude")
+    loaded = sample_scene(RigidBody(TENSOR, MOMENT), "attitude")
     moment = [float_free(entry) for entry in MOMENT]
 
     def work(motion: Motion) -> Array:
@@ -116,7 +103,7 @@ def test_energy_grows_by_the_work_of_a_moment() -> None:
 
 def test_impulse_grows_by_the_loads() -> None:
     """T by X.U + L.Omega; R x by R X; R y + c x R x by R L + c x R X: 48 (7), (9)."""
-    loaded = scene(replace(GENERAL, force=FORCE, couple=COUPLE), "attitude", "centre")
+    loaded = sample_scene(replace(GENERAL, force=FORCE, couple=COUPLE), "attitude", "centre")
     force = np.array([float_free(entry) for entry in FORCE])
     couple = np.array([float_free(entry) for entry in COUPLE])
     energy = np.array([[float_free(e) for e in row] for row in GENERAL.energy_matrix])
@@ -162,14 +149,9 @@ def legendre(count: int) -> tuple[list[mpf], list[mpf]]:
     return roots, weights
 
 
-def rational(value: mpf) -> Fraction:
-    """The exact value of an mpf; its tuple has the sign, which man_exp has not."""
-    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
-
-
 @pytest.mark.parametrize(
     "scene",
-    [scene(RigidBody(TENSOR), "attitude"), scene(CLEBSCH, "attitude", "centre")],
+    [sample_scene(RigidBody(TENSOR), "attitude"), sample_scene(CLEBSCH, "attitude", "centre")],
     ids=["euler", "kirchhoff"],
 )
 def test_sensitivity_is_the_derivative_or_its_norm(scene: Scene) -> None:
@@ -222,15 +204,15 @@ def nudged(scene: Scene, motion: Motion, block: str, j: int) -> Motion:
 def test_scales_do_not_vanish() -> None:
     """x.y = 0 leaves FG a scale, y3 = 0 leaves y3 one, and a body at rest has scale 1 for all."""
     crossed = Impulse(vector(1, 0, 0), vector(0, 2, 0))
-    motion = sampled(scene(CLEBSCH, start=crossed), [Fraction(0)])
-    found = named(scene(CLEBSCH))
+    motion = sampled(sample_scene(CLEBSCH, start=crossed), [Fraction(0)])
+    found = named(sample_scene(CLEBSCH))
     for name in ("FG", "y3"):
         assert found[name].value(motion)[0] == 0
         assert found[name].scale(motion) == 2
     nowhere = Impulse(vector(0, 0, 0), vector(0, 0, 0))
     for resting in (
-        scene(CLEBSCH, "attitude", "centre", start=nowhere),
-        scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0))),
+        sample_scene(CLEBSCH, "attitude", "centre", start=nowhere),
+        sample_scene(RigidBody(TENSOR), "attitude", start=Spin(vector(0, 0, 0))),
     ):
         motion = sampled(resting, [Fraction(0), Fraction(1)])
         assert [invariant.scale(motion) for invariant in invariants(resting)] == [1] * len(

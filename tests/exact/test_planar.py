@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import pytest
+from builders.numbers import apart
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -83,16 +83,6 @@ def fitting(name: str, k: int, swapped: bool) -> tuple[Scene, str]:
     if swapped:
         return built(k, (p[1], p[0], p[2]), (second, first, across)), word
     return built(k, p, (first, second, across)), word
-
-
-def apart(one: Any, other: Any) -> mpf:
-    """The largest difference of two motions, relative to the size of each vector and matrix."""
-    found = mpf(0)
-    for name, rows in one.quantities.items():
-        for a, b in zip(rows, other[name], strict=True):
-            size = mp.norm(list(a.flat))
-            found = max(found, mp.norm(list((a - b).flat)) / (size if size else 1))
-    return found
 
 
 @pytest.mark.parametrize("swapped", [False, True], ids=["p_i < p_j", "p_i > p_j"])

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, vector
+from builders.numbers import largest
+from builders.scenes import IMPULSE, LOADED, MOMENT, SIX, SPIN, TENSOR, one_instant, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import sensitivity as module
@@ -20,8 +21,8 @@ from taylor_verify.exact.conditioning.sensitivity import Sensitivity, sensitivit
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector, diagonal, scaled
@@ -30,27 +31,17 @@ Array = np.ndarray[Any, Any]
 Twin = Callable[[Sensitivity], Sensitivity]
 
 
-def scene(body: RigidBody | ImmersedBody, start: Spin | Impulse, *track: str) -> Scene:
-    model = "euler" if isinstance(body, RigidBody) else "kirchhoff"
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("test", "test", model, frozenset(track), body, start, clock)
-
-
-TUMBLING = scene(RigidBody(TENSOR), SPIN, "attitude")
-CLEBSCH = scene(SIX.body(), IMPULSE, "attitude", "centre")
+TUMBLING = one_instant(RigidBody(TENSOR), SPIN, "attitude")
+CLEBSCH = one_instant(SIX.body(), IMPULSE, "attitude", "centre")
 SCENES = {
     "tumbling": TUMBLING,
-    "moment": scene(RigidBody(TENSOR, MOMENT), SPIN, "attitude"),
-    "axisymmetric": scene(
+    "moment": one_instant(RigidBody(TENSOR, MOMENT), SPIN, "attitude"),
+    "axisymmetric": one_instant(
         RigidBody(diagonal(vector(1, 1, 2))), Spin(vector("0.6", "0.8", "0.5")), "attitude"
     ),
     "clebsch": CLEBSCH,
-    "general": scene(LOADED, IMPULSE, "attitude", "centre"),
+    "general": one_instant(LOADED, IMPULSE, "attitude", "centre"),
 }
-
-
-def largest(values: Any) -> mpf:
-    return max(abs(value) for value in np.asarray(values, dtype=object).flat)
 
 
 def column(entries: Vector) -> Array:
@@ -413,7 +404,7 @@ def test_degenerate_orbits_have_derivatives(name: str) -> None:
 
 def test_an_unstable_orbit_takes_smaller_steps() -> None:
     """About the middle axis an error grows as cosh: 10^20 times after 80, and known to 15 digits."""
-    problem = scene(RigidBody(diagonal(vector(1, 2, 3))), Spin(vector(0, 1, 0)))
+    problem = one_instant(RigidBody(diagonal(vector(1, 2, 3))), Spin(vector(0, 1, 0)))
     found = sensitivity(problem, [Fraction(80)])["omega", "omega"][0]
     with mp.workdps(30):
         # omega1' = (2 - 3) omega2 omega3, omega3' = (1 - 2)/3 omega1 omega2.
@@ -427,7 +418,7 @@ def test_an_unstable_orbit_takes_smaller_steps() -> None:
 def test_what_does_not_settle_is_not_answered(monkeypatch: pytest.MonkeyPatch) -> None:
     """With one attempt only an orbit that grows so has no derivative; the error names the input."""
     monkeypatch.setattr(module, "_ATTEMPTS", 1)
-    problem = scene(RigidBody(diagonal(vector(1, 2, 3))), Spin(vector(0, 1, 0)))
+    problem = one_instant(RigidBody(diagonal(vector(1, 2, 3))), Spin(vector(0, 1, 0)))
     with pytest.raises(Unsettled, match="depends on omega omega1"):
         sensitivity(problem, [Fraction(80)])
 

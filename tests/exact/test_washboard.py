@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import vector
 from builders.washboards import DIGITS, FRAME, ROUTES, axial, board, gap, loaded
 from flint import acb, arb, ctx
 from hypothesis import HealthCheck, assume, given, settings
@@ -37,17 +38,13 @@ from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.scenes.tensors import Matrix
 
 SHIPPED = {
     "moment-middle-axis": "washboard-swing",
     "washboard-swing": "washboard-swing",
     "washboard-run": "washboard-run",
 }
-
-
-def vector(*entries: int | str) -> Vector:
-    return tuple(Fraction(entry) for entry in entries)
 
 
 # A rotation with rational entries, so that the principal axes are rational and none is a body axis.

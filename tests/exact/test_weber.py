@@ -11,11 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from builders.webers import BODIES, STARTS, built, case, curve_of, exact
+from builders.numbers import apart
+from builders.scenes import vector
+from builders.webers import BODIES, STARTS, built, case, curve_of
 from flint import ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import max_or_nan, midpoint
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.weber import enclosure
@@ -40,16 +42,6 @@ TIMES = [Fraction(0), Fraction(1, 3), Fraction(-7, 2), Fraction(6)]
 
 def shipped() -> Scene:
     return load("kirchhoff/weber")
-
-
-def apart(one: Motion, other: Motion) -> mpf:
-    """The largest difference of two motions, relative to the size of each vector; NaN if one is."""
-    found = mpf(0)
-    for name, rows in one.quantities.items():
-        for a, b in zip(rows, other[name], strict=True):
-            size = mp.norm(list(a.flat))
-            found = max_or_nan(found, mp.norm(list((a - b).flat)) / (size if size else 1))
-    return found
 
 
 # Against Taylor.
@@ -179,12 +171,14 @@ def test_what_is_nearly_webers_is_not() -> None:
 
 
 # F_2 = y_3^2/(a_2 - a_1) + y_1^2/(a_2 - a_3) = 0, though a_2 - a_1 = a_3 - a_2: a_2 is a root of B.
-DEGENERATE = built(exact("1/2", 0, "1/2"), exact(1, "-1/2", -1), exact(1, 1, 1), exact(1, 2, 3))
+DEGENERATE = built(vector("1/2", 0, "1/2"), vector(1, "-1/2", -1), vector(1, 1, 1), vector(1, 2, 3))
 DECLINED = {
     "two branch points of Weber's curve coincide": DEGENERATE,
     "not attitude and centre": replace(shipped(), track=frozenset({"attitude"})),
-    "only the motions with FG = 0": built(exact(1, "1/2", 1), exact(1, 1, 1), *BODIES["theta > 0"]),
-    "of Clebsch's form": built(exact(1, 0, 1), exact(0, 1, 0), exact(1, 2, 3), exact(1, 2, 4)),
+    "only the motions with FG = 0": built(
+        vector(1, "1/2", 1), vector(1, 1, 1), *BODIES["theta > 0"]
+    ),
+    "of Clebsch's form": built(vector(1, 0, 1), vector(0, 1, 0), vector(1, 2, 3), vector(1, 2, 4)),
 }
 
 
@@ -203,8 +197,8 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
     near = built(
         (Fraction(1, 2), little, Fraction(1, 2)),
         (1 + little, Fraction(-1, 2), Fraction(-1)),
-        exact(1, 1, 1),
-        exact(1, 2, 3),
+        vector(1, 1, 1),
+        vector(1, 2, 3),
     )
     times = [Fraction(-7, 2)]
     found = enclosure.enclosed(near).motion(times, 30)
@@ -217,7 +211,7 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
 
 def test_a_motion_in_a_plane_stays_the_pendulums() -> None:
     """A body of the family whose x stays in a plane of it: a pendulum, and no curve of genus two."""
-    scene = built(exact(1, "1/2", 0), exact(0, 0, "1/3"), *BODIES["theta > 0"], Fraction(0))
+    scene = built(vector(1, "1/2", 0), vector(0, 0, "1/3"), *BODIES["theta > 0"], Fraction(0))
     assert curve(scene) is None
     assert solution(scene).regime in ("planar-swing", "planar-turn")
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import tracking_all, vector
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -34,15 +35,6 @@ from taylor_verify.scenes.scene import Scene
 SCENES = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
 CLOCK = Clock(Fraction(0), (Fraction(0), Fraction(1)))
 LOAD = (Fraction(1, 3), Fraction(-1, 7), Fraction(2))
-
-
-def vector(*entries: object) -> tuple[Fraction, ...]:
-    return tuple(map(Fraction, entries))
-
-
-def tracking_all(scene: Scene) -> Scene:
-    track = {"attitude"} if scene.model == "euler" else {"attitude", "centre"}
-    return replace(scene, track=frozenset(track))
 
 
 def spinning(inertia: tensors.Matrix, moment: tuple[Fraction, ...] = vector(0, 0, 0)) -> Scene:

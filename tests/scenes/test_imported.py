@@ -11,6 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from builders.scenes import vector
 from mpmath import mp
 
 from taylor_verify.cli import main
@@ -29,10 +30,6 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 PATIENCE = 20.0
 
 Captured = pytest.CaptureFixture[str]
-
-
-def vector(*entries: str | int) -> Vector:
-    return tuple(map(Fraction, entries))
 
 
 # A rigid link of point masses: mass and place about the origin of the link, in its axes.

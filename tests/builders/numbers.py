@@ -1,0 +1,48 @@
+"""Numbers and arrays of mpmath: exact values, largest entries, distances of motions."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from mpmath import libmp, mp, mpf
+
+from taylor_verify.exact.solution import Motion
+from taylor_verify.scenes.tensors import Matrix, Vector
+
+Array = np.ndarray[Any, Any]
+
+
+def matrix(rows: Matrix) -> Array:
+    """Return the array of these numbers, rounded at the ambient precision."""
+    return np.array([[mp.convert(entry) for entry in row] for row in rows], dtype=object)
+
+
+def rational(value: mpf) -> Fraction:
+    """Return the exact value of an mpf; its tuple has the sign, which man_exp has not."""
+    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
+
+
+def rationals(values: Array) -> Vector:
+    """Return the exact values of an array of mpf, flat."""
+    return tuple(rational(value) for value in values.flat)
+
+
+def largest(values: Any) -> mpf:
+    """Return the largest absolute value of an array."""
+    return max(abs(value) for value in np.asarray(values, dtype=object).flat)
+
+
+def apart(one: Motion, other: Motion) -> mpf:
+    """Return the largest distance of a vector or matrix from its like, in parts of its norm.
+
+    NaN if one of them is.
+    """
+    assert set(one.quantities) == set(other.quantities)
+    distances = [mpf(0)]
+    for name, rows in one.quantities.items():
+        for p, q in zip(rows, other[name], strict=True):
+            size = mp.norm(list(p.flat))
+            distances.append(mp.norm(list((p - q).flat)) / (size if size else 1))
+    return mp.nan if any(map(mp.isnan, distances)) else max(distances)
