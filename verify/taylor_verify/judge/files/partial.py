@@ -26,7 +26,8 @@ from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, floor
 from taylor_verify.judge.floor.inputs import Velocity, angular_velocity, linear_velocity
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.judgement import Judgement, judgement, numbers_of, verdict_on
+from taylor_verify.judge.judgement import Judgement, judgement
+from taylor_verify.judge.rows import numbers_of, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.doubles import Doubles
