@@ -215,7 +215,8 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
     """Return the verdicts of a file: verdicts.json of `run --out`, or the document of `--json`.
 
     Raises scenes.reading.faults.Refused for a file that cannot be read, and ValueError, with what was
-    expected and where, for one that holds something else: a baseline that is half understood would let all pass.
+    expected and where, for one that holds something else: a baseline that is half understood would let
+    all pass.
     """
     content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
     try:

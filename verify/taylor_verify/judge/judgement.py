@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from math import fsum, inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,11 +22,10 @@ from taylor_verify.judge.floor.attainable import Floats, Floor, floor
 from taylor_verify.judge.floor.steps import Steps, count_steps
 from taylor_verify.judge.floor.unit_quaternion import unit_quaternion
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
-from taylor_verify.judge.provenance import provenance
+from taylor_verify.judge.rows import gate_record, numbers_of, run_record, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.doubles import Doubles, four_digits
 from taylor_verify.records.quantities import MAIN, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Cause, Kind, Reason, stated
 from taylor_verify.records.record import GateRecord, Record
@@ -36,7 +33,7 @@ from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.mpfr import in_mpfr
-from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -148,7 +145,7 @@ def judgement(
     that cannot be had, are verdicts and raise nothing.
     """
     run = _Run(problem, solver, trajectory, Steps(trajectory.steps), tolerances)
-    main = main_quantity(problem.scene)
+    main = MAIN[problem.scene.model]
     if trajectory.outcome is not Outcome.FINISHED:
         status = Status.UNAVAILABLE if trajectory.outcome.is_unavailable else Status.FAIL
         return Judgement((run.verdict(main, status, reason=_unfinished(trajectory)),), None)
@@ -196,7 +193,8 @@ def _compare(run: _Run, exact: Solution) -> Judgement:
                 for invariant, errors in measured.drifts
             ]
             gated += _lengths(run, base, measured.excess)
-    record = _record(run, exact, digits, tuple(gate for _, gate in gated))
+    gates = tuple(gate for _, gate in gated)
+    record = run_record(problem, run.solver.name, trajectory, exact, digits, gates)
     verdicts = tuple(_diagnosed(run, verdict, gate) for verdict, gate in gated)
     return Judgement(verdicts, record, costs=costs.seconds)
 
@@ -220,7 +218,7 @@ def _state(
     attainable = base.of_state(errors)
     finding = run.judge(errors, attainable, _reason(run, base, errors, attainable, Carried.ORBIT))
     if shift is None:
-        return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+        return _verdict(run, errors, attainable, finding), gate_record(errors, attainable)
     # A shift that roundings alone have made is another one on every machine.
     is_told = not (finding.status is Status.PASS and finding.is_rounding)
     if is_told:
@@ -234,7 +232,7 @@ def _state(
         remains=None if shift.kind is Kind.NONE else shift.remains,
     )
     shifts = shift.at_samples if is_told and is_shifted_whole else ()
-    return verdict, _gate(errors, attainable, shifts)
+    return verdict, gate_record(errors, attainable, shifts)
 
 
 def _lengths(run: _Run, base: Floor, excess: Floats | None) -> list[Gated]:
@@ -244,7 +242,7 @@ def _lengths(run: _Run, base: Floor, excess: Floats | None) -> list[Gated]:
     if failed is None:
         return []
     errors, attainable, finding = failed
-    return [(_verdict(run, errors, attainable, finding), _gate(errors, attainable))]
+    return [(_verdict(run, errors, attainable, finding), gate_record(errors, attainable))]
 
 
 def _conserved(
@@ -257,7 +255,7 @@ def _conserved(
         attainable = np.hypot(attainable, work.drift(roundoff, steps, base.times, _scale(errors)))
     reason = _reason(run, base, errors, attainable, Carried.GRADIENT, work is not None)
     finding = run.judge(errors, attainable, reason)
-    return _verdict(run, errors, attainable, finding), _gate(errors, attainable)
+    return _verdict(run, errors, attainable, finding), gate_record(errors, attainable)
 
 
 def _reason(
@@ -277,78 +275,6 @@ def _verdict(run: _Run, errors: Errors, attainable: Floats, finding: Finding) ->
     return run.verdict(errors.quantity, finding.status, **numbers)
 
 
-def numbers_of(
-    errors: Errors, attainable: Floats, finding: Finding, instants: Sequence[Fraction]
-) -> dict[str, Any]:
-    """Return the numbers of a verdict on a compared quantity, by the names of its fields."""
-    worst = finding.worst
-    return {
-        "max": float(errors.doubles[worst]),
-        "mean": _mean(errors.doubles),
-        "final": float(errors.doubles[-1]),
-        "at": float(instants[worst]),
-        "unit": errors.unit,
-        "bound": finding.bound,
-        "tolerance": finding.tolerance,
-        "reason": finding.reason,
-        "attainable": float(attainable[worst]),
-        "ratio": finding.ratio,
-        "ratio_at": float(instants[finding.ratio_at]),
-        "change": errors.change,
-    }
-
-
-def _mean(errors: Floats) -> float:
-    """Return the mean; infinite where the sum is beyond doubles."""
-    try:
-        return fsum(errors) / len(errors)
-    except OverflowError:
-        return inf
-
-
-def _gate(errors: Errors, attainable: Floats, shifts: Iterable[float] = ()) -> GateRecord:
-    return GateRecord(
-        quantity=errors.quantity,
-        unit=errors.unit,
-        errors=four_digits(errors.doubles),
-        attainable=four_digits(attainable),
-        truth_radius=_bound(float(np.max(errors.widths))),
-        shifts=four_digits(shifts),
-    )
-
-
-def _bound(radius: float) -> float:
-    """Three digits, and not less: the rest tells how the truth was come by, which may differ by run."""
-    return float(f"{1.006 * radius:.3g}")
-
-
-def _record(run: _Run, exact: Solution, digits: int, gates: tuple[GateRecord, ...]) -> Record:
-    problem, trajectory = run.problem, run.trajectory
-    scene, units = problem.scene, problem.units
-    return Record(
-        scene=scene.name,
-        title=scene.title,
-        solver=run.solver.name,
-        rung=problem.rung.name,
-        track=tuple(sorted(scene.track)),
-        equations=problem.form.text(),
-        parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
-        units={
-            "time": str(units.time),
-            "momentum": str(units.momentum),
-            "impulse": str(units.impulse),
-        },
-        regime=exact.regime,
-        route=exact.route,
-        truth_digits=digits,
-        outcome=trajectory.outcome.value,
-        steps=trajectory.steps,
-        unit_roundoff=float(problem.rung.unit_roundoff),
-        times=Doubles(float(t) for t in problem.given.clock.instants),
-        gates=gates,
-    )
-
-
 def unjudged(
     scene: Scene,
     solver: Solver,
@@ -360,33 +286,5 @@ def unjudged(
 ) -> Judgement:
     """The judgement of a run that could not begin."""
     reason = stated(cause, str(why))
-    verdict = verdict_on(scene, solver, rung, main_quantity(scene), status, outcome, reason=reason)
+    verdict = verdict_on(scene, solver, rung, MAIN[scene.model], status, outcome, reason=reason)
     return Judgement((verdict,), None)
-
-
-def verdict_on(
-    scene: Scene,
-    solver: Solver,
-    rung: Rung,
-    quantity: str,
-    status: Status,
-    outcome: Outcome,
-    **numbers: Any,
-) -> Verdict:
-    """Return the verdict on one quantity of a run, with its provenance."""
-    return Verdict(
-        scene=scene.name,
-        solver=solver.name,
-        rung=rung.name,
-        setting=solver.setting,
-        quantity=quantity,
-        verdict=status,
-        outcome=outcome.value,
-        provenance=provenance(scene.digest),
-        **numbers,
-    )
-
-
-def main_quantity(scene: Scene) -> str:
-    """Return the quantity that every run of the scene's model has."""
-    return MAIN[scene.model]

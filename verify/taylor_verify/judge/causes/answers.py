@@ -13,8 +13,8 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.readings import readings, rotations
-from taylor_verify.judge.conventions.search import Conventions
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import Problem, adopt

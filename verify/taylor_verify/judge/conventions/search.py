@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, inf, log10
+from math import ceil, inf
 from typing import Any, Final
 
 import numpy as np
@@ -26,7 +26,17 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Quantities, Solution, Unsettled
 from taylor_verify.judge.conventions.axes import Frames, renamings
-from taylor_verify.judge.conventions.readings import Reading, readings, rotations
+from taylor_verify.judge.conventions.fits import (
+    AS_WELL,
+    EXPLAINS,
+    FLOAT64,
+    BestReading,
+    Conventions,
+    Fit,
+    findings_of,
+    simplest,
+)
+from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
@@ -38,13 +48,8 @@ from taylor_verify.solvers.files.file import TrajectoryFile
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
-# A convention explains an error if it leaves no more than this part of it: the rest is the solver's.
-EXPLAINS: Final = 1e-2
-# Another one that leaves up to ten times as much as the best explains as well.
-_AS_WELL: Final = 10.0
 # Errors of so many units of roundoff, or of float64's, are not told apart.
 _NOISE_ROUNDOFFS: Final = 64
-_FLOAT64: Final = 2.0**-53
 # The start and one step, which is all that is right to a hundredth without a gyroscopic term; then a few
 # steps, and beginnings so many times as long each. The longest one is half of the file.
 _FEWEST_ROWS: Final = 2
@@ -58,46 +63,6 @@ _DIGITS: Final = 20
 _MOST_SPANS: Final = 10
 
 
-@dataclass(frozen=True)
-class Finding:
-    """One convention of the file that is not the scene's.
-
-    ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
-    relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
-    """
-
-    subject: str
-    words: str
-    before: float
-    after: float
-    alternatives: tuple[str, ...] = ()
-
-    @property
-    def is_certain(self) -> bool:
-        return not self.alternatives
-
-    @property
-    def sentence(self) -> str:
-        figures = f"error {self.before:.2g} without it, {self.after:.2g} with it"
-        if self.is_certain:
-            return f"{self.words} ({figures})"
-        either = "; or ".join(f"[{words}]" for words in (self.words, *self.alternatives))
-        return f"{self.subject} is ambiguous, this motion cannot tell {either} ({figures})"
-
-
-@dataclass(frozen=True)
-class Conventions:
-    """The findings, and the world and readings that correct the file; only what is certain."""
-
-    findings: tuple[Finding, ...]
-    world: World
-    readings: Mapping[str, Reading]
-
-    @property
-    def _rank(self) -> tuple[int, int]:
-        return sum(finding.is_certain for finding in self.findings), len(self.findings)
-
-
 @np.errstate(over="ignore", invalid="ignore")  # an answer may run away
 def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     """The conventions of a file of groups that the scene can be compared with.
@@ -109,7 +74,7 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     if not searches or searches[-1].plain.worst <= searches[-1].noise / EXPLAINS:
         return Conventions((), World(scene), {})
     # Of two beginnings that tell as much the shorter one comes first, and max takes the first.
-    return max((search.conventions() for search in searches), key=lambda found: found._rank)
+    return max((search.conventions() for search in searches), key=lambda found: found.rank)
 
 
 def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
@@ -128,77 +93,6 @@ def _evenly(rows: Sequence[int]) -> tuple[int, ...]:
     return tuple(sorted({rows[round(k)] for k in chosen}))
 
 
-# One world, and how well every group can be read in it.
-
-
-@dataclass(frozen=True)
-class _Read:
-    """The simplest reading of a group that is as good as any, and others as simple and as good.
-
-    ``plain`` is the error of the scene's own reading. ``motion`` is how far the exact motion goes over
-    the rows, in the unit of the errors.
-    """
-
-    reading: Reading
-    error: float
-    plain: float
-    motion: float
-    others: tuple[Reading, ...]
-
-    def is_explained(self, plain: _Read, noise: float) -> bool:
-        return self.error <= max(noise, EXPLAINS * max(plain.error, self.motion))
-
-
-@dataclass(frozen=True)
-class _Fit:
-    world: World
-    groups: Mapping[str, _Read]
-
-    @property
-    def worst(self) -> float:
-        """The largest error of all groups in the scene's own conventions."""
-        return max(read.plain for read in self.groups.values())
-
-    @property
-    def cost(self) -> int:
-        return self.world.cost + sum(read.reading.cost for read in self.groups.values())
-
-    def size(self, noise: float) -> float:
-        """The sum of the orders of magnitude of all groups' errors."""
-        return sum(log10(max(read.error, noise)) for read in self.groups.values())
-
-    def gain(self, plain: _Fit) -> str:
-        """The group that the world explains best."""
-        return max(
-            self.groups, key=lambda g: plain.groups[g].error / (self.groups[g].error or _FLOAT64)
-        )
-
-    def explains(self, plain: _Fit, noise: float) -> bool:
-        """Return True if the world explains some group, and leaves no group unexplained.
-
-        A file that stands still has any unit of time in which the truth does not move either: a map
-        of time explains a motion only where there is one.
-        """
-        best = self.gain(plain)
-        gained, before = self.groups[best], plain.groups[best].error
-        if not gained.error <= EXPLAINS * before:
-            return False
-        if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
-            return False
-        return all(
-            read.is_explained(plain.groups[group], noise) for group, read in self.groups.items()
-        )
-
-
-def _simplest(fits: Sequence[_Fit], noise: float) -> tuple[_Fit, list[_Fit]]:
-    """The world of least cost among those as good as the best; and others, as good and as simple."""
-    best = min(fit.size(noise) for fit in fits)
-    good = [fit for fit in fits if fit.size(noise) <= best + log10(_AS_WELL)]
-    cost = min(fit.cost for fit in good)
-    simple = sorted((f for f in good if f.cost == cost), key=lambda fit: fit.size(noise))
-    return simple[0], simple[1:]
-
-
 @dataclass(frozen=True)
 class _Search:
     """Some rows of the file as floats, beside the exact motion in any world."""
@@ -215,14 +109,14 @@ class _Search:
             return Conventions((), World(self.scene), {})
         tried = (fit for world in self.worlds() for fit in self.fits(world))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, noise))]
-        return _conventions(self.plain, *_simplest(fits, noise))
+        return findings_of(self.plain, *simplest(fits, noise))
 
     @property
     def noise(self) -> float:
-        return _NOISE_ROUNDOFFS * max(float(self.rung.unit_roundoff), _FLOAT64)
+        return _NOISE_ROUNDOFFS * max(float(self.rung.unit_roundoff), FLOAT64)
 
     @cached_property
-    def plain(self) -> _Fit:
+    def plain(self) -> Fit:
         """The best readings in the scene's own world."""
         return self.fits(World(self.scene), (Frames(),))[0]
 
@@ -258,7 +152,7 @@ class _Search:
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
 
-    def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[_Fit]:
+    def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[Fit]:
         """The best readings in a world under each renaming of axes.
 
         Without ``frames``, under those that leave no group unexplained: no other one is the finding.
@@ -275,14 +169,14 @@ class _Search:
         columns = COLUMNS[next(iter(self.values))] if self._is_one_vector else ()
         fits = []
         for renamed in frames or self.frames:
-            groups: dict[str, _Read] = {}
+            groups: dict[str, BestReading] = {}
             for group in self.values:
                 groups[group] = read = self._best(group, floats, near, renamed)
                 if not frames and not read.is_explained(self.plain.groups[group], self.noise):
                     break
             else:
                 words = renamed.words(columns)
-                fits.append(_Fit(replace(world, frames=renamed, axes_words=words), groups))
+                fits.append(Fit(replace(world, frames=renamed, axes_words=words), groups))
         return fits
 
     @property
@@ -291,10 +185,10 @@ class _Search:
 
     def _best(
         self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
-    ) -> _Read:
+    ) -> BestReading:
         known = readings(group, frames)
         if not near:
-            return _Read(known[0], 1.0, 1.0, 0.0, ())
+            return BestReading(known[0], 1.0, 1.0, 0.0, ())
         columns = self.values[group][list(near)]
         right = truth["attitude" if GROUPS[group].is_frame else group]
         # A row out of reach of this world is not known to be right.
@@ -303,12 +197,12 @@ class _Search:
             max(_error(group, reading.read(columns, truth["attitude"]), right), beyond)
             for reading in known
         ]
-        enough = _AS_WELL * max(min(errors), self.noise)
+        enough = AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
         alike = [reading for reading, _ in good if reading.cost == cost]
         motion = _distance(group, np.broadcast_to(right[0], right.shape), right)
-        return _Read(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
+        return BestReading(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
 
     # Worlds.
 
@@ -370,26 +264,3 @@ def _largest(rows: Floats) -> float:
     """The largest norm of all rows."""
     flat = rows.reshape(len(rows), -1)
     return float(np.sqrt(np.einsum("ij,ij->i", flat, flat).max()))
-
-
-# The findings.
-
-
-def _conventions(plain: _Fit, best: _Fit, others: Sequence[_Fit]) -> Conventions:
-    gained = best.gain(plain)
-    before, after = plain.groups[gained].error, best.groups[gained].error
-    alternatives = tuple(o.world.words or "the scene's own" for o in others)
-    findings = [
-        Finding(subject, words, before, after, alternatives)
-        for subject, words in best.world.subjects.items()
-    ]
-    # Where the axes are ambiguous none are renamed.
-    frames = Frames() if others else best.world.frames
-    certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
-    for group, read in best.groups.items():
-        if read.reading.cost and read.error <= EXPLAINS * read.plain:
-            words, unlike = read.reading.words, tuple(other.sentence for other in read.others)
-            findings.append(Finding(group, "; ".join(words), read.plain, read.error, unlike))
-            if not unlike:
-                certain[group] = next(r for r in readings(group, frames) if r.words == words)
-    return Conventions(tuple(findings), plain.world if others else best.world, certain)

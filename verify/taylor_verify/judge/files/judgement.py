@@ -14,7 +14,8 @@ import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answers import causes_of_file
-from taylor_verify.judge.conventions.search import Conventions, Finding, conventions, is_far
+from taylor_verify.judge.conventions.fits import Conventions, Finding
+from taylor_verify.judge.conventions.search import conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.files.extent import Extent, complete_verdict, not_judged
 from taylor_verify.judge.files.notes import (

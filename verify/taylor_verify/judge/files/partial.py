@@ -24,7 +24,8 @@ from taylor_verify.judge.errors.state import Distances, Errors, largest, norms
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floats, floor
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.judge.judgement import Judgement, judgement, numbers_of, verdict_on
+from taylor_verify.judge.judgement import Judgement, judgement
+from taylor_verify.judge.rows import numbers_of, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.judge.velocities import (
     Velocity,

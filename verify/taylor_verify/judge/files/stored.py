@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from math import inf, sqrt
 from typing import Final
 
-from taylor_verify.judge.conventions.search import Finding
+from taylor_verify.judge.conventions.fits import Finding
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.precisions import bits_of

@@ -1,0 +1,146 @@
+"""The conventions that explain a file, chosen among fits: worlds with the best reading of each group."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log10
+from typing import Final
+
+from taylor_verify.judge.conventions.axes import Frames
+from taylor_verify.judge.conventions.readings import Reading, readings
+from taylor_verify.judge.conventions.worlds import World
+
+# A convention explains an error if it leaves no more than this part of it: the rest is the solver's.
+EXPLAINS: Final = 1e-2
+# Another one that leaves up to ten times as much as the best explains as well.
+AS_WELL: Final = 10.0
+FLOAT64: Final = 2.0**-53
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One convention of the file that is not the scene's.
+
+    ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
+    relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.
+    """
+
+    subject: str
+    words: str
+    before: float
+    after: float
+    alternatives: tuple[str, ...] = ()
+
+    @property
+    def is_certain(self) -> bool:
+        return not self.alternatives
+
+    @property
+    def sentence(self) -> str:
+        figures = f"error {self.before:.2g} without it, {self.after:.2g} with it"
+        if self.is_certain:
+            return f"{self.words} ({figures})"
+        either = "; or ".join(f"[{words}]" for words in (self.words, *self.alternatives))
+        return f"{self.subject} is ambiguous, this motion cannot tell {either} ({figures})"
+
+
+@dataclass(frozen=True)
+class Conventions:
+    """The findings, and the world and readings that correct the file; only what is certain."""
+
+    findings: tuple[Finding, ...]
+    world: World
+    readings: Mapping[str, Reading]
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        return sum(finding.is_certain for finding in self.findings), len(self.findings)
+
+
+@dataclass(frozen=True)
+class BestReading:
+    """The simplest reading of a group that is as good as any, and others as simple and as good.
+
+    ``plain`` is the error of the scene's own reading. ``motion`` is how far the exact motion goes over
+    the rows, in the unit of the errors.
+    """
+
+    reading: Reading
+    error: float
+    plain: float
+    motion: float
+    others: tuple[Reading, ...]
+
+    def is_explained(self, plain: BestReading, noise: float) -> bool:
+        return self.error <= max(noise, EXPLAINS * max(plain.error, self.motion))
+
+
+@dataclass(frozen=True)
+class Fit:
+    world: World
+    groups: Mapping[str, BestReading]
+
+    @property
+    def worst(self) -> float:
+        """The largest error of all groups in the scene's own conventions."""
+        return max(read.plain for read in self.groups.values())
+
+    @property
+    def cost(self) -> int:
+        return self.world.cost + sum(read.reading.cost for read in self.groups.values())
+
+    def size(self, noise: float) -> float:
+        """The sum of the orders of magnitude of all groups' errors."""
+        return sum(log10(max(read.error, noise)) for read in self.groups.values())
+
+    def gain(self, plain: Fit) -> str:
+        """The group that the world explains best."""
+        return max(
+            self.groups, key=lambda g: plain.groups[g].error / (self.groups[g].error or FLOAT64)
+        )
+
+    def explains(self, plain: Fit, noise: float) -> bool:
+        """Return True if the world explains some group, and leaves no group unexplained.
+
+        A file that stands still has any unit of time in which the truth does not move either: a map
+        of time explains a motion only where there is one.
+        """
+        best = self.gain(plain)
+        gained, before = self.groups[best], plain.groups[best].error
+        if not gained.error <= EXPLAINS * before:
+            return False
+        if self.world.moves_time and not gained.error <= EXPLAINS * gained.motion:
+            return False
+        return all(
+            read.is_explained(plain.groups[group], noise) for group, read in self.groups.items()
+        )
+
+
+def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
+    """The world of least cost among those as good as the best; and others, as good and as simple."""
+    best = min(fit.size(noise) for fit in fits)
+    good = [fit for fit in fits if fit.size(noise) <= best + log10(AS_WELL)]
+    cost = min(fit.cost for fit in good)
+    simple = sorted((f for f in good if f.cost == cost), key=lambda fit: fit.size(noise))
+    return simple[0], simple[1:]
+
+
+def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
+    gained = best.gain(plain)
+    before, after = plain.groups[gained].error, best.groups[gained].error
+    alternatives = tuple(o.world.words or "the scene's own" for o in others)
+    findings = [
+        Finding(subject, words, before, after, alternatives)
+        for subject, words in best.world.subjects.items()
+    ]
+    # Where the axes are ambiguous none are renamed.
+    frames = Frames() if others else best.world.frames
+    certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
+    for group, read in best.groups.items():
+        if read.reading.cost and read.error <= EXPLAINS * read.plain:
+            words, unlike = read.reading.words, tuple(other.sentence for other in read.others)
+            findings.append(Finding(group, "; ".join(words), read.plain, read.error, unlike))
+            if not unlike:
+                certain[group] = next(r for r in readings(group, frames) if r.words == words)
+    return Conventions(tuple(findings), plain.world if others else best.world, certain)
