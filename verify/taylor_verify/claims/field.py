@@ -17,7 +17,7 @@ from flint import fmpq, fmpq_mpoly_ctx
 
 from taylor_verify.claims.claim import Check, Residual
 
-Form = Callable[[Any], Iterable["Element"]]
+Form = Callable[..., Iterable["Element"]]
 Point = Mapping[str, Fraction | int]
 
 _BECAUSE: Final = "expanded in exact rationals: an identity leaves zero"
@@ -225,15 +225,16 @@ def _fraction(value: Any) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def identity(setting: Callable[[], Any], form: Form) -> Check:
+def identity(setting: Callable[[], Any], form: Form, **changed: Any) -> Check:
     """The check that all the differences of a form vanish identically in its setting.
 
-    A form takes the setting and gives left side minus right side. A difference that is no zero is
-    given the size it has at the point of its field.
+    A form takes the setting and gives left side minus right side; ``changed`` are arguments of the form
+    that make a mutant of it. A difference that is no zero is given the size it has at the point of its
+    field.
     """
 
     def check() -> Residual:
-        differences = list(form(setting()))
+        differences = list(form(setting(), **changed))
         if not differences:
             return Residual(float("nan"), 0.0, "nothing was compared")
         nonzero = [d.field.size(d) for d in differences if not d.is_zero]

@@ -7,7 +7,6 @@ rests on another, and none on a form of Euler's equations used elsewhere in this
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -208,8 +207,8 @@ CLAIMS: Final = (
         lost=_FLAT,
         check=identity(rigid, momentum_law),
         mutants={
-            "M_ji for M_ij": identity(rigid, partial(momentum_law, swapped=True)),
-            "body axes": identity(rigid, partial(momentum_law, inertial=False)),
+            "M_ji for M_ij": identity(rigid, momentum_law, swapped=True),
+            "body axes": identity(rigid, momentum_law, inertial=False),
         },
     ),
     Claim(
@@ -220,8 +219,8 @@ CLAIMS: Final = (
         verdict=Verdict.HOLDS,
         check=identity(rigid, momentum_tensor),
         mutants={
-            "2 w_st": identity(rigid, partial(momentum_tensor, factor=2)),
-            "w_ts for w_st": identity(rigid, partial(momentum_tensor, transpose=True)),
+            "2 w_st": identity(rigid, momentum_tensor, factor=2),
+            "w_ts for w_st": identity(rigid, momentum_tensor, transpose=True),
         },
     ),
     Claim(
@@ -233,10 +232,8 @@ CLAIMS: Final = (
         lost=_FLAT,
         check=identity(rigid, spatial_tensor_law),
         mutants={
-            "2 M_ij": identity(rigid, partial(spatial_tensor_law, factor=2)),
-            "I_ijst and w_st in body axes": identity(
-                rigid, partial(spatial_tensor_law, barred=True)
-            ),
+            "2 M_ij": identity(rigid, spatial_tensor_law, factor=2),
+            "I_ijst and w_st in body axes": identity(rigid, spatial_tensor_law, barred=True),
         },
     ),
     Claim(
@@ -248,7 +245,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the bar over I",
         check=identity(rigid, constant_inertia),
-        mutants={"without the bar": identity(rigid, partial(constant_inertia, barred=False))},
+        mutants={"without the bar": identity(rigid, constant_inertia, barred=False)},
     ),
     Claim(
         id="heinbockel transformation equations",
@@ -260,7 +257,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the bars",
         check=identity(rigid, transformations),
-        mutants={"the transposed l": identity(rigid, partial(transformations, inverted=True))},
+        mutants={"the transposed l": identity(rigid, transformations, inverted=True)},
     ),
     Claim(
         id="heinbockel carried law",
@@ -271,7 +268,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost=_BARS,
         check=identity(rigid, carried_law),
-        mutants={"without the cosines": identity(rigid, partial(carried_law, rotated=False))},
+        mutants={"without the cosines": identity(rigid, carried_law, rotated=False)},
     ),
     Claim(
         id="heinbockel (2.2.69)",
@@ -284,8 +281,8 @@ CLAIMS: Final = (
         lost=_BARS,
         check=identity(rigid, expanded_law),
         mutants={
-            "w_vu for w_uv": identity(rigid, partial(expanded_law, swapped=True)),
-            "without the second term": identity(rigid, partial(expanded_law, both=False)),
+            "w_vu for w_uv": identity(rigid, expanded_law, swapped=True),
+            "without the second term": identity(rigid, expanded_law, both=False),
         },
     ),
     Claim(
@@ -298,8 +295,8 @@ CLAIMS: Final = (
         lost=_BARS,
         check=identity(rigid, euler_tensor),
         mutants={
-            "+ e_tmj": identity(rigid, partial(euler_tensor, sign=-1)),
-            "e_mpq on (2.2.69) once": identity(rigid, partial(euler_tensor, factor=1)),
+            "+ e_tmj": identity(rigid, euler_tensor, sign=-1),
+            "e_mpq on (2.2.69) once": identity(rigid, euler_tensor, factor=1),
         },
     ),
     Claim(
@@ -314,10 +311,8 @@ CLAIMS: Final = (
         lost="nine fractions lie flat above their rows",
         check=identity(unsymmetric, euler_written_out),
         mutants={
-            "the sign of the last bracket": identity(
-                unsymmetric, partial(euler_written_out, sign=-1)
-            ),
-            "I32 for I33": identity(unsymmetric, partial(euler_written_out, index=2)),
+            "the sign of the last bracket": identity(unsymmetric, euler_written_out, sign=-1),
+            "I32 for I33": identity(unsymmetric, euler_written_out, index=2),
         },
     ),
     Claim(
@@ -331,10 +326,8 @@ CLAIMS: Final = (
         lost="three fractions lie flat above their rows; i 6= j stands for i != j",
         check=identity(rigid, euler_in_principal_axes),
         mutants={
-            "I22 - I33": identity(rigid, partial(euler_in_principal_axes, swapped=True)),
-            "the sign of the second row": identity(
-                rigid, partial(euler_in_principal_axes, sign=-1)
-            ),
+            "I22 - I33": identity(rigid, euler_in_principal_axes, swapped=True),
+            "the sign of the second row": identity(rigid, euler_in_principal_axes, sign=-1),
         },
     ),
 )

@@ -189,10 +189,10 @@ CLAIMS: Final = (
         mutants={
             "a moment about the middle axis alone": partial(branched, "0", "0.1", "0"),
             "a moment about the greatest axis alone": partial(branched, "0.1", "0", "0"),
-            "c of the other sign": identity(poles, partial(leading, sign=-1)),
+            "c of the other sign": identity(poles, leading, sign=-1),
             "Jacobi's form for a body with a moment": partial(jacobi, moment=1),
             "a body of revolution that turns the other way": identity(
-                revolution, partial(trigonometric, sign=-1)
+                revolution, trigonometric, sign=-1
             ),
         },
         remark="Degenerate cases remain: a body of revolution with M across its axis (w_3 is constant and "

@@ -138,10 +138,10 @@ CLAIMS: Final = (
         check=lambda: worse(
             identity(plain, modulus)(), identity(moving, angle)(), algebraic_path()
         ),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        transcribed=identity(plain, modulus, signs=_TRANSCRIBED),
         mutants={
-            "- i (x - 1)": identity(moving, partial(angle, sign=-1)),
-            "the power 1/2": identity(moving, partial(angle, power=Fraction(1, 2))),
+            "- i (x - 1)": identity(moving, angle, sign=-1),
+            "the power 1/2": identity(moving, angle, power=Fraction(1, 2)),
             "X1 for X2, along the trajectory": partial(algebraic_path, sign=-1),
         },
     ),
@@ -155,7 +155,7 @@ CLAIMS: Final = (
         counterexample="x = 3/2, a = 2, b = -5/3: (x + 1)^2 X1 + (x - 1)^2 X2 - N^3 x^3 = 8 x (a x^4 + "
         "3 (a + b) x^2 + b) is not 0 as transcribed",
         check=identity(plain, modulus),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        transcribed=identity(plain, modulus, signs=_TRANSCRIBED),
         mutants={
             "the signs of x^4 alone": identity(plain, partial(modulus, signs=(-1, 1, 1))),
             "the signs of x^2 alone": identity(plain, partial(modulus, signs=(1, -1, 1))),
@@ -173,8 +173,8 @@ CLAIMS: Final = (
         correction=rf"{_X1},\quad {_X2}",
         counterexample="with (28) as transcribed the squared modulus is no multiple of x^3",
         check=identity(plain, modulus),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
-        mutants={"8 (a + b)": identity(plain, partial(modulus, factor=8))},
+        transcribed=identity(plain, modulus, signs=_TRANSCRIBED),
+        mutants={"8 (a + b)": identity(plain, modulus, factor=8)},
     ),
     Claim(
         id="hydromechanics 49 algebraic motion",
@@ -190,11 +190,11 @@ CLAIMS: Final = (
         check=lambda: worse(
             identity(moving, motion)(), identity(moving, angle)(), algebraic_path()
         ),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        transcribed=identity(plain, modulus, signs=_TRANSCRIBED),
         mutants={
-            "m1 = - r G^2": identity(moving, partial(motion, pull=1)),
+            "m1 = - r G^2": identity(moving, motion, pull=1),
             "X1 for X2, along the trajectory": partial(algebraic_path, sign=-1),
-            "- i (x - 1)": identity(moving, partial(angle, sign=-1)),
+            "- i (x - 1)": identity(moving, angle, sign=-1),
         },
     ),
 )

@@ -125,8 +125,8 @@ CLAIMS: Final = (
         counterexample=f"F = 7, {_ANGLE_TEXT}: x1 + i x2 = 28/65 (5 + 12 i), and 28/85 (8 + 15 i) as "
         "transcribed; psi does not enter x1 and x2 of the same line",
         check=identity(angles, components),
-        transcribed=identity(angles, partial(components, angle="psi")),
-        mutants={"theta in the exponent": identity(angles, partial(components, angle="theta"))},
+        transcribed=identity(angles, components, angle="psi"),
+        mutants={"theta in the exponent": identity(angles, components, angle="theta")},
     ),
     Claim(
         id="hydromechanics 49 (15)",
@@ -136,7 +136,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the fraction is torn apart",
         check=identity(angles, precession),
-        mutants={"- Q cos phi": identity(angles, partial(precession, sign=-1))},
+        mutants={"- Q cos phi": identity(angles, precession, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (16)",
@@ -149,8 +149,8 @@ CLAIMS: Final = (
         lost="the fractions are torn apart, and q reads g in the last member",
         check=identity(angles, precession_by_energy),
         mutants={
-            "- x2 dT/dy2": identity(angles, partial(precession_by_energy, sign=-1)),
-            "2 q": identity(angles, partial(precession_by_energy, factor=2)),
+            "- x2 dT/dy2": identity(angles, precession_by_energy, sign=-1),
+            "2 q": identity(angles, precession_by_energy, factor=2),
         },
     ),
     Claim(
@@ -164,10 +164,10 @@ CLAIMS: Final = (
         counterexample=f"{POINT_TEXT}: the rate of the left side is -56/13, of the right side -112/13; "
         "the two agree for r = 1 alone",
         check=lambda: worse(identity(body, advance)(), angle_advance()),
-        transcribed=identity(body, partial(advance, power=1)),
+        transcribed=identity(body, advance, power=1),
         mutants={
-            "FG + x3 y3": identity(body, partial(advance, sign=-1)),
-            "r^2": identity(body, partial(advance, power=2)),
+            "FG + x3 y3": identity(body, advance, sign=-1),
+            "r^2": identity(body, advance, power=2),
             "r in the integral along the trajectory": partial(angle_advance, power=1),
         },
         remark="With r it is right if sqrt(X3) is read as dx3/dt, against (8) and (9).",

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
@@ -119,7 +119,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the fraction bars",
         check=identity(axial, repeated),
-        mutants={"q - q'": identity(axial, partial(repeated, sign=-1))},
+        mutants={"q - q'": identity(axial, repeated, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (24)",
@@ -132,8 +132,8 @@ CLAIMS: Final = (
         lost="the fraction bars",
         check=identity(axial, depth_rate),
         mutants={
-            "r for r^2": identity(axial, partial(depth_rate, power=1)),
-            "1 for 2 before the middle term": identity(axial, partial(depth_rate, factor=1)),
+            "r for r^2": identity(axial, depth_rate, power=1),
+            "1 for 2 before the middle term": identity(axial, depth_rate, factor=1),
         },
     ),
     Claim(
@@ -150,9 +150,9 @@ CLAIMS: Final = (
             identity(axial, squares)(),
         ),
         mutants={
-            "q - q'": identity(axial, partial(depth_rate, sign=-1)),
-            "q - q' in the discriminant": identity(axial, partial(discriminant, sign=-1)),
-            "2 F^2 (kappa + lambda^2)": identity(axial, partial(squares, factor=2)),
+            "q - q'": identity(axial, depth_rate, sign=-1),
+            "q - q' in the discriminant": identity(axial, discriminant, sign=-1),
+            "2 F^2 (kappa + lambda^2)": identity(axial, squares, factor=2),
         },
     ),
     Claim(
@@ -167,7 +167,7 @@ CLAIMS: Final = (
             identity(axial, discriminant)(), identity(axial, depth_rate)(), bounded_tilt()
         ),
         mutants={
-            "q - q'": identity(axial, partial(discriminant, sign=-1)),
+            "q - q'": identity(axial, discriminant, sign=-1),
             "a body with A > 0": unbounded_tilt,
         },
         remark="For A > 0 the movement is unstable. For A = 0, of which the text says nothing, (24) has "

@@ -135,7 +135,7 @@ CLAIMS: Final = (
         counterexample="R = 1, y = 0, c = (1, 0, 0): FX = F, and the right side is 0",
         check=lambda: worse(identity(led, first)(), place()),
         transcribed=identity(led, lambda b: [b.F * b.c[0] - b.Ry[1]]),
-        mutants={"minus the sum": identity(led, partial(first, sign=-1))},
+        mutants={"minus the sum": identity(led, first, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (19)",
@@ -148,7 +148,7 @@ CLAIMS: Final = (
         counterexample="body axis y along space axis X, y = (0, 1, 0): FY = -1, the right side as "
         "transcribed is +1; the minus belongs before the whole sum",
         check=lambda: worse(identity(led, second)(), place()),
-        transcribed=identity(led, partial(second, sign=1)),
+        transcribed=identity(led, second, sign=1),
         mutants={
             "plus the whole sum": identity(led, lambda b: [b.F * b.c[1] - b.Ry[0]]),
             "the minus before y1 alone, along the trajectory": partial(place, whole=False),
@@ -161,7 +161,7 @@ CLAIMS: Final = (
         method=f"G = x.y/F; {_EXACT}",
         verdict=Verdict.HOLDS,
         check=identity(led, third),
-        mutants={"Y for Z": identity(led, partial(third, row=2))},
+        mutants={"Y for Z": identity(led, third, row=2)},
     ),
     Claim(
         id="hydromechanics 49 coordinate Z",
@@ -172,7 +172,7 @@ CLAIMS: Final = (
         void="(20), in the third place, is an equation for G and says nothing of Z",
         correction=r"F\frac{dZ}{dt} = pF^2 + (p' - p)x_3^2 + qFG + (q' - q)x_3y_3",
         check=identity(led, lambda b: [*height_rate(b), *b.derived_velocity()]),
-        mutants={"q - q'": identity(led, partial(height_rate, sign=-1))},
+        mutants={"q - q'": identity(led, height_rate, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (21)",
@@ -188,7 +188,7 @@ CLAIMS: Final = (
             led,
             lambda b: [b.F**2 * (b.c[0] ** 2 + b.c[1] ** 2) - (dot(b.y, b.y) - b.G**2)],
         ),
-        mutants={"+ G^2": identity(led, partial(distance, sign=-1))},
+        mutants={"+ G^2": identity(led, distance, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (22)",
@@ -201,11 +201,11 @@ CLAIMS: Final = (
         counterexample="theta = pi/2, phi = psi = 0, y = (0, 0, 1), F = 1: R y = -Y, so that X = -1, Y = "
         "0; the right side as transcribed is +1",
         check=lambda: worse(identity(angles, complex_place)(), place()),
-        transcribed=identity(angles, partial(complex_place, sign=1)),
+        transcribed=identity(angles, complex_place, sign=1),
         mutants={
             "as transcribed, along the trajectory": partial(place, sign=1),
-            "e^(-psi i)": identity(angles, partial(complex_place, conjugate=True)),
-            "- i sqrt(X3)": identity(angles, partial(complex_place, root=-1)),
+            "e^(-psi i)": identity(angles, complex_place, conjugate=True),
+            "- i sqrt(X3)": identity(angles, complex_place, root=-1),
         },
         remark="As transcribed it would be right with psi counted from the opposite direction and the "
         "other sign of sqrt(X3), against (9).",
@@ -221,7 +221,7 @@ CLAIMS: Final = (
         correction=r"F(X + Yi) = \frac{Gx_3 - Fy_3 + i\sqrt{X_3}}{\sqrt{F^2 - x_3^2}}\,e^{\psi i}",
         counterexample="as for (22)",
         check=identity(angles, complex_place),
-        transcribed=identity(angles, partial(complex_place, sign=1)),
-        mutants={"e^(-psi i)": identity(angles, partial(complex_place, conjugate=True))},
+        transcribed=identity(angles, complex_place, sign=1),
+        mutants={"e^(-psi i)": identity(angles, complex_place, conjugate=True)},
     ),
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -186,8 +186,8 @@ CLAIMS: Final = (
         transcribed=identity(body, unmoved_origin),
         counterexample="the same body seen from another point of its axis: s is not zero",
         mutants={
-            "a move of the other sign": identity(body, partial(moved_origin, sign=-1)),
-            "p left as it was": identity(body, partial(moved_origin, lowered=False)),
+            "a move of the other sign": identity(body, moved_origin, sign=-1),
+            "p left as it was": identity(body, moved_origin, lowered=False),
         },
     ),
     Claim(
@@ -197,7 +197,7 @@ CLAIMS: Final = (
         method=_EXACT,
         verdict=Verdict.HOLDS,
         check=identity(body, fourth_integral),
-        mutants={"y2 for y3": identity(body, partial(fourth_integral, index=2))},
+        mutants={"y2 for y3": identity(body, fourth_integral, index=2)},
     ),
     Claim(
         id="hydromechanics 49 (3)",
@@ -207,7 +207,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the fraction is torn apart",
         check=identity(body, axial_rate),
-        mutants={"x2 y1 with the other sign": identity(body, partial(axial_rate, sign=-1))},
+        mutants={"x2 y1 with the other sign": identity(body, axial_rate, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (4)",
@@ -220,8 +220,8 @@ CLAIMS: Final = (
         lost="the fractions are torn apart",
         check=identity(body, squared_rate),
         mutants={
-            "r for r^2": identity(body, partial(squared_rate, power=1)),
-            "FG + x3 y3": identity(body, partial(squared_rate, sign=-1)),
+            "r for r^2": identity(body, squared_rate, power=1),
+            "FG + x3 y3": identity(body, squared_rate, sign=-1),
         },
     ),
     Claim(
@@ -231,7 +231,7 @@ CLAIMS: Final = (
         method="48 (ii), (iii); exact expansion in x and y",
         verdict=Verdict.HOLDS,
         check=identity(body, projections),
-        mutants={"F^2 + x3^2": identity(body, partial(projections, sign=-1))},
+        mutants={"F^2 + x3^2": identity(body, projections, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (6)",
@@ -241,7 +241,7 @@ CLAIMS: Final = (
         method="exact expansion in x, y and the six coefficients",
         verdict=Verdict.HOLDS,
         check=identity(body, across_energy),
-        mutants={"q' - q for q - q'": identity(body, partial(across_energy, sign=-1))},
+        mutants={"q' - q for q - q'": identity(body, across_energy, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (7)",
@@ -252,8 +252,8 @@ CLAIMS: Final = (
         lost="a minus stands where the equality sign was, and r1 where r' was",
         check=identity(body, first_constant),
         mutants={
-            "T for 2T": identity(body, partial(first_constant, energy=1)),
-            "r for r'": identity(body, partial(first_constant, prime=False)),
+            "T for 2T": identity(body, first_constant, energy=1),
+            "r for r'": identity(body, first_constant, prime=False),
         },
     ),
     Claim(
@@ -266,8 +266,8 @@ CLAIMS: Final = (
         lost="the fractions are torn apart",
         check=identity(body, elliptic_rate),
         mutants={
-            "r for r^2": identity(body, partial(elliptic_rate, power=1)),
-            "-y3 in X3": identity(body, partial(elliptic_rate, sign=-1)),
+            "r for r^2": identity(body, elliptic_rate, power=1),
+            "-y3 in X3": identity(body, elliptic_rate, sign=-1),
         },
     ),
 )

@@ -79,7 +79,7 @@ CLAIMS: Final = (
         verdict=Verdict.HOLDS,
         check=lambda: worse(identity(body, second_order)(), elapsed_time()),
         mutants={
-            "twice the acceleration": identity(body, partial(second_order, factor=2)),
+            "twice the acceleration": identity(body, second_order, factor=2),
             "without r in the integral": partial(elapsed_time, power=0),
         },
     ),
@@ -90,8 +90,8 @@ CLAIMS: Final = (
         method="the residues of F (F y3 - G z)/(F^2 - z^2) dz/sqrt(X3) at z = F and -F: their squares are "
         "-1/4; exact expansion",
         verdict=Verdict.HOLDS,
-        check=identity(axial, partial(residues, along=False)),
-        mutants={"F G + z y3": identity(axial, partial(residues, sign=-1))},
+        check=identity(axial, residues, along=False),
+        mutants={"F G + z y3": identity(axial, residues, sign=-1)},
         remark="For q' != q the integral of x3 adds poles where x3 is infinite.",
     ),
     Claim(
@@ -102,7 +102,7 @@ CLAIMS: Final = (
         "-1/4; exact expansion",
         verdict=Verdict.HOLDS,
         check=identity(axial, residues),
-        mutants={"F G + z y3": identity(axial, partial(residues, sign=-1))},
+        mutants={"F G + z y3": identity(axial, residues, sign=-1)},
         remark="With r left in, as (17) is transcribed, the residues would be r i/2.",
     ),
 )

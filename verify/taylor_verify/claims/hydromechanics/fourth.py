@@ -211,9 +211,7 @@ CLAIMS: Final = (
         check=_both(identity(unloaded, divergence), independent("y3")),
         transcribed=independent("F^4"),
         mutants={
-            "B for its transpose in Omega": identity(
-                unloaded, partial(divergence, transposed=False)
-            ),
+            "B for its transpose in Omega": identity(unloaded, divergence, transposed=False),
             "F^4 as the fourth": independent("F^4"),
         },
         remark="Attitude and centre take further quadratures.",
@@ -265,7 +263,7 @@ CLAIMS: Final = (
         transcribed=identity(planar, swing_rate),
         mutants={
             "six coefficients": partial(coefficients_left, kept=6),
-            "the planar motion without r y3^2": identity(planar, partial(swing, factor=0)),
+            "the planar motion without r y3^2": identity(planar, swing, factor=0),
         },
     ),
 )

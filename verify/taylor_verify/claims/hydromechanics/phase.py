@@ -7,7 +7,6 @@ by their derivatives alone, so that every identity is one of rational functions 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -70,7 +69,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="`xy3y3` stands for x3 y3",
         check=identity(body, product),
-        mutants={"- i sqrt(X3)": identity(body, partial(product, sign=-1))},
+        mutants={"- i sqrt(X3)": identity(body, product, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (10)",
@@ -80,7 +79,7 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="both fraction bars",
         check=identity(body, quotient),
-        mutants={"- i sqrt(X3)": identity(body, partial(quotient, sign=-1))},
+        mutants={"- i sqrt(X3)": identity(body, quotient, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (11)",
@@ -93,8 +92,8 @@ CLAIMS: Final = (
         counterexample=f"{POINT_TEXT}: the left side is 36 + 4 i by the equations of motion, the right "
         "side 24 + 8 i; its two terms are not even of one dimension",
         check=identity(body, turning),
-        transcribed=identity(body, partial(turning, with_xi=False)),
-        mutants={"i r x3 with the other sign": identity(body, partial(turning, sign=-1))},
+        transcribed=identity(body, turning, with_xi=False),
+        mutants={"i r x3 with the other sign": identity(body, turning, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (12)",
@@ -106,8 +105,8 @@ CLAIMS: Final = (
         lost="the fraction bars; d/i dt is torn apart",
         check=identity(body, log_rate),
         mutants={
-            "- i sqrt(X3)": identity(body, partial(log_rate, sign=-1)),
-            "r^2 for r": identity(body, partial(log_rate, power=2)),
+            "- i sqrt(X3)": identity(body, log_rate, sign=-1),
+            "r^2 for r": identity(body, log_rate, power=2),
         },
         remark="From the corrected (11) it follows; from (11) as transcribed it does not.",
     ),
@@ -121,8 +120,8 @@ CLAIMS: Final = (
         lost="the fraction bars, and the quotient under the root",
         check=identity(body, angle_rate),
         mutants={
-            "F y3 + G x3": identity(body, partial(angle_rate, sign=-1)),
-            "r for F r": identity(body, partial(angle_rate, with_F=False)),
+            "F y3 + G x3": identity(body, angle_rate, sign=-1),
+            "r for F r": identity(body, angle_rate, with_F=False),
         },
     ),
 )

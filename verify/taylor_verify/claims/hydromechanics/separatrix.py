@@ -90,8 +90,8 @@ CLAIMS: Final = (
         ),
         transcribed=falling.hyperbolic_cosine_as_it_stands,
         mutants={
-            "A - B y": identity(antiderivative, partial(both_lines, sign=-1)),
-            "half the derivative": identity(antiderivative, partial(both_lines, factor=1)),
+            "A - B y": identity(antiderivative, both_lines, sign=-1),
+            "half the derivative": identity(antiderivative, both_lines, factor=1),
             "- B in x3": falling.closed_depth_with_minus_B,
             "sh^-1 with the other sign": partial(falling.hyperbolic_sine, sign=1),
         },
@@ -105,7 +105,7 @@ CLAIMS: Final = (
         verdict=Verdict.VACUOUS,
         void="A > 0 asks kappa + lambda^2 > 0, and then B^2 - AC >= 0: the case does not occur",
         check=identity(axial, squares),
-        mutants={"2 F^2 (kappa + lambda^2)": identity(axial, partial(squares, factor=2))},
+        mutants={"2 F^2 (kappa + lambda^2)": identity(axial, squares, factor=2)},
     ),
     Claim(
         id="hydromechanics 49 falls away ultimately",
