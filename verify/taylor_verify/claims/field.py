@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from math import hypot, isqrt
-from typing import Any, Final, final
+from typing import Any, Final, TypeVar, cast, final
 
 from flint import fmpq, fmpq_mpoly_ctx
 
@@ -19,6 +20,7 @@ from taylor_verify.claims.claim import Check, Residual
 
 Form = Callable[..., Iterable["Element"]]
 Point = Mapping[str, Fraction | int]
+Setting = TypeVar("Setting")
 
 _BECAUSE: Final = "expanded in exact rationals: an identity leaves zero"
 
@@ -225,6 +227,16 @@ def _fraction(value: Any) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
+def symbols_of(setting: Callable[[], Setting]) -> Setting:
+    """Return the symbols of a setting, which are made once."""
+    return cast(Setting, _symbols(setting))
+
+
+@cache
+def _symbols(setting: Callable[[], Any]) -> Any:
+    return setting()
+
+
 def identity(setting: Callable[[], Any], form: Form, **changed: Any) -> Check:
     """The check that all the differences of a form vanish identically in its setting.
 
@@ -234,7 +246,7 @@ def identity(setting: Callable[[], Any], form: Form, **changed: Any) -> Check:
     """
 
     def check() -> Residual:
-        differences = list(form(setting(), **changed))
+        differences = list(form(symbols_of(setting), **changed))
         if not differences:
             return Residual(float("nan"), 0.0, "nothing was compared")
         nonzero = [d.field.size(d) for d in differences if not d.is_zero]
