@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from mpmath import mp
 
 from taylor_verify.claims.claim import Claim, Residual, Verdict, examine, measured, worse
-from taylor_verify.claims.field import Element, Field, cross, dot, identity, rotation
+from taylor_verify.claims.field import Element, Field, cross, dot, identity, rotation, symbols_of
 from taylor_verify.claims.heinbockel.equations import _left_of_70
-from taylor_verify.claims.heinbockel.rigid import rigid, unsymmetric
-from taylor_verify.claims.hydromechanics.algebraic import plain, quartics
-from taylor_verify.claims.hydromechanics.clebsch import body
+from taylor_verify.claims.heinbockel.rigid import RigidMotion, unsymmetric
+from taylor_verify.claims.hydromechanics.algebraic import Quartics, quartics
+from taylor_verify.claims.hydromechanics.clebsch import ClebschBody
 from taylor_verify.claims.hydromechanics.fourth import (
     GENERIC,
     SECOND_CASE,
@@ -123,7 +123,7 @@ def test_division_by_zero_is_refused() -> None:
 
 def test_the_quaternion_makes_a_rotation() -> None:
     """R R^T = 1 and det R = 1 for e0^2 = 1 - e1^2 - e2^2 - e3^2."""
-    b = rigid()
+    b = symbols_of(RigidMotion)
     R = rotation([b.field[f"e{k}"] for k in range(4)])
     for j in range(3):
         for k in range(3):
@@ -145,7 +145,7 @@ def test_the_laws_are_those_that_solvers_are_given() -> None:
     """48 (3), (4) with all 21 coefficients and Clebsch's form agree with models, written apart."""
     s = loaded()
     x_rate, y_rate = impulse_rates(s.x, s.y, s.U, s.Omega, s.X, s.L)
-    b = body()
+    b = symbols_of(ClebschBody)
     cx, cy = clebsch_rates(b.x, b.y, list(b.six), [0, 0, 0], [0, 0, 0])
     for found, own in zip(x_rate + y_rate, s.dx + s.dy, strict=True):
         assert (found - own).is_zero
@@ -166,7 +166,7 @@ def test_the_tensor_form_of_euler_is_that_of_models() -> None:
 
 def test_the_numbers_of_the_counterexamples() -> None:
     """(11): 36 + 4 i against 24 + 8 i. (17): -56/13 against -112/13. Both at one state."""
-    b = body()
+    b = symbols_of(ClebschBody)
     value = b.field.value
     assert (value(b.rate(b.x[0])), value(b.rate(b.x[1]))) == (36, 4)
     bracket = (b.qq - b.q) * b.x[2] + b.rr * b.y[2]
@@ -182,7 +182,7 @@ def test_the_numbers_of_the_counterexamples() -> None:
 
 def test_the_state_of_the_counterexamples_can_be() -> None:
     """T is positive definite there."""
-    b = body()
+    b = symbols_of(ClebschBody)
     six = [b.field.value(c) for c in b.six]
     p, pp, q, qq, r, rr = six
     assert min(p, pp, r, rr) > 0
@@ -192,7 +192,7 @@ def test_the_state_of_the_counterexamples_can_be() -> None:
 
 def test_what_the_transcribed_quartics_leave() -> None:
     """(28) as transcribed leaves 8 x (a x^4 + 3 (a + b) x^2 + b) of (27) and (29)."""
-    s = plain()
+    s = symbols_of(Quartics)
     x, a, b = s.x, s.a, s.b
     X1, X2 = quartics(x, a, b, (-1, -1, -1))
     left = (x + 1) ** 2 * X1 + (x - 1) ** 2 * X2 + 8 * (a + b) * x**3

@@ -221,7 +221,7 @@ def test_step_limit_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that needs more steps than it is allowed stops and says so."""
     from taylor_verify.solvers.taylor import driver
 
-    monkeypatch.setattr(driver, "_STEPS_PER_RADIAN", 0)
+    monkeypatch.setattr(driver, "STEPS_PER_RADIAN", 0)
     long = spinning((Fraction(3, 4), Fraction(-1, 2), Fraction(7, 8)), Fraction(10**6))
     assert Taylor().solve(pose(long, rung("f64"))).outcome is Outcome.STEP_LIMIT
 

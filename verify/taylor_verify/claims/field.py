@@ -10,15 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from math import hypot, isqrt
-from typing import Any, Final, final
+from typing import Any, Final, TypeVar, cast, final
 
 from flint import fmpq, fmpq_mpoly_ctx
 
 from taylor_verify.claims.claim import Check, Residual
 
-Form = Callable[[Any], Iterable["Element"]]
+Form = Callable[..., Iterable["Element"]]
 Point = Mapping[str, Fraction | int]
+Setting = TypeVar("Setting")
 
 _BECAUSE: Final = "expanded in exact rationals: an identity leaves zero"
 
@@ -225,15 +227,26 @@ def _fraction(value: Any) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def identity(setting: Callable[[], Any], form: Form) -> Check:
+def symbols_of(setting: Callable[[], Setting]) -> Setting:
+    """Return the symbols of a setting, which are made once."""
+    return cast(Setting, _symbols(setting))
+
+
+@cache
+def _symbols(setting: Callable[[], Any]) -> Any:
+    return setting()
+
+
+def identity(setting: Callable[[], Any], form: Form, **changed: Any) -> Check:
     """The check that all the differences of a form vanish identically in its setting.
 
-    A form takes the setting and gives left side minus right side. A difference that is no zero is
-    given the size it has at the point of its field.
+    A form takes the setting and gives left side minus right side; ``changed`` are arguments of the form
+    that make a mutant of it. A difference that is no zero is given the size it has at the point of its
+    field.
     """
 
     def check() -> Residual:
-        differences = list(form(setting()))
+        differences = list(form(symbols_of(setting), **changed))
         if not differences:
             return Residual(float("nan"), 0.0, "nothing was compared")
         nonzero = [d.field.size(d) for d in differences if not d.is_zero]

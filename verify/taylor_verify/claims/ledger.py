@@ -6,27 +6,17 @@ from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from functools import cache
 from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
 from typing import Final
 
+from taylor_verify.claims import heinbockel, hydromechanics
 from taylor_verify.claims.claim import Claim, Finding, examine
 from taylor_verify.claims.document import ClaimRow
 from taylor_verify.claims.numbers import in_order
 
-_FAMILIES: Final = (
-    "taylor_verify.claims.heinbockel.equations",
-    "taylor_verify.claims.heinbockel.moments",
-    "taylor_verify.claims.hydromechanics.impulse",
-    "taylor_verify.claims.hydromechanics.integrals",
-    "taylor_verify.claims.hydromechanics.fourth",
-    "taylor_verify.claims.hydromechanics.clebsch",
-    "taylor_verify.claims.hydromechanics.phase",
-    "taylor_verify.claims.hydromechanics.elliptic",
-    "taylor_verify.claims.hydromechanics.angles",
-    "taylor_verify.claims.hydromechanics.centre",
-    "taylor_verify.claims.hydromechanics.axial",
-    "taylor_verify.claims.hydromechanics.separatrix",
-    "taylor_verify.claims.hydromechanics.algebraic",
-)
+# A folder for each text; a module of it may have CLAIMS.
+_TEXTS: Final = (heinbockel, hydromechanics)
 
 
 class UnknownClaim(ValueError):
@@ -36,9 +26,14 @@ class UnknownClaim(ValueError):
 @cache
 def claims() -> tuple[Claim, ...]:
     """Every entry, in the order of the texts; what the order does not know comes last."""
-    found = [claim for name in _FAMILIES for claim in import_module(name).CLAIMS]
+    modules = [import_module(name) for text in _TEXTS for name in _modules(text)]
+    found = [claim for module in modules for claim in getattr(module, "CLAIMS", ())]
     places = {id: place for place, id in enumerate(in_order())}
     return tuple(sorted(found, key=lambda claim: places.get(claim.id, len(places))))
+
+
+def _modules(text: ModuleType) -> list[str]:
+    return [f"{text.__name__}.{module.name}" for module in iter_modules(text.__path__)]
 
 
 def find(ids: Iterable[str]) -> tuple[Claim, ...]:

@@ -47,8 +47,6 @@ def exact(raw: object) -> Value:
         return Fraction(int(numerator), int(denominator))
     if isinstance(raw, int | np.integer):
         return Fraction(int(raw))
-    if isinstance(raw, Fraction):
-        return raw
     if isinstance(raw, datetime | np.datetime64):
         raise ValueError("a number, the time since the start (subtract the first date)")
     if isinstance(raw, Decimal):

@@ -7,7 +7,6 @@ rests on another, and none on a form of Euler's equations used elsewhere in this
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -21,7 +20,6 @@ from taylor_verify.claims.heinbockel.rigid import (
     contracted,
     fourth_rank,
     permutation,
-    rigid,
     turned,
     unsymmetric,
 )
@@ -206,10 +204,10 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost=_FLAT,
-        check=identity(rigid, momentum_law),
+        check=identity(RigidMotion, momentum_law),
         mutants={
-            "M_ji for M_ij": identity(rigid, partial(momentum_law, swapped=True)),
-            "body axes": identity(rigid, partial(momentum_law, inertial=False)),
+            "M_ji for M_ij": identity(RigidMotion, momentum_law, swapped=True),
+            "body axes": identity(RigidMotion, momentum_law, inertial=False),
         },
     ),
     Claim(
@@ -218,10 +216,10 @@ CLAIMS: Final = (
         domain="any axes; I_mnst = e_jmn e_ist I_ij/2, w_st = e_kst w_k",
         method=f"H_mn = e_imn H_i with H = I w; {_EXACT}",
         verdict=Verdict.HOLDS,
-        check=identity(rigid, momentum_tensor),
+        check=identity(RigidMotion, momentum_tensor),
         mutants={
-            "2 w_st": identity(rigid, partial(momentum_tensor, factor=2)),
-            "w_ts for w_st": identity(rigid, partial(momentum_tensor, transpose=True)),
+            "2 w_st": identity(RigidMotion, momentum_tensor, factor=2),
+            "w_ts for w_st": identity(RigidMotion, momentum_tensor, transpose=True),
         },
     ),
     Claim(
@@ -231,12 +229,10 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost=_FLAT,
-        check=identity(rigid, spatial_tensor_law),
+        check=identity(RigidMotion, spatial_tensor_law),
         mutants={
-            "2 M_ij": identity(rigid, partial(spatial_tensor_law, factor=2)),
-            "I_ijst and w_st in body axes": identity(
-                rigid, partial(spatial_tensor_law, barred=True)
-            ),
+            "2 M_ij": identity(RigidMotion, spatial_tensor_law, factor=2),
+            "I_ijst and w_st in body axes": identity(RigidMotion, spatial_tensor_law, barred=True),
         },
     ),
     Claim(
@@ -247,8 +243,8 @@ CLAIMS: Final = (
         method="the inertia of any particle that moves with the body, s' = w x s; exact expansion",
         verdict=Verdict.RESTORED,
         lost="the bar over I",
-        check=identity(rigid, constant_inertia),
-        mutants={"without the bar": identity(rigid, partial(constant_inertia, barred=False))},
+        check=identity(RigidMotion, constant_inertia),
+        mutants={"without the bar": identity(RigidMotion, constant_inertia, barred=False)},
     ),
     Claim(
         id="heinbockel transformation equations",
@@ -259,8 +255,8 @@ CLAIMS: Final = (
         method="all components, from I = l I-bar l^T and v = l v-bar; exact expansion in the quaternion",
         verdict=Verdict.RESTORED,
         lost="the bars",
-        check=identity(rigid, transformations),
-        mutants={"the transposed l": identity(rigid, partial(transformations, inverted=True))},
+        check=identity(RigidMotion, transformations),
+        mutants={"the transposed l": identity(RigidMotion, transformations, inverted=True)},
     ),
     Claim(
         id="heinbockel carried law",
@@ -270,8 +266,8 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost=_BARS,
-        check=identity(rigid, carried_law),
-        mutants={"without the cosines": identity(rigid, partial(carried_law, rotated=False))},
+        check=identity(RigidMotion, carried_law),
+        mutants={"without the cosines": identity(RigidMotion, carried_law, rotated=False)},
     ),
     Claim(
         id="heinbockel (2.2.69)",
@@ -282,10 +278,10 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost=_BARS,
-        check=identity(rigid, expanded_law),
+        check=identity(RigidMotion, expanded_law),
         mutants={
-            "w_vu for w_uv": identity(rigid, partial(expanded_law, swapped=True)),
-            "without the second term": identity(rigid, partial(expanded_law, both=False)),
+            "w_vu for w_uv": identity(RigidMotion, expanded_law, swapped=True),
+            "without the second term": identity(RigidMotion, expanded_law, both=False),
         },
     ),
     Claim(
@@ -296,10 +292,10 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r, and e_mpq on (2.2.69) is twice it; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost=_BARS,
-        check=identity(rigid, euler_tensor),
+        check=identity(RigidMotion, euler_tensor),
         mutants={
-            "+ e_tmj": identity(rigid, partial(euler_tensor, sign=-1)),
-            "e_mpq on (2.2.69) once": identity(rigid, partial(euler_tensor, factor=1)),
+            "+ e_tmj": identity(RigidMotion, euler_tensor, sign=-1),
+            "e_mpq on (2.2.69) once": identity(RigidMotion, euler_tensor, factor=1),
         },
     ),
     Claim(
@@ -314,10 +310,8 @@ CLAIMS: Final = (
         lost="nine fractions lie flat above their rows",
         check=identity(unsymmetric, euler_written_out),
         mutants={
-            "the sign of the last bracket": identity(
-                unsymmetric, partial(euler_written_out, sign=-1)
-            ),
-            "I32 for I33": identity(unsymmetric, partial(euler_written_out, index=2)),
+            "the sign of the last bracket": identity(unsymmetric, euler_written_out, sign=-1),
+            "I32 for I33": identity(unsymmetric, euler_written_out, index=2),
         },
     ),
     Claim(
@@ -329,12 +323,10 @@ CLAIMS: Final = (
         method=f"equivalent to dH_r/dt = M_r with the products of inertia zero; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost="three fractions lie flat above their rows; i 6= j stands for i != j",
-        check=identity(rigid, euler_in_principal_axes),
+        check=identity(RigidMotion, euler_in_principal_axes),
         mutants={
-            "I22 - I33": identity(rigid, partial(euler_in_principal_axes, swapped=True)),
-            "the sign of the second row": identity(
-                rigid, partial(euler_in_principal_axes, sign=-1)
-            ),
+            "I22 - I33": identity(RigidMotion, euler_in_principal_axes, swapped=True),
+            "the sign of the second row": identity(RigidMotion, euler_in_principal_axes, sign=-1),
         },
     ),
 )

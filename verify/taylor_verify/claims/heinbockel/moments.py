@@ -16,7 +16,7 @@ from typing import Final
 from mpmath import mp
 
 from taylor_verify.claims.claim import Claim, Residual, Verdict, worse
-from taylor_verify.claims.field import Element, Field, identity
+from taylor_verify.claims.field import Element, Field, identity, symbols_of
 from taylor_verify.claims.heinbockel.continuation import Loop, loop
 from taylor_verify.claims.trajectory import DIGITS, trajectory
 from taylor_verify.scenes import tensors
@@ -44,11 +44,6 @@ class Poles:
         self.product = -1 * J[0] * J[1] * J[2] / (self.gaps[0] * self.gaps[1] * self.gaps[2])
 
 
-@cache
-def poles() -> Poles:
-    return Poles()
-
-
 def leading(p: Poles, sign: int = 1) -> Iterator[Element]:
     """-J_i c_i^2 = (J_j - J_k) P, P^2 = the product of the squares, and no residue in T' and (H^2)'."""
     for J, gap, square in zip(p.J, p.gaps, p.squares, strict=True):
@@ -64,7 +59,7 @@ def one_real() -> Residual:
 
     Counted at a point: the signs of the squares cannot change while the J stay apart.
     """
-    p = poles()
+    p = symbols_of(Poles)
     signs = [p.field.value(square) > 0 for square in p.squares]
     wrong = sum(a != b for a, b in zip(signs, (False, True, False), strict=True))
     return Residual(float(wrong), 0.0, "c_i that are not real and imaginary as expected")
@@ -81,11 +76,6 @@ class Revolution:
         self.W, self.M = w1 + self.i * w2, M1 + self.i * M2
         gap = self.J - self.J3
         field.turn({"w1": (gap * w2 * w3 + M1) / self.J, "w2": (M2 - gap * w3 * w1) / self.J})
-
-
-@cache
-def revolution() -> Revolution:
-    return Revolution()
 
 
 def trigonometric(b: Revolution, sign: int = 1) -> Iterator[Element]:
@@ -179,20 +169,20 @@ CLAIMS: Final = (
         counterexample="J = (3, 2, 1), w = (1, 0, 1) at t = 0, M = (1/8, 1/16, 1/5): round the next "
         "singularity in complex time, at a distance of 0.015, w changes by 8e-5 of itself",
         check=lambda: worse(
-            identity(poles, leading)(),
+            identity(Poles, leading)(),
             one_real(),
             single_valued("0", "0", "0"),
-            identity(revolution, trigonometric)(),
+            identity(Revolution, trigonometric)(),
             jacobi(),
         ),
         transcribed=partial(branched, "0.125", "0.0625", "0.2"),
         mutants={
             "a moment about the middle axis alone": partial(branched, "0", "0.1", "0"),
             "a moment about the greatest axis alone": partial(branched, "0.1", "0", "0"),
-            "c of the other sign": identity(poles, partial(leading, sign=-1)),
+            "c of the other sign": identity(Poles, leading, sign=-1),
             "Jacobi's form for a body with a moment": partial(jacobi, moment=1),
             "a body of revolution that turns the other way": identity(
-                revolution, partial(trigonometric, sign=-1)
+                Revolution, trigonometric, sign=-1
             ),
         },
         remark="Degenerate cases remain: a body of revolution with M across its axis (w_3 is constant and "

@@ -139,11 +139,6 @@ class RigidMotion:
 
 
 @cache
-def rigid() -> RigidMotion:
-    return RigidMotion()
-
-
-@cache
 def unsymmetric() -> RigidMotion:
     """Nine free entries of I."""
     return RigidMotion(full=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
@@ -43,11 +43,6 @@ class Quartics:
     def __init__(self) -> None:
         self.field = field = Field({"x": Fraction(3, 2), "a": 2, "b": Fraction(-5, 3)})
         self.x, self.a, self.b = field["x"], field["a"], field["b"]
-
-
-@cache
-def plain() -> Quartics:
-    return Quartics()
 
 
 class Algebraic:
@@ -87,11 +82,6 @@ def _constants(field: Field) -> tuple[Element, Element]:
 def _square(index: int, field: Field) -> Any:
     a, b = _constants(field)
     return quartics(field["x"], a, b, _CORRECTED)[index]
-
-
-@cache
-def moving() -> Algebraic:
-    return Algebraic()
 
 
 def modulus(
@@ -136,12 +126,12 @@ CLAIMS: Final = (
         correction=rf"{_X1},\quad {_X2}",
         counterexample="x = 3/2, a = 2, b = -5/3: see (28)",
         check=lambda: worse(
-            identity(plain, modulus)(), identity(moving, angle)(), algebraic_path()
+            identity(Quartics, modulus)(), identity(Algebraic, angle)(), algebraic_path()
         ),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        transcribed=identity(Quartics, modulus, signs=_TRANSCRIBED),
         mutants={
-            "- i (x - 1)": identity(moving, partial(angle, sign=-1)),
-            "the power 1/2": identity(moving, partial(angle, power=Fraction(1, 2))),
+            "- i (x - 1)": identity(Algebraic, angle, sign=-1),
+            "the power 1/2": identity(Algebraic, angle, power=Fraction(1, 2)),
             "X1 for X2, along the trajectory": partial(algebraic_path, sign=-1),
         },
     ),
@@ -154,12 +144,12 @@ CLAIMS: Final = (
         correction=rf"{_X1},\quad {_X2}",
         counterexample="x = 3/2, a = 2, b = -5/3: (x + 1)^2 X1 + (x - 1)^2 X2 - N^3 x^3 = 8 x (a x^4 + "
         "3 (a + b) x^2 + b) is not 0 as transcribed",
-        check=identity(plain, modulus),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        check=identity(Quartics, modulus),
+        transcribed=identity(Quartics, modulus, signs=_TRANSCRIBED),
         mutants={
-            "the signs of x^4 alone": identity(plain, partial(modulus, signs=(-1, 1, 1))),
-            "the signs of x^2 alone": identity(plain, partial(modulus, signs=(1, -1, 1))),
-            "the signs of b alone": identity(plain, partial(modulus, signs=(1, 1, -1))),
+            "the signs of x^4 alone": identity(Quartics, partial(modulus, signs=(-1, 1, 1))),
+            "the signs of x^2 alone": identity(Quartics, partial(modulus, signs=(1, -1, 1))),
+            "the signs of b alone": identity(Quartics, partial(modulus, signs=(1, 1, -1))),
         },
         remark="The same is mended by interchanging x + 1 and x - 1 in (27).",
     ),
@@ -172,9 +162,9 @@ CLAIMS: Final = (
         condition=_PAIRED,
         correction=rf"{_X1},\quad {_X2}",
         counterexample="with (28) as transcribed the squared modulus is no multiple of x^3",
-        check=identity(plain, modulus),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
-        mutants={"8 (a + b)": identity(plain, partial(modulus, factor=8))},
+        check=identity(Quartics, modulus),
+        transcribed=identity(Quartics, modulus, signs=_TRANSCRIBED),
+        mutants={"8 (a + b)": identity(Quartics, modulus, factor=8)},
     ),
     Claim(
         id="hydromechanics 49 algebraic motion",
@@ -188,13 +178,13 @@ CLAIMS: Final = (
         correction=rf"{_X1},\quad {_X2}",
         counterexample="with (28) as transcribed |x e^(psi i)| is not x",
         check=lambda: worse(
-            identity(moving, motion)(), identity(moving, angle)(), algebraic_path()
+            identity(Algebraic, motion)(), identity(Algebraic, angle)(), algebraic_path()
         ),
-        transcribed=identity(plain, partial(modulus, signs=_TRANSCRIBED)),
+        transcribed=identity(Quartics, modulus, signs=_TRANSCRIBED),
         mutants={
-            "m1 = - r G^2": identity(moving, partial(motion, pull=1)),
+            "m1 = - r G^2": identity(Algebraic, motion, pull=1),
             "X1 for X2, along the trajectory": partial(algebraic_path, sign=-1),
-            "- i (x - 1)": identity(moving, partial(angle, sign=-1)),
+            "- i (x - 1)": identity(Algebraic, angle, sign=-1),
         },
     ),
 )

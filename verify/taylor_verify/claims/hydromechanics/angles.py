@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
 from taylor_verify.claims.field import Element, Field, Point, dot, identity, minus, transposed
-from taylor_verify.claims.hydromechanics.clebsch import POINT_TEXT, ClebschBody, body
+from taylor_verify.claims.hydromechanics.clebsch import POINT_TEXT, ClebschBody
 from taylor_verify.claims.hydromechanics.quadratures import angle_advance
 
 _ANGLES: Final = ("theta", "phi", "psi")
@@ -70,11 +70,6 @@ def _product(a: list[list[Any]], b: list[list[Any]]) -> list[list[Any]]:
     return [[dot(row, column) for column in transposed(b)] for row in a]
 
 
-@cache
-def angles() -> Angles:
-    return Angles()
-
-
 def components(a: Angles, angle: str = "phi") -> Iterator[Element]:
     """(14), all four equations; ``angle`` is that of the exponential."""
     s, c, F = a.s, a.c, a.F
@@ -124,9 +119,9 @@ CLAIMS: Final = (
         correction=r"x_1 + x_2i = iF\sin\theta\,e^{-\phi i}",
         counterexample=f"F = 7, {_ANGLE_TEXT}: x1 + i x2 = 28/65 (5 + 12 i), and 28/85 (8 + 15 i) as "
         "transcribed; psi does not enter x1 and x2 of the same line",
-        check=identity(angles, components),
-        transcribed=identity(angles, partial(components, angle="psi")),
-        mutants={"theta in the exponent": identity(angles, partial(components, angle="theta"))},
+        check=identity(Angles, components),
+        transcribed=identity(Angles, components, angle="psi"),
+        mutants={"theta in the exponent": identity(Angles, components, angle="theta")},
     ),
     Claim(
         id="hydromechanics 49 (15)",
@@ -135,8 +130,8 @@ CLAIMS: Final = (
         method="P, Q, R from R^T R' with free rates of the angles; exact expansion",
         verdict=Verdict.RESTORED,
         lost="the fraction is torn apart",
-        check=identity(angles, precession),
-        mutants={"- Q cos phi": identity(angles, partial(precession, sign=-1))},
+        check=identity(Angles, precession),
+        mutants={"- Q cos phi": identity(Angles, precession, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (16)",
@@ -147,10 +142,10 @@ CLAIMS: Final = (
         method="the kinematics as in (15), the rest exact expansion in the angles and y",
         verdict=Verdict.RESTORED,
         lost="the fractions are torn apart, and q reads g in the last member",
-        check=identity(angles, precession_by_energy),
+        check=identity(Angles, precession_by_energy),
         mutants={
-            "- x2 dT/dy2": identity(angles, partial(precession_by_energy, sign=-1)),
-            "2 q": identity(angles, partial(precession_by_energy, factor=2)),
+            "- x2 dT/dy2": identity(Angles, precession_by_energy, sign=-1),
+            "2 q": identity(Angles, precession_by_energy, factor=2),
         },
     ),
     Claim(
@@ -163,11 +158,11 @@ CLAIMS: Final = (
         correction=r"\psi - qFt = \int\frac{FG - x_3y_3}{F^2 - x_3^2}\,\frac{F\,dx_3}{\sqrt{X_3}}",
         counterexample=f"{POINT_TEXT}: the rate of the left side is -56/13, of the right side -112/13; "
         "the two agree for r = 1 alone",
-        check=lambda: worse(identity(body, advance)(), angle_advance()),
-        transcribed=identity(body, partial(advance, power=1)),
+        check=lambda: worse(identity(ClebschBody, advance)(), angle_advance()),
+        transcribed=identity(ClebschBody, advance, power=1),
         mutants={
-            "FG + x3 y3": identity(body, partial(advance, sign=-1)),
-            "r^2": identity(body, partial(advance, power=2)),
+            "FG + x3 y3": identity(ClebschBody, advance, sign=-1),
+            "r^2": identity(ClebschBody, advance, power=2),
             "r in the integral along the trajectory": partial(angle_advance, power=1),
         },
         remark="With r it is right if sqrt(X3) is read as dx3/dt, against (8) and (9).",

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
@@ -63,11 +62,6 @@ class Axial:
         return self.field.renamed(element, {"x3": "F", "y3": "G"})
 
 
-@cache
-def axial() -> Axial:
-    return Axial()
-
-
 def repeated(s: Axial, sign: int = 1) -> Iterator[Element]:
     """x3 - F divides X3 only if y3 = G; twice only if m1 has its value besides; then (23)."""
     y3, m1 = s.field["y3"], s.field["x1"]  # any symbols
@@ -118,8 +112,8 @@ CLAIMS: Final = (
         method=f"X3(F) = -F^2 (G - y3)^2, and its slope there gives m1; {_EXACT}",
         verdict=Verdict.RESTORED,
         lost="the fraction bars",
-        check=identity(axial, repeated),
-        mutants={"q - q'": identity(axial, partial(repeated, sign=-1))},
+        check=identity(Axial, repeated),
+        mutants={"q - q'": identity(Axial, repeated, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (24)",
@@ -130,10 +124,10 @@ CLAIMS: Final = (
         method=f"(8) with the X3 of (23); {_EXACT}",
         verdict=Verdict.RESTORED,
         lost="the fraction bars",
-        check=identity(axial, depth_rate),
+        check=identity(Axial, depth_rate),
         mutants={
-            "r for r^2": identity(axial, partial(depth_rate, power=1)),
-            "1 for 2 before the middle term": identity(axial, partial(depth_rate, factor=1)),
+            "r for r^2": identity(Axial, depth_rate, power=1),
+            "1 for 2 before the middle term": identity(Axial, depth_rate, factor=1),
         },
     ),
     Claim(
@@ -145,14 +139,14 @@ CLAIMS: Final = (
         verdict=Verdict.RESTORED,
         lost="the fraction bars",
         check=lambda: worse(
-            identity(axial, depth_rate)(),
-            identity(axial, discriminant)(),
-            identity(axial, squares)(),
+            identity(Axial, depth_rate)(),
+            identity(Axial, discriminant)(),
+            identity(Axial, squares)(),
         ),
         mutants={
-            "q - q'": identity(axial, partial(depth_rate, sign=-1)),
-            "q - q' in the discriminant": identity(axial, partial(discriminant, sign=-1)),
-            "2 F^2 (kappa + lambda^2)": identity(axial, partial(squares, factor=2)),
+            "q - q'": identity(Axial, depth_rate, sign=-1),
+            "q - q' in the discriminant": identity(Axial, discriminant, sign=-1),
+            "2 F^2 (kappa + lambda^2)": identity(Axial, squares, factor=2),
         },
     ),
     Claim(
@@ -164,10 +158,10 @@ CLAIMS: Final = (
         "and a trajectory of 60 digits stays within the tilt that the linear equations allow",
         verdict=Verdict.HOLDS,
         check=lambda: worse(
-            identity(axial, discriminant)(), identity(axial, depth_rate)(), bounded_tilt()
+            identity(Axial, discriminant)(), identity(Axial, depth_rate)(), bounded_tilt()
         ),
         mutants={
-            "q - q'": identity(axial, partial(discriminant, sign=-1)),
+            "q - q'": identity(Axial, discriminant, sign=-1),
             "a body with A > 0": unbounded_tilt,
         },
         remark="For A > 0 the movement is unstable. For A = 0, of which the text says nothing, (24) has "
@@ -183,7 +177,7 @@ CLAIMS: Final = (
         correction=r"\frac{r\sqrt{-A}}{2\pi} \text{ nutations per second}",
         counterexample="p = 2, p' = 3/2, q = q' = 0, r = 1, r' = 5/4, F = 1, G = 1: A = -3, and x3 "
         "returns after 2 pi/sqrt(3) = 3.63, in which the text counts two. It counts half-swings",
-        check=lambda: worse(identity(axial, discriminant)(), whole_swings()),
+        check=lambda: worse(identity(Axial, discriminant)(), whole_swings()),
         transcribed=half_swings,
         mutants={"r sqrt(-A)/pi": half_swings},
     ),

@@ -9,7 +9,7 @@ M         R y + c x R x, the moment of the impulse about the origin of space: co
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache, partial
+from functools import partial
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
@@ -27,7 +27,7 @@ from taylor_verify.claims.field import (
     unit_root,
     values,
 )
-from taylor_verify.claims.hydromechanics.angles import Angles, angles
+from taylor_verify.claims.hydromechanics.angles import Angles
 from taylor_verify.claims.hydromechanics.clebsch import COEFFICIENTS, kinetic_energy
 from taylor_verify.claims.hydromechanics.paths import place
 
@@ -66,11 +66,6 @@ class Led:
         T = kinetic_energy(six, x, y)
         yield self.field.partial(T, "x3") - (self.pp * x[2] + self.qq * y[2])
         yield self.field.partial(T, "y1") - (self.q * x[0] + self.r * y[0])
-
-
-@cache
-def led() -> Led:
-    return Led()
 
 
 def first(b: Led, sign: int = 1) -> Iterator[Element]:
@@ -133,9 +128,9 @@ CLAIMS: Final = (
         condition=_AXIS,
         correction=r"FX = y_1\cos xY + y_2\cos yY + y_3\cos zY - M_Y",
         counterexample="R = 1, y = 0, c = (1, 0, 0): FX = F, and the right side is 0",
-        check=lambda: worse(identity(led, first)(), place()),
-        transcribed=identity(led, lambda b: [b.F * b.c[0] - b.Ry[1]]),
-        mutants={"minus the sum": identity(led, partial(first, sign=-1))},
+        check=lambda: worse(identity(Led, first)(), place()),
+        transcribed=identity(Led, lambda b: [b.F * b.c[0] - b.Ry[1]]),
+        mutants={"minus the sum": identity(Led, first, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (19)",
@@ -147,10 +142,10 @@ CLAIMS: Final = (
         correction=r"FY = -(y_1\cos xX + y_2\cos yX + y_3\cos zX)",
         counterexample="body axis y along space axis X, y = (0, 1, 0): FY = -1, the right side as "
         "transcribed is +1; the minus belongs before the whole sum",
-        check=lambda: worse(identity(led, second)(), place()),
-        transcribed=identity(led, partial(second, sign=1)),
+        check=lambda: worse(identity(Led, second)(), place()),
+        transcribed=identity(Led, second, sign=1),
         mutants={
-            "plus the whole sum": identity(led, lambda b: [b.F * b.c[1] - b.Ry[0]]),
+            "plus the whole sum": identity(Led, lambda b: [b.F * b.c[1] - b.Ry[0]]),
             "the minus before y1 alone, along the trajectory": partial(place, whole=False),
         },
     ),
@@ -160,8 +155,8 @@ CLAIMS: Final = (
         domain=_ROOM,
         method=f"G = x.y/F; {_EXACT}",
         verdict=Verdict.HOLDS,
-        check=identity(led, third),
-        mutants={"Y for Z": identity(led, partial(third, row=2))},
+        check=identity(Led, third),
+        mutants={"Y for Z": identity(Led, third, row=2)},
     ),
     Claim(
         id="hydromechanics 49 coordinate Z",
@@ -171,8 +166,8 @@ CLAIMS: Final = (
         verdict=Verdict.VACUOUS,
         void="(20), in the third place, is an equation for G and says nothing of Z",
         correction=r"F\frac{dZ}{dt} = pF^2 + (p' - p)x_3^2 + qFG + (q' - q)x_3y_3",
-        check=identity(led, lambda b: [*height_rate(b), *b.derived_velocity()]),
-        mutants={"q - q'": identity(led, partial(height_rate, sign=-1))},
+        check=identity(Led, lambda b: [*height_rate(b), *b.derived_velocity()]),
+        mutants={"q - q'": identity(Led, height_rate, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (21)",
@@ -183,12 +178,12 @@ CLAIMS: Final = (
         condition=_AXIS,
         correction=r"(FX + M_Y)^2 + (FY - M_X)^2 = y_1^2 + y_2^2 + y_3^2 - G^2",
         counterexample="R = 1, y = 0, c = (1, 0, 0): F^2 = 0",
-        check=identity(led, distance),
+        check=identity(Led, distance),
         transcribed=identity(
-            led,
+            Led,
             lambda b: [b.F**2 * (b.c[0] ** 2 + b.c[1] ** 2) - (dot(b.y, b.y) - b.G**2)],
         ),
-        mutants={"+ G^2": identity(led, partial(distance, sign=-1))},
+        mutants={"+ G^2": identity(Led, distance, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (22)",
@@ -200,12 +195,12 @@ CLAIMS: Final = (
         correction=r"F(X + Yi) = \frac{Gx_3 - Fy_3 + i\sqrt{X_3}}{\sqrt{F^2 - x_3^2}}\,e^{\psi i}",
         counterexample="theta = pi/2, phi = psi = 0, y = (0, 0, 1), F = 1: R y = -Y, so that X = -1, Y = "
         "0; the right side as transcribed is +1",
-        check=lambda: worse(identity(angles, complex_place)(), place()),
-        transcribed=identity(angles, partial(complex_place, sign=1)),
+        check=lambda: worse(identity(Angles, complex_place)(), place()),
+        transcribed=identity(Angles, complex_place, sign=1),
         mutants={
             "as transcribed, along the trajectory": partial(place, sign=1),
-            "e^(-psi i)": identity(angles, partial(complex_place, conjugate=True)),
-            "- i sqrt(X3)": identity(angles, partial(complex_place, root=-1)),
+            "e^(-psi i)": identity(Angles, complex_place, conjugate=True),
+            "- i sqrt(X3)": identity(Angles, complex_place, root=-1),
         },
         remark="As transcribed it would be right with psi counted from the opposite direction and the "
         "other sign of sqrt(X3), against (9).",
@@ -220,8 +215,8 @@ CLAIMS: Final = (
         condition="(22) is corrected; as transcribed it gives the right distance in a wrong direction",
         correction=r"F(X + Yi) = \frac{Gx_3 - Fy_3 + i\sqrt{X_3}}{\sqrt{F^2 - x_3^2}}\,e^{\psi i}",
         counterexample="as for (22)",
-        check=identity(angles, complex_place),
-        transcribed=identity(angles, partial(complex_place, sign=1)),
-        mutants={"e^(-psi i)": identity(angles, partial(complex_place, conjugate=True))},
+        check=identity(Angles, complex_place),
+        transcribed=identity(Angles, complex_place, sign=1),
+        mutants={"e^(-psi i)": identity(Angles, complex_place, conjugate=True)},
     ),
 )

@@ -12,8 +12,8 @@ from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
 from taylor_verify.claims.field import Element, identity
-from taylor_verify.claims.hydromechanics.axial import Axial, axial
-from taylor_verify.claims.hydromechanics.clebsch import ClebschBody, body, quartic
+from taylor_verify.claims.hydromechanics.axial import Axial
+from taylor_verify.claims.hydromechanics.clebsch import ClebschBody, quartic
 from taylor_verify.claims.hydromechanics.quadratures import elapsed_time
 
 
@@ -77,9 +77,9 @@ CLAIMS: Final = (
         method="(8), and x3'' = r^2 X3'(x3)/2 with X3 of degree 4 and constant coefficients (exact "
         "expansion); the integral between two points of a trajectory against the time",
         verdict=Verdict.HOLDS,
-        check=lambda: worse(identity(body, second_order)(), elapsed_time()),
+        check=lambda: worse(identity(ClebschBody, second_order)(), elapsed_time()),
         mutants={
-            "twice the acceleration": identity(body, partial(second_order, factor=2)),
+            "twice the acceleration": identity(ClebschBody, second_order, factor=2),
             "without r in the integral": partial(elapsed_time, power=0),
         },
     ),
@@ -90,8 +90,8 @@ CLAIMS: Final = (
         method="the residues of F (F y3 - G z)/(F^2 - z^2) dz/sqrt(X3) at z = F and -F: their squares are "
         "-1/4; exact expansion",
         verdict=Verdict.HOLDS,
-        check=identity(axial, partial(residues, along=False)),
-        mutants={"F G + z y3": identity(axial, partial(residues, sign=-1))},
+        check=identity(Axial, residues, along=False),
+        mutants={"F G + z y3": identity(Axial, residues, sign=-1)},
         remark="For q' != q the integral of x3 adds poles where x3 is infinite.",
     ),
     Claim(
@@ -101,8 +101,8 @@ CLAIMS: Final = (
         method="the residues of F (F G - z y3)/(F^2 - z^2) dz/sqrt(X3) at z = F and -F: their squares are "
         "-1/4; exact expansion",
         verdict=Verdict.HOLDS,
-        check=identity(axial, residues),
-        mutants={"F G + z y3": identity(axial, partial(residues, sign=-1))},
+        check=identity(Axial, residues),
+        mutants={"F G + z y3": identity(Axial, residues, sign=-1)},
         remark="With r left in, as (17) is transcribed, the residues would be r i/2.",
     ),
 )

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import partial
 from itertools import combinations_with_replacement
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Check, Claim, Residual, Verdict, worse
-from taylor_verify.claims.field import Element, Field, apply, cross, dot, identity, plus
+from taylor_verify.claims.field import Element, Field, apply, cross, dot, identity, plus, symbols_of
 from taylor_verify.claims.hydromechanics.poles import branching
 from taylor_verify.claims.hydromechanics.solid import Solid, unloaded
 from taylor_verify.scenes import tensors
@@ -123,9 +123,9 @@ def independent(fourth: str) -> Check:
     def check() -> Residual:
         from flint import fmpq, fmpq_mat
 
-        from taylor_verify.claims.hydromechanics.clebsch import body
+        from taylor_verify.claims.hydromechanics.clebsch import ClebschBody
 
-        b = body()
+        b = symbols_of(ClebschBody)
         four = [b.T, dot(b.x, b.x), b.FG, b.y[2] if fourth == "y3" else dot(b.x, b.x) ** 2]
         rows = []
         for integral in four:
@@ -176,11 +176,6 @@ class Planar:
         self.twice_T = p1 * x1**2 + p2 * x2**2 + self.r * y3**2
 
 
-@cache
-def planar() -> Planar:
-    return Planar()
-
-
 def swing(s: Planar, factor: int = 1) -> Iterator[Element]:
     """The plane is kept, and y3'^2 is a quartic in y3 with constant coefficients."""
     yield from (s.dx[2], s.dy[0], s.dy[1])
@@ -211,9 +206,7 @@ CLAIMS: Final = (
         check=_both(identity(unloaded, divergence), independent("y3")),
         transcribed=independent("F^4"),
         mutants={
-            "B for its transpose in Omega": identity(
-                unloaded, partial(divergence, transposed=False)
-            ),
+            "B for its transpose in Omega": identity(unloaded, divergence, transposed=False),
             "F^4 as the fourth": independent("F^4"),
         },
         remark="Attitude and centre take further quadratures.",
@@ -261,11 +254,11 @@ CLAIMS: Final = (
         correction=r"\text{the most general } T \text{ with } y_3 = \text{constant for every motion}",
         counterexample="2T = 2 x1^2 + 3 x2^2 + p3 x3^2 + r1 y1^2 + r2 y2^2 + y3^2 in the plane x3 = y1 = "
         "y2 = 0: y3 is not constant, but (dy3/dt)^2 = (2T - y3^2 - 2 F^2)(3 F^2 - 2T + y3^2)",
-        check=_both(coefficients_left, identity(planar, swing)),
-        transcribed=identity(planar, swing_rate),
+        check=_both(coefficients_left, identity(Planar, swing)),
+        transcribed=identity(Planar, swing_rate),
         mutants={
             "six coefficients": partial(coefficients_left, kept=6),
-            "the planar motion without r y3^2": identity(planar, partial(swing, factor=0)),
+            "the planar motion without r y3^2": identity(Planar, swing, factor=0),
         },
     ),
 )

@@ -8,7 +8,6 @@ exact rationals with all 21 coefficients of T as symbols.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -124,8 +123,8 @@ CLAIMS: Final = (
         lost="the equation stands above the first line of the scan; its brackets return in (7)",
         check=identity(unposed, linear_law),
         mutants={
-            "x2 R with the other sign": identity(unposed, partial(linear_law, sign=-1)),
-            "twice the force": identity(unposed, partial(linear_law, factor=2)),
+            "x2 R with the other sign": identity(unposed, linear_law, sign=-1),
+            "twice the force": identity(unposed, linear_law, factor=2),
         },
     ),
     Claim(
@@ -140,8 +139,8 @@ CLAIMS: Final = (
         lost="the equation stands above the first line of the scan; its brackets return in (9)",
         check=identity(unposed, angular_law),
         mutants={
-            "without x3 V (no Munk moment)": identity(unposed, partial(angular_law, arm=0)),
-            "x2 W with the other sign": identity(unposed, partial(angular_law, sign=-1)),
+            "without x3 V (no Munk moment)": identity(unposed, angular_law, arm=0),
+            "x2 W with the other sign": identity(unposed, angular_law, sign=-1),
         },
     ),
     Claim(
@@ -153,8 +152,8 @@ CLAIMS: Final = (
         lost="the three fractions are run together",
         check=identity(loaded, fixed_line),
         mutants={
-            "m R with the other sign": identity(loaded, partial(fixed_line, sign=-1)),
-            "l for m in the third": identity(loaded, partial(fixed_line, third=1)),
+            "m R with the other sign": identity(loaded, fixed_line, sign=-1),
+            "l for m in the third": identity(loaded, fixed_line, third=1),
         },
     ),
     Claim(
@@ -165,7 +164,7 @@ CLAIMS: Final = (
         f"fixed line; its rate is (7); {_EXPANDED}",
         verdict=Verdict.HOLDS,
         check=identity(loaded, impulse_along),
-        mutants={"m x1 for m x2": identity(loaded, partial(impulse_along, index=1))},
+        mutants={"m x1 for m x2": identity(loaded, impulse_along, index=1)},
     ),
     Claim(
         id="hydromechanics 48 (7)",
@@ -177,8 +176,8 @@ CLAIMS: Final = (
         lost="fractions and lines are run together",
         check=identity(unposed, impulse_along_rate),
         mutants={
-            "x2 R with the other sign": identity(unposed, partial(impulse_along_rate, sign=-1)),
-            "twice the force": identity(unposed, partial(impulse_along_rate, factor=2)),
+            "x2 R with the other sign": identity(unposed, impulse_along_rate, sign=-1),
+            "twice the force": identity(unposed, impulse_along_rate, factor=2),
         },
     ),
     Claim(
@@ -190,7 +189,7 @@ CLAIMS: Final = (
         f"{_EXPANDED}",
         verdict=Verdict.HOLDS,
         check=identity(loaded, moment_about),
-        mutants={"x2 z with the other sign": identity(loaded, partial(moment_about, sign=-1))},
+        mutants={"x2 z with the other sign": identity(loaded, moment_about, sign=-1)},
     ),
     Claim(
         id="hydromechanics 48 (9)",
@@ -204,9 +203,9 @@ CLAIMS: Final = (
         lost="fractions and lines are run together",
         check=identity(unposed, moment_rate),
         mutants={
-            "x2 W with the other sign": identity(unposed, partial(moment_rate, sign=-1)),
-            "a fixed origin left behind": identity(unposed, partial(moment_rate, moved=False)),
-            "twice the couple": identity(unposed, partial(moment_rate, members=3)),
+            "x2 W with the other sign": identity(unposed, moment_rate, sign=-1),
+            "a fixed origin left behind": identity(unposed, moment_rate, moved=False),
+            "twice the couple": identity(unposed, moment_rate, members=3),
         },
         remark="About a fixed origin elsewhere the right side is l.(L + r x X).",
     ),

@@ -6,7 +6,6 @@ Symbols as in solid.py; every identity is expanded in exact rationals with all 2
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict
@@ -67,7 +66,7 @@ CLAIMS: Final = (
         verdict=Verdict.HOLDS,
         check=identity(unloaded, energy),
         mutants={
-            "a rate x.U": identity(unloaded, partial(energy, share=2)),
+            "a rate x.U": identity(unloaded, energy, share=2),
             "under a force": identity(loaded, energy),
         },
     ),
@@ -78,7 +77,7 @@ CLAIMS: Final = (
         method=_EXPANDED,
         verdict=Verdict.HOLDS,
         check=identity(unloaded, square),
-        mutants={"- x2^2": identity(unloaded, partial(square, sign=-1))},
+        mutants={"- x2^2": identity(unloaded, square, sign=-1)},
     ),
     Claim(
         id="hydromechanics 48 (iii)",
@@ -87,7 +86,7 @@ CLAIMS: Final = (
         method=_EXPANDED,
         verdict=Verdict.HOLDS,
         check=identity(unloaded, product),
-        mutants={"x3 y2 for x3 y3": identity(unloaded, partial(product, index=2))},
+        mutants={"x3 y2 for x3 y3": identity(unloaded, product, index=2)},
         remark="The letter n between the two members means only a constant.",
     ),
     Claim(
@@ -107,7 +106,7 @@ CLAIMS: Final = (
         method=f"y' - y x Omega, the rate of y in space, is this vector; {_EXPANDED}",
         verdict=Verdict.HOLDS,
         check=identity(unloaded, couple),
-        mutants={"x3 V with the other sign": identity(unloaded, partial(couple, sign=-1))},
+        mutants={"x3 V with the other sign": identity(unloaded, couple, sign=-1)},
     ),
     Claim(
         id="hydromechanics 48 couple perpendicular to F",
@@ -116,7 +115,7 @@ CLAIMS: Final = (
         method="exact expansion in x, y and all 21 coefficients of T",
         verdict=Verdict.HOLDS,
         check=identity(unloaded, across),
-        mutants={"x3 V with the other sign": identity(unloaded, partial(across, sign=-1))},
+        mutants={"x3 V with the other sign": identity(unloaded, across, sign=-1)},
     ),
     Claim(
         id="hydromechanics 48 component along OF",
@@ -126,7 +125,7 @@ CLAIMS: Final = (
         verdict=Verdict.HOLDS,
         check=identity(unloaded, along),
         mutants={
-            "x1 counted twice in F": identity(unloaded, partial(along, factor=2)),
+            "x1 counted twice in F": identity(unloaded, along, factor=2),
             "under a force": identity(loaded, along),
         },
     ),

@@ -7,12 +7,11 @@ by their derivatives alone, so that every identity is one of rational functions 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
 from taylor_verify.claims.field import Element, identity
-from taylor_verify.claims.hydromechanics.clebsch import POINT_TEXT, ClebschBody, body
+from taylor_verify.claims.hydromechanics.clebsch import POINT_TEXT, ClebschBody
 
 _ROOM: Final = "T of the form (1); any free motion; off the axis, x1 + i x2 not zero"
 _EXACT: Final = "by 48 (3), (4); exact expansion in x, y, the six coefficients, F and i"
@@ -69,8 +68,8 @@ CLAIMS: Final = (
         method=_EXACT,
         verdict=Verdict.RESTORED,
         lost="`xy3y3` stands for x3 y3",
-        check=identity(body, product),
-        mutants={"- i sqrt(X3)": identity(body, partial(product, sign=-1))},
+        check=identity(ClebschBody, product),
+        mutants={"- i sqrt(X3)": identity(ClebschBody, product, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (10)",
@@ -79,8 +78,8 @@ CLAIMS: Final = (
         method=_EXACT,
         verdict=Verdict.RESTORED,
         lost="both fraction bars",
-        check=identity(body, quotient),
-        mutants={"- i sqrt(X3)": identity(body, partial(quotient, sign=-1))},
+        check=identity(ClebschBody, quotient),
+        mutants={"- i sqrt(X3)": identity(ClebschBody, quotient, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (11)",
@@ -92,9 +91,9 @@ CLAIMS: Final = (
         r"+ irx_3(y_1 + y_2i)",
         counterexample=f"{POINT_TEXT}: the left side is 36 + 4 i by the equations of motion, the right "
         "side 24 + 8 i; its two terms are not even of one dimension",
-        check=identity(body, turning),
-        transcribed=identity(body, partial(turning, with_xi=False)),
-        mutants={"i r x3 with the other sign": identity(body, partial(turning, sign=-1))},
+        check=identity(ClebschBody, turning),
+        transcribed=identity(ClebschBody, turning, with_xi=False),
+        mutants={"i r x3 with the other sign": identity(ClebschBody, turning, sign=-1)},
     ),
     Claim(
         id="hydromechanics 49 (12)",
@@ -104,10 +103,10 @@ CLAIMS: Final = (
         method=_EXACT,
         verdict=Verdict.RESTORED,
         lost="the fraction bars; d/i dt is torn apart",
-        check=identity(body, log_rate),
+        check=identity(ClebschBody, log_rate),
         mutants={
-            "- i sqrt(X3)": identity(body, partial(log_rate, sign=-1)),
-            "r^2 for r": identity(body, partial(log_rate, power=2)),
+            "- i sqrt(X3)": identity(ClebschBody, log_rate, sign=-1),
+            "r^2 for r": identity(ClebschBody, log_rate, power=2),
         },
         remark="From the corrected (11) it follows; from (11) as transcribed it does not.",
     ),
@@ -119,10 +118,10 @@ CLAIMS: Final = (
         method=_EXACT,
         verdict=Verdict.RESTORED,
         lost="the fraction bars, and the quotient under the root",
-        check=identity(body, angle_rate),
+        check=identity(ClebschBody, angle_rate),
         mutants={
-            "F y3 + G x3": identity(body, partial(angle_rate, sign=-1)),
-            "r for F r": identity(body, partial(angle_rate, with_F=False)),
+            "F y3 + G x3": identity(ClebschBody, angle_rate, sign=-1),
+            "r for F r": identity(ClebschBody, angle_rate, with_F=False),
         },
     ),
 )

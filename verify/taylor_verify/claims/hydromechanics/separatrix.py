@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import cache, partial
+from functools import partial
 from typing import Final
 
 from taylor_verify.claims.claim import Claim, Verdict, worse
 from taylor_verify.claims.field import Element, Field, Point, identity
 from taylor_verify.claims.hydromechanics import falling
-from taylor_verify.claims.hydromechanics.axial import axial, squares
+from taylor_verify.claims.hydromechanics.axial import Axial, squares
 
 # Numbers of the trajectory in falling.py at its turning point, slightly moved: A + 2 B y + C y^2 > 0.
 _POINT: Final[Point] = {
@@ -42,11 +42,6 @@ def _times_a_squared(field: Field) -> Element:
     """a^2 (A + 2 B y + C y^2), a polynomial."""
     a, B, s, y = (field[name] for name in ("a", "B", "s", "y"))
     return a**4 + 2 * a**2 * B * y + (B**2 - s**2) * y**2
-
-
-@cache
-def antiderivative() -> Antiderivative:
-    return Antiderivative()
 
 
 def both_lines(t: Antiderivative, sign: int = 1, factor: int = 2) -> Iterator[Element]:
@@ -83,15 +78,15 @@ CLAIMS: Final = (
         counterexample="p = 1, p' = 8/9, q = 1/4, q' = 3/4, r = 2, r' = 5/4, x = (3, 0, 4), y = (1, 0, 3): "
         "F = 5, y = -1 at the start, and (A + By)/(y sqrt(B^2 - AC)) = -1",
         check=lambda: worse(
-            identity(antiderivative, both_lines)(),
+            identity(Antiderivative, both_lines)(),
             falling.closed_depth(),
             falling.hyperbolic_cosine(),
             falling.hyperbolic_sine(),
         ),
         transcribed=falling.hyperbolic_cosine_as_it_stands,
         mutants={
-            "A - B y": identity(antiderivative, partial(both_lines, sign=-1)),
-            "half the derivative": identity(antiderivative, partial(both_lines, factor=1)),
+            "A - B y": identity(Antiderivative, both_lines, sign=-1),
+            "half the derivative": identity(Antiderivative, both_lines, factor=1),
             "- B in x3": falling.closed_depth_with_minus_B,
             "sh^-1 with the other sign": partial(falling.hyperbolic_sine, sign=1),
         },
@@ -104,8 +99,8 @@ CLAIMS: Final = (
         "exact expansion in F, G and the six coefficients",
         verdict=Verdict.VACUOUS,
         void="A > 0 asks kappa + lambda^2 > 0, and then B^2 - AC >= 0: the case does not occur",
-        check=identity(axial, squares),
-        mutants={"2 F^2 (kappa + lambda^2)": identity(axial, partial(squares, factor=2))},
+        check=identity(Axial, squares),
+        mutants={"2 F^2 (kappa + lambda^2)": identity(Axial, squares, factor=2)},
     ),
     Claim(
         id="hydromechanics 49 falls away ultimately",

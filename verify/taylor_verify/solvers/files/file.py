@@ -140,14 +140,15 @@ def from_columns(
     times = _times(clock.column.values, clock.column.name, place, faults) if clock else ()
     if faults.lines:
         raise Refused(faults.lines)
-    scaled = {one.name: one.scaled(one.column.values) for one in taken}
+    by_name = {one.name: one for one in taken}
     groups = {
         group: Rows(
-            [scaled[name] for name in names],
+            [by_name[name].column.values for name in names],
             np.logical_and.reduce([finite[name] for name in names]),
+            [by_name[name].factor for name in names],
         )
         for group, names in COLUMNS.items()
-        if names[0] in scaled
+        if names[0] in by_name
     }
     digits = written_digits(one.column for one in taken if one is not clock)
     if clock and clock.factor != 1:

@@ -43,11 +43,18 @@ _NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 class Rows(Sequence[tuple[Value, ...]]):
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
-    ``finite`` tells the rows of which every number is one.
+    ``finite`` tells the rows of which every number is one. The number of a row is the factor of its
+    column times the number that is written.
     """
 
-    def __init__(self, columns: Sequence[Raw], finite: Flags | None = None) -> None:
+    def __init__(
+        self,
+        columns: Sequence[Raw],
+        finite: Flags | None = None,
+        factors: Sequence[Fraction] | None = None,
+    ) -> None:
         self._columns = tuple(columns)
+        self._factors = factors or (Fraction(1),) * len(self._columns)
         self._count = len(self._columns[0])
         self.finite: Flags = np.ones(self._count, dtype=bool) if finite is None else finite
 
@@ -71,11 +78,12 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __getitem__(self, place: int | slice) -> Any:
         if isinstance(place, slice):
             return tuple(self[k] for k in range(self._count)[place])
-        return tuple(exact(column[place]) for column in self._columns)
+        pairs = zip(self._columns, self._factors, strict=True)
+        return tuple(_scaled(exact(column[place]), factor) for column, factor in pairs)
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
         for part in chunks(self._count):
-            values = [[exact(raw) for raw in _some(column, part)] for column in self._columns]
+            values = [map(exact, entries) for entries in self._some(part)]
             yield from zip(*values, strict=True)
 
     def __eq__(self, other: object) -> bool:
@@ -92,14 +100,25 @@ class Rows(Sequence[tuple[Value, ...]]):
         found = np.empty((count, len(self._columns)))
         for part in chunks(count):
             asked = part if places is None else places[part.start : part.stop]
-            for i, column in enumerate(self._columns):
-                found[part.start : part.stop, i] = _doubles(_some(column, asked))
+            for i, entries in enumerate(self._some(asked)):
+                found[part.start : part.stop, i] = _doubles(entries)
         return found
 
     def held(self, places: Sequence[int], bits: int) -> Array:
         """Return some of the rows as numbers of mpmath, exact where a number has at most so many bits."""
-        columns = [_held(_some(column, places), bits) for column in self._columns]
+        columns = [_held(entries, bits) for entries in self._some(places)]
         return np.stack(columns, axis=1) if len(places) else np.empty((0, len(columns)), object)
+
+    def _some(self, places: Sequence[int]) -> Iterator[Raw]:
+        """The entries of each column at some places, as they are written where the unit is our own."""
+        for column, factor in zip(self._columns, self._factors, strict=True):
+            entries = _some(column, places)
+            yield entries if factor == 1 else [_scaled(exact(raw), factor) for raw in entries]
+
+
+def _scaled(value: Value, factor: Fraction) -> Value:
+    """A number in the scene's unit, exactly; NaN and infinity as they are."""
+    return value * factor if isinstance(value, Fraction) else value
 
 
 def chunks(count: int) -> Iterator[range]:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
-from equations import rates  # type: ignore[import-not-found]
+from equations import rates
 
 Row = Sequence[float]
 # The method and the settings by name, numbers as numbers; the library's own names of them are the
@@ -98,7 +98,7 @@ def _timed(propagate: Callable[[], Any]) -> tuple[Any, float]:
 def compiled_rates(question: Question) -> Any:
     """``fill(state, out)``, the rates compiled by numba; the body's numbers are constants of it."""
     import numpy
-    from numba import njit  # type: ignore[import-not-found]
+    from numba import njit
 
     found = rates(question.columns, njit)
     parameters = numpy.array(question.parameters)

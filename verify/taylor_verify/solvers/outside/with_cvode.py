@@ -27,14 +27,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from question import (  # type: ignore[import-not-found]
-    Question,
-    Settings,
-    Solved,
-    answer,
-    compiled_rates,
-    twice,
-)
+from question import Question, Settings, Solved, answer, compiled_rates, twice
 
 METHODS = {"adams": "Adams", "bdf": "BDF"}
 # CVODE stops after 500 steps between two samples where nothing is said.
@@ -43,7 +36,7 @@ MOST_STEPS = 10**7
 
 def solve(question: Question, settings: Settings) -> Solved:
     import numpy
-    from sksundae.cvode import CVODE  # type: ignore[import-not-found]
+    from sksundae.cvode import CVODE
 
     began = time.perf_counter()
     fill = compiled_rates(question)

@@ -31,14 +31,7 @@ from __future__ import annotations
 import ctypes
 from typing import Any
 
-from question import (  # type: ignore[import-not-found]
-    Question,
-    Settings,
-    Solved,
-    answer,
-    compiled_rates,
-    twice,
-)
+from question import Question, Settings, Solved, answer, compiled_rates, twice
 
 METHODS = {
     "dop853": "DOP853",
@@ -67,8 +60,8 @@ def solve(question: Question, settings: Settings) -> Solved:
 
 
 def _right_hand_side(question: Question) -> Any:
-    from CyRK import cyjit  # type: ignore[import-not-found]
-    from numba import carray  # type: ignore[import-not-found]
+    from CyRK import cyjit
+    from numba import carray
 
     fill, n = compiled_rates(question), len(question.state)
 
@@ -82,9 +75,9 @@ def _right_hand_side(question: Question) -> Any:
 def _propagated(address: int, question: Question, settings: Settings) -> tuple[Any, int, int]:
     """The states, the steps and the evaluations; the arguments are those of CyRK's own C function."""
     import numpy
-    from CyRK.cy.common import MAX_SIZE  # type: ignore[import-not-found]
-    from CyRK.cy.pyhelpers import find_ode_method_int  # type: ignore[import-not-found]
-    from CyRK.nb import numba_solver as c  # type: ignore[import-not-found]
+    from CyRK.cy.common import MAX_SIZE
+    from CyRK.cy.pyhelpers import find_ode_method_int
+    from CyRK.nb import numba_solver as c
 
     start, instants = numpy.array(question.state), numpy.array(question.instants)
     rtol, atol, count = (numpy.array([value]) for value in (settings.rtol, settings.atol, 0.0))

@@ -28,25 +28,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from equations import rates  # type: ignore[import-not-found]
-from question import (  # type: ignore[import-not-found]
-    Question,
-    Settings,
-    Solved,
-    answer,
-    twice,
-)
+from equations import rates
+from question import Question, Settings, Solved, answer, twice
 
 METHODS = {"tsit5": "Tsit5", "dopri8": "Dopri8"}
 DOUBLE_BITS = 53
 
 
 def solve(question: Question, settings: Settings) -> Solved:
-    import jax  # type: ignore[import-not-found]
+    import jax
 
     jax.config.update("jax_enable_x64", question.bits == DOUBLE_BITS)
-    import diffrax  # type: ignore[import-not-found]
-    import jax.numpy as jnp  # type: ignore[import-not-found]
+    import diffrax
+    import jax.numpy as jnp
 
     f, sign = rates(question.columns), question.sign
 

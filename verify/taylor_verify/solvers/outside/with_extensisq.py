@@ -29,20 +29,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from question import (  # type: ignore[import-not-found]
-    Question,
-    Settings,
-    Solved,
-    answer,
-    compiled_rates,
-    twice,
-)
+from question import Question, Settings, Solved, answer, compiled_rates, twice
 
 METHODS = {"pr7": "Pr7", "pr8": "Pr8", "pr9": "Pr9", "swag": "SWAG"}
 
 
 def solve(question: Question, settings: Settings) -> Solved:
-    import extensisq  # type: ignore[import-not-found]
+    import extensisq
     import numpy
     from scipy.integrate import solve_ivp
 

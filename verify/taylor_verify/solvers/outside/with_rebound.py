@@ -25,14 +25,7 @@ from __future__ import annotations
 import ctypes
 from typing import Any
 
-from question import (  # type: ignore[import-not-found]
-    Question,
-    Settings,
-    Solved,
-    answer,
-    compiled_rates,
-    twice,
-)
+from question import Question, Settings, Solved, answer, compiled_rates, twice
 
 # The only one that takes equations of one's own.
 METHODS = {"bs": "bs"}
@@ -51,8 +44,8 @@ def solve(question: Question, settings: Settings) -> Solved:
 
 
 def _right_hand_side(question: Question) -> Any:
-    from numba import carray, cfunc, types  # type: ignore[import-not-found]
-    from rebound.ode import ODE  # type: ignore[import-not-found]
+    from numba import carray, cfunc, types
+    from rebound.ode import ODE
 
     fill, n = compiled_rates(question), len(question.state)
     # The ODE as an array of words, of which ref is one.
@@ -68,7 +61,7 @@ def _right_hand_side(question: Question) -> Any:
 
 
 def _propagated(address: int, question: Question, settings: Settings) -> tuple[Any, int, int]:
-    import rebound  # type: ignore[import-not-found]
+    import rebound
 
     sim = rebound.Simulation()
     sim.integrator = METHODS[settings.method]

@@ -71,7 +71,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -83,9 +82,9 @@ from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.parts import Value
-from taylor_verify.scenes.precision import Rung, double_text, hexadecimal, power_of_two
-from taylor_verify.scenes.reading.table import exact_number
+from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.solver import columns
+from taylor_verify.solvers.values import exact
 
 VERSION = 1
 # A program that knows constant loads alone has to be able to tell.
@@ -97,11 +96,6 @@ _DOUBLE_BITS = 53
 _PLACES = 30
 # Seconds, of the order of a century: a double holds it, and no program was waited for so long.
 _LONGEST = 10**10
-_LARGEST_BINARY_EXPONENT = 20_000
-_HEXADECIMAL = re.compile(
-    r"([+-]?)0x([0-9a-f]{0,1000})\.?([0-9a-f]{0,1000})(?:p([+-]?[0-9]{1,5}))?", re.IGNORECASE
-)
-_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
 
 class Misanswer(Exception):
@@ -355,18 +349,14 @@ def _nearest_double(value: int | Decimal, place: str) -> float:
 
 
 def _from_text(text: str, place: str) -> Fraction:
-    if _NOT_FINITE.fullmatch(text):
+    value = _exact(text, place)
+    if not isinstance(value, Fraction):
         raise NotFinite(f"{text} @ {place}")
-    if match := _HEXADECIMAL.fullmatch(text):
-        sign, whole, part, exponent = match[1], match[2], match[3], int(match[4] or 0)
-        if (whole or part) and abs(exponent) <= _LARGEST_BINARY_EXPONENT:
-            size = int(whole + part, 16) * power_of_two(exponent - 4 * len(part))
-            return -size if sign == "-" else size
-    return _exact(text, place)
+    return value
 
 
-def _exact(value: object, place: str) -> Fraction:
+def _exact(value: object, place: str) -> Fraction | float:
     try:
-        return exact_number(value)
+        return exact(value)
     except ValueError as error:
         raise Misanswer(f"expected {error}, got {value!s:.40} @ {place}") from None

@@ -11,7 +11,7 @@ an endless or a broken run             the number of steps is bounded and the ou
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -41,10 +41,11 @@ LONGEST_STEP = 0.5
 # way, and the fastest seen so far counts. Each look costs heyoka a series and a step cut short.
 _RADIANS_APART = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
-# A regular orbit takes three to five steps in the time of one radian, a close passage some more.
-_STEPS_PER_RADIAN = 64
+# A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
+# this bound a run has gone astray.
+LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
 # What would take longer than days is not begun.
-_MOST_RADIANS = 1e10
+MOST_RADIANS = 1e10
 # That takes about half a second where the processor has the arithmetic. A wide rung calls back after
 # each step instead, which costs a tenth of a microsecond: nothing beside its steps, but much here.
 _RADIANS_AT_ONCE = {"f32": 5e5, "f64": 5e5, "f80": 5e4}
@@ -135,23 +136,18 @@ def compiled(
 
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
-    states = hy.make_vars(*form.states)
     if literals is None:
         coefficients = [hy.par[i] for i in range(len(form.parameters))]
     else:
         coefficients = [hy.expression(numbers.number(value)) for value in literals]
-    rates = form.rates(states, coefficients)
-    system = [
-        (state, hy.expression(0.0) if is_absent(rate) else rate)
-        for state, rate in zip(states, rates, strict=True)
-    ]
+    system = equations(form, coefficients)
     passed = len(form.parameters) if literals is None else 0
     options = {
-        "state": np.array([zero] * len(states), dtype=numbers.fp_type),
+        "state": np.array([zero] * len(system), dtype=numbers.fp_type),
         "time": zero,
         "pars": np.array([zero] * passed, dtype=numbers.fp_type),
         "fp_type": numbers.fp_type,
-        "compact_mode": numbers.compact or len(states) > _LARGEST_STRAIGHT_LINE,
+        "compact_mode": numbers.compact or len(system) > _LARGEST_STRAIGHT_LINE,
         "opt_level": 3 if is_long else 0,
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
@@ -160,6 +156,18 @@ def compiled(
         return stored(hy.taylor_adaptive, system, **options)
     heyoka_cache_off()
     return hy.taylor_adaptive(system, **options)
+
+
+def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Return the states of a form as heyoka's variables, each with its rate."""
+    import heyoka as hy
+
+    states = hy.make_vars(*form.states)
+    rates = form.rates(states, coefficients)
+    return [
+        (state, hy.expression(0.0) if is_absent(rate) else rate)
+        for state, rate in zip(states, rates, strict=True)
+    ]
 
 
 def _propagate(
@@ -192,7 +200,7 @@ def _propagate(
             if not isfinite(rate):
                 return Outcome.NON_FINITE, total_steps, [], inner
         radians = rate * abs(float(grid[last] - grid[first]))
-        if not radians <= _MOST_RADIANS:
+        if not radians <= MOST_RADIANS:
             return Outcome.STEP_LIMIT, total_steps, [], inner
         longest = numbers.double(LONGEST_STEP / rate)
         instants = grid[first : last + 1]
@@ -201,7 +209,7 @@ def _propagate(
         status, _, _, steps, _, reached = integrator.propagate_grid(
             instants,
             max_delta_t=longest,
-            max_steps=1000 + int(_STEPS_PER_RADIAN * radians),
+            max_steps=LEAST_STEPS + int(STEPS_PER_RADIAN * radians),
             callback=None if problem.rung.name in _RADIANS_AT_ONCE else _go_on,
         )
         inner += perf_counter() - began
@@ -234,7 +242,7 @@ def outcome_of(status: Any) -> Outcome:
 
 def _pieces(radians: float, rung: Rung) -> int:
     """How many times the rate is looked at on a way so long, and an interrupt heard."""
-    if not radians <= _MOST_RADIANS:
+    if not radians <= MOST_RADIANS:
         return _MOST_LOOKS
     looks = min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
     at_once = _RADIANS_AT_ONCE.get(rung.name)

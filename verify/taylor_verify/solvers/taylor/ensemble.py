@@ -22,13 +22,20 @@ from typing import Any, Final, final
 
 import numpy as np
 
-from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import LONGEST_STEP, compiled, outcome_of
+from taylor_verify.solvers.taylor.driver import (
+    LEAST_STEPS,
+    LONGEST_STEP,
+    MOST_RADIANS,
+    STEPS_PER_RADIAN,
+    compiled,
+    equations,
+    outcome_of,
+)
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -36,11 +43,6 @@ Array = np.ndarray[Any, Any]
 
 # The rungs that heyoka has batches for, as NumPy calls them.
 _BATCHED: Final = {"f32": np.float32, "f64": float}
-# As the driver has them: a regular orbit takes three to five steps in the time of one radian.
-_STEPS_PER_RADIAN: Final = 64
-_LEAST_STEPS: Final = 1000
-# What would take longer than days is not begun.
-_MOST_RADIANS: Final = 1e10
 # A long run is worth half a second of compiling; beyond this many states it would be many.
 _LARGEST_STRAIGHT_LINE: Final = 6
 
@@ -115,7 +117,7 @@ class Ensemble:
         rate = max(lane.fastest, self._linearised[i].fastest([_double(v) for v in lane.state]))
         if not isfinite(rate):
             return replace(lane, outcome=Outcome.NON_FINITE)
-        if not rate * abs(float(until - lane.time)) <= _MOST_RADIANS:
+        if not rate * abs(float(until - lane.time)) <= MOST_RADIANS:
             return replace(lane, outcome=Outcome.STEP_LIMIT)
         return replace(lane, fastest=rate)
 
@@ -234,7 +236,7 @@ def batch_width(rung: Rung) -> int:
 
 def most_steps(lane: Lane, target: Fraction) -> int:
     """A bound that no regular orbit comes near: what needs more has gone astray."""
-    return _LEAST_STEPS + int(_STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
+    return LEAST_STEPS + int(STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
 
 
 def _processors() -> int:
@@ -270,12 +272,7 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     import heyoka as hy
 
     numbers = arithmetic(rung)
-    states = hy.make_vars(*form.states)
-    rates = form.rates(states, [hy.par[i] for i in range(len(form.parameters))])
-    system = [
-        (state, hy.expression(0.0) if is_absent(rate) else rate)
-        for state, rate in zip(states, rates, strict=True)
-    ]
+    system = equations(form, [hy.par[i] for i in range(len(form.parameters))])
 
     def empty(*shape: int) -> Array:
         return np.zeros((*shape, width), dtype=numbers.fp_type)
@@ -283,11 +280,11 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     return stored(
         hy.taylor_adaptive_batch,
         system,
-        state=empty(len(states)),
+        state=empty(len(system)),
         time=empty(),
         pars=empty(len(form.parameters)),
         fp_type=numbers.fp_type,
-        compact_mode=len(states) > _LARGEST_STRAIGHT_LINE,
+        compact_mode=len(system) > _LARGEST_STRAIGHT_LINE,
         # heyoka takes 0 for the machine epsilon of the type.
         tol=numbers.number(Fraction(0) if tolerance is None else rung.round(tolerance)),
     )

@@ -26,11 +26,9 @@ from taylor_verify.solvers.files.columns.choice import (
 from taylor_verify.solvers.files.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.files.columns.readings import Name, is_ours
 from taylor_verify.solvers.files.columns.request import Request, asked_columns
-from taylor_verify.solvers.files.columns.scaled import Scaled
 from taylor_verify.solvers.files.columns.units import OWN, known_units
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.step import STEP_COLUMNS
-from taylor_verify.solvers.values import Value
 
 # Printed by `publish reference` beside the motion, or a statement of the step: no part of the motion.
 _SILENT: Final = ("radius", *STEP_COLUMNS)
@@ -44,10 +42,6 @@ class Taken:
     name: str
     column: Column
     factor: Fraction = Fraction(1)
-
-    def scaled(self, values: Sequence[Value]) -> Sequence[Value]:
-        """Return the column's numbers in the scene's unit."""
-        return values if self.factor == 1 else Scaled(values, self.factor)
 
 
 @dataclass(frozen=True)
