@@ -11,24 +11,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
-from taylor_verify.records import json_text, store
+from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene, of_solver
 from taylor_verify.records.quantities import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.studies.controls import stored as sights
 from taylor_verify.studies.controls.document import Sight
-from taylor_verify.studies.growth import page as growth
-from taylor_verify.studies.growth.document import GrowthStudy
 from taylor_verify.studies.portraits import stored as portraits
-from taylor_verify.studies.reach import page as reach
-from taylor_verify.studies.reach.document import ReachStudy
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.stored import Trade, Trades
 
 Document = Mapping[str, Any]
-Study = TypeVar("Study")
 
 _SOLVER: Final = "taylor"
 
@@ -93,21 +88,17 @@ class Report:
         found = self.trades.trades if self.trades else ()
         return next((trade for trade in found if trade.scene == scene), None)
 
-    @cached_property
-    def growth(self) -> GrowthStudy | None:
-        return self._study(growth.GROWTH, GrowthStudy)
+    def has(self, place: str) -> bool:
+        """Return True for the place of a published file."""
+        return (self.folder / place).is_file()
 
-    @cached_property
-    def reach(self) -> ReachStudy | None:
-        return self._study(reach.REACH, ReachStudy)
+    def read(self, place: str) -> str:
+        """The text of a published file; empty where there is none."""
+        return (self.folder / place).read_text(encoding="utf-8") if self.has(place) else ""
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"
         return self._stored(f"{store.RECORDS}/{name}")
-
-    def _study(self, name: str, kind: type[Study]) -> Study | None:
-        file = self.folder / name
-        return json_text.read(file, kind) if file.exists() else None
 
     def _stored(self, name: str) -> Document | None:
         file = self.folder / store.FOLDER / name
