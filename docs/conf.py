@@ -1,4 +1,4 @@
-"""How Sphinx makes these pages: `make docs`, with every warning an error.
+"""How Sphinx makes these pages: `make docs` alone, `make site` with all that is published.
 
 The docstrings of the package are plain text in which only ``literals`` are marked. They are turned into
 what Sphinx reads here, so that |x|, R_ij and an indented formula stay what they are.
@@ -6,28 +6,19 @@ what Sphinx reads here, so that |x|, R_ij and an indented formula stay what they
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Iterator
-from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
+# Settings are names of this file for Sphinx: those of all pages first.
+from taylor_verify.studies.site.conf import *  # noqa: F403
+from taylor_verify.studies.site.conf import extensions
+from taylor_verify.studies.site.links import relinked
+
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent
 
-project = "taylor-verify"
-author = "The taylor-verify authors"
-copyright = author
-version = release = version_of(project)
-
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build"]
-myst_enable_extensions = ["deflist", "dollarmath"]
-# The scenes and the glossary are linked to by heading, as on the pages of a repository.
-myst_heading_anchors = 3
-# A transcript is text: a lexer that stumbles over it says nothing about the page.
-highlight_language = "text"
+extensions = [*extensions, "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 # Docstrings with headings are numpydoc's; the colon of a plain one begins no section.
 napoleon_google_docstring = False
 autodoc_member_order = "bysource"
@@ -36,22 +27,6 @@ autodoc_class_signature = "mixed"
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 88
 
-html_theme = "alabaster"
-html_static_path = ["_static"]
-html_css_files = ["pages.css"]
-html_title = project
-html_show_sourcelink = False
-html_show_copyright = False
-html_theme_options = {
-    "description": "How wrong is your rigid-body or ideal-fluid simulation?",
-    "page_width": "1100px",
-    "sidebar_width": "230px",
-    "fixed_sidebar": True,
-    "show_powered_by": False,
-}
-html_sidebars = {"**": ["about.html", "navigation.html", "searchbox.html"]}
-
-LINK = re.compile(r"(?<=\]\()(?!\w+:|#)([^)#\s]+)(#[^)\s]*)?(?=\))")
 LITERAL = re.compile(r"(``.+?``)")
 MARKUP = re.compile(r"([\\*|`]|_(?!\w))")
 
@@ -77,32 +52,26 @@ def told(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: l
     lines[:] = plain(lines)
 
 
-def linked(text: str, written_in: Path, shown_in: Path) -> str:
-    """The links of a text that stands in one folder and is shown in another.
-
-    What lies beyond these pages comes along as a file: it has links of its own, which start there. A
-    picture is shown where it is named.
-    """
-
-    def moved(link: re.Match[str]) -> str:
-        target = (written_in / link[1]).resolve()
-        path = os.path.relpath(target, shown_in)
-        is_here = target.is_relative_to(HERE) or target.suffix == ".svg"
-        return f"{path}{link[2] or ''}" if is_here else f"path:{path}"
-
-    return LINK.sub(moved, text)
+def beyond(place: str) -> str:
+    """Where a link leads: what lies beyond these pages comes along as a file, a picture is shown."""
+    target = (HERE / place).resolve()
+    if target.is_relative_to(HERE):
+        return target.relative_to(HERE).as_posix()
+    return place if target.suffix == ".svg" else f"path:{place}"
 
 
 def linked_from_page(_app: Any, page: str, content: list[str]) -> None:
-    folder = (HERE / page).parent
-    content[0] = linked(content[0], folder, folder)
+    folder = Path(page).parent.as_posix()
+    content[0] = relinked(content[0], folder, folder, beyond)
 
 
 def linked_from_included(_app: Any, path: Path, _page: str, content: list[str]) -> None:
-    content[0] = linked(content[0], (HERE / path).resolve().parent, HERE)
+    content[0] = relinked(content[0], Path(path).parent.as_posix(), "", beyond)
 
 
 def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", told)
-    app.connect("source-read", linked_from_page)
-    app.connect("include-read", linked_from_included)
+    # The pages of the whole site lie elsewhere, with their links as they have to be.
+    if Path(app.srcdir) == HERE:
+        app.connect("source-read", linked_from_page)
+        app.connect("include-read", linked_from_included)

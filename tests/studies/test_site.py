@@ -7,29 +7,58 @@ import re
 import shutil
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
+from html import unescape
 from html.parser import HTMLParser
 from itertools import pairwise
 from math import dist
 from pathlib import Path, PurePosixPath
 from typing import Any
+from urllib.parse import unquote
 
 import pytest
 from builders import reports
 from builders.reports import SCENES
 from hypothesis import given
 from hypothesis import strategies as st
+from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
 from taylor_verify.publish.mathml import inline, mathml
 from taylor_verify.publish.pictures.palette import PAPER, contrast
 from taylor_verify.solvers.files.file import read
-from taylor_verify.studies.site import motion, work
+from taylor_verify.studies.site import builder, conf, motion
 from taylor_verify.studies.site.builder import MADE_BY, build, contents
-from taylor_verify.studies.site.links import Links, way
-from taylor_verify.studies.site.looks import DARK_PAPER, LINE_CONTRAST, Palette
-from taylor_verify.studies.site.prose import Prose, sections, slug_of
+from taylor_verify.studies.site.links import relinked
 from taylor_verify.studies.site.scene_page import ScenePage
 from taylor_verify.studies.site.source import Report
+from taylor_verify.studies.site.stage import Stage
+
+# The paper of the theme where it is dark.
+DARK_PAPER = "#131416"
+# What WCAG 2.1 (1.4.11) asks of a line.
+LINE_CONTRAST = 3.0
+CONF = "from taylor_verify.studies.site.conf import *\n"
+INDEX = """\
+# Docs
+
+```{toctree}
+:maxdepth: 1
+:caption: Explanation
+
+method
+```
+"""
+METHOD = """\
+# How it is done
+
+As [the controls](../reports/tables/controls.md#what-each-gate-sees) show, with $`a^2`$,
+for `euler/with-attitude`. The [data](../reports/data/verdicts.json), [the source](../notes.txt),
+[nothing](../none.txt).
+
+```{include} ../MORE.md
+```
+"""
+MORE = "See [the list](docs/index.md) and [tables/README.md](reports/tables/README.md).\n"
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +67,20 @@ def report() -> Path:
 
 
 @pytest.fixture(scope="module")
-def site(report: Path) -> dict[str, str | bytes]:
-    return contents(report)
+def checkout(report: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with docs of one page beside the report."""
+    place = tmp_path_factory.mktemp("checkout")
+    shutil.copytree(report, place / "reports")
+    files = {"docs/conf.py": CONF, "docs/index.md": INDEX, "docs/method.md": METHOD}
+    (place / "docs").mkdir()
+    for name, text in {**files, "MORE.md": MORE, "notes.txt": "of the checkout"}.items():
+        (place / name).write_text(text, encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def site(checkout: Path) -> dict[str, str | bytes]:
+    return contents(checkout / "reports")
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +97,8 @@ class Page(HTMLParser):
         self.links: list[str] = []
         self.loads: list[str] = []
         self.anchors: list[str] = []
-        self.figures: dict[str, Any] = {}
-        self._reading = ""
+        self.figures: list[Any] = []
+        self._is_stored = False
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -68,24 +109,28 @@ class Page(HTMLParser):
             self.links.append(str(found["href"]))
         if tag in ("script", "img", "link") and (link := found.get("src") or found.get("href")):
             self.loads.append(link)
-        stored = tag == "script" and found.get("type") == "application/json"
-        self._reading = str(found["id"]) if stored else ""
+        self._is_stored = tag == "script" and found.get("type") == "application/json"
 
     def handle_data(self, data: str) -> None:
-        if self._reading:
-            self.figures[self._reading] = json.loads(data)
-            self._reading = ""
+        if self._is_stored:
+            self.figures.append(json.loads(data))
+            self._is_stored = False
+
+    @property
+    def navigation(self) -> str:
+        """The list of pages beside the page."""
+        return self.text.partition('<div class="sidebar-tree">')[2].partition("</aside>")[0]
 
 
 def test_every_page_names_its_maker(pages: dict[str, Page]) -> None:
     """Line one of each page says what made it, and a scene's page the digest of its scene."""
     assert {page.text.partition("\n")[0] for page in pages.values()} == {MADE_BY}
     for scene in SCENES:
-        assert re.search(r"SHA-256 <code[^>]*>[0-9a-f]{64}<", pages[place_of(scene)].text)
+        assert re.search(r"SHA-256[^<]*<[^\n]*>[0-9a-f]{64}<", pages[place_of(scene)].text)
 
 
 def place_of(scene: str) -> str:
-    return f"scenes/{scene.replace('/', '-')}.html"
+    return f"reports/scenes/{scene.replace('/', '-')}.html"
 
 
 def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
@@ -96,12 +141,13 @@ def test_links_resolve(site: dict[str, str | bytes], pages: dict[str, Page]) -> 
 def links_resolve(pages: Mapping[str, Page], site: Collection[str]) -> None:
     for name, page in pages.items():
         for link in page.links + page.loads:
-            if link.startswith(("http://", "https://", "data:")):
+            if link.startswith(("http://", "https://", "data:", "mailto:")):
                 continue
-            path, _, anchor = link.partition("#")
+            path, _, anchor = unquote(link).partition("?")[0].partition("#")
             target = resolved(name, path) if path else name
             assert target in site, f"{link} @ {name}"
-            assert not anchor or anchor in pages[target].anchors, f"{link} @ {name}"
+            if anchor and target in pages:
+                assert anchor in pages[target].anchors, f"{link} @ {name}"
 
 
 def resolved(page: str, link: str) -> str:
@@ -112,13 +158,63 @@ def resolved(page: str, link: str) -> str:
 
 
 def test_nothing_comes_from_a_network(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
-    """No page loads a script, a style, a picture or a font from an address, and no script asks for one."""
-    for page in pages.values():
-        assert not [load for load in page.loads if "//" in load.removeprefix("data:")]
-    own = {n: str(t) for n, t in site.items() if n.endswith((".css", ".js")) and "plotly" not in n}
-    assert len(own) == 5
-    for name, text in own.items():
-        assert not re.search(r"https?:|@import|url\(|fetch\(|XMLHttp|import\(", text), name
+    """No page loads a script, a style, a picture or a font from an address, and no style asks for one."""
+    for name, page in pages.items():
+        assert not [load for load in page.loads if "//" in load.removeprefix("data:")], name
+    sheets = {n: text_of(t) for n, t in site.items() if n.endswith(".css")}
+    assert "_static/site.css" in sheets
+    for name, text in sheets.items():
+        assert not re.search(r"@import|url\(\W*(?:https?:)?//", text), name
+    own = [file.name for file in Path(builder.__file__).parent.glob("assets/*.js")]
+    assert len(own) == 2
+    for name in own:
+        script = text_of(site[f"_static/{name}"])
+        assert not re.search(r"https?:|fetch\(|XMLHttp|import\(", script), name
+
+
+def text_of(content: str | bytes) -> str:
+    return content.decode() if isinstance(content, bytes) else content
+
+
+def test_docs_and_report_have_one_navigation(pages: dict[str, Page]) -> None:
+    """Every page, of docs, of the report or of a scene, lists the same pages beside it."""
+    listed = {
+        name: re.findall(r'reference internal" href="[^"]*">([^<]+)<', page.navigation)
+        for name, page in pages.items()
+    }
+    assert len({tuple(names) for names in listed.values()}) == 1
+    assert {"How it is done", "Scenes", "What each gate sees", "Tables"} <= set(
+        listed["index.html"]
+    )
+    assert {"docs/method.html", "reports/tables/controls.html", place_of(SCENES[0])} <= set(pages)
+
+
+def test_a_page_of_docs_reaches_the_rest(
+    site: dict[str, str | bytes], pages: dict[str, Page]
+) -> None:
+    """Links lead to a page of the report, a file of it and of the checkout; one to nothing is text."""
+    page = pages["docs/method.html"]
+    assert "../reports/tables/controls.html#what-each-gate-sees" in page.links
+    assert "../index.html" in page.links
+    files = [name.rpartition("/")[2] for name in site if name.startswith("_downloads/")]
+    assert {"verdicts.json", "notes.txt"} <= set(files)
+    assert "nothing" in page.text
+    assert "none.txt" not in page.text
+
+
+def test_names_become_links(pages: dict[str, Page]) -> None:
+    """The name of a scene leads to its page, and a link that is a path shows the page's title."""
+    text = pages["docs/method.html"].text
+    assert '"../reports/scenes/euler-with-attitude.html"' in text
+    assert re.search(r'tables/README.html">(?:<[^>]*>)*Tables<', text)
+    assert "reports/tables/README.md" not in text
+
+
+def test_formulas_need_no_script(pages: dict[str, Page]) -> None:
+    """A formula in a line and one of a scene are MathML in the page itself."""
+    assert re.search(r"<math[^>]*>.*<msup>", pages["docs/method.html"].text)
+    assert pages[place_of("kirchhoff/whole-motion")].text.count("<math") >= 3
+    assert not [load for page in pages.values() for load in page.loads if "mathjax" in load.lower()]
 
 
 def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
@@ -127,21 +223,19 @@ def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
         assert len(page.anchors) == len(set(page.anchors)), name
 
 
-def test_pictures_name_what_is_there(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
-    """Every colour that a picture names is in both themes, every column in the picture itself."""
-    script = str(site["assets/palette.js"])
-    palette = json.loads(script[script.index("{") : script.rindex("}") + 1])
-    assert palette["light"].keys() == palette["dark"].keys()
-    figures = [figure for page in pages.values() for figure in page.figures.values()]
-    assert len(figures) > 20
+def test_motions_name_what_is_there(pages: dict[str, Page]) -> None:
+    """Every colour that a motion names is in both themes."""
+    themes = conf.html_theme_options
+    light, dark = themes["light_css_variables"], themes["dark_css_variables"]
+    assert light.keys() == dark.keys()
+    figures = [figure for page in pages.values() for figure in page.figures]
+    assert len(figures) > 5
     for figure in figures:
-        assert figure["drawings"]
-        assert all(one["data"] for one in figure["drawings"])
+        assert figure["traces"]
+        assert len(figure["axes"]) == 3
         for text in texts(figure):
             if text.startswith("$"):
-                assert text[1:] in palette["light"], text
-            if text.startswith("@"):
-                assert text[1:] in figure["columns"], text
+                assert f"motion-{text[1:]}" in light, text
 
 
 def texts(value: Any) -> Iterator[str]:
@@ -152,53 +246,38 @@ def texts(value: Any) -> Iterator[str]:
             yield from texts(one)
 
 
-def test_a_scene_has_everything(pages: dict[str, Page]) -> None:
+def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, Page]) -> None:
     """Equations, orbit, data, accuracy, pictures, gates, values and commands stand on a scene's page."""
     page = pages[place_of("kirchhoff/whole-motion")]
-    wanted = {"equations", "orbit", "data", "accuracy", "pictures", "gates", "values", "reproduce"}
-    assert wanted <= set(page.anchors)
-    assert {"error-data", "polhode-data", "axis-data", "path-data", "potential-data"} <= set(
-        page.figures
-    )
-    assert "<math" in page.text
+    headings = {
+        "equations-of-motion",
+        "the-orbit-in-numbers",
+        "initial-data",
+        "accuracy",
+        "pictures",
+    }
+    headings |= {"the-arithmetic-of-the-gates", "exact-values", "how-to-reproduce-this"}
+    blocks = {"scene", "exact", "commands", "polhode", "axis", "path"}
+    assert headings | blocks <= set(page.anchors)
+    assert "_images/kirchhoff-whole-motion-errors.svg" in site
+    assert "_images/kirchhoff-whole-motion-potential.svg" in site
 
 
-@pytest.mark.parametrize(
-    ("page", "wanted"),
-    [
-        ("index.html", "median error, u"),
-        ("index.html", "Largest error over attainable"),
-        ("solvers.html", "6 digits"),
-        ("extremes.html", "The worst that a search has found"),
-        ("controls.html", "What it proves"),
-        ("errata.html", "as transcribed"),
-        ("errata.html", "True on a condition"),
-        ("errata.html", "Neither true nor false"),
-        ("method.html", "What is not tested"),
-    ],
-)
-def test_what_a_page_takes_from_another_is_there(
-    pages: dict[str, Page], page: str, wanted: str
+def test_exact_values_are_a_trajectory(
+    report: Path, pages: dict[str, Page], tmp_path: Path
 ) -> None:
-    """A part of a published file that a page shows is found by its heading; a new one would lose it."""
-    assert wanted in pages[page].text
-
-
-def test_exact_values_are_a_trajectory(report: Path, tmp_path: Path) -> None:
     """What is copied from a page is a file that `check` reads: every digit of it is the portrait's."""
-    found = Report(report)
     scene = "kirchhoff/whole-motion"
-    prose = Prose(Links(report, {}, {scene: place_of(scene)}))
-    links = Links(report, {}, {scene: place_of(scene)})
-    context = ScenePage(found, prose, links, Palette()).context(scene)
+    _, _, block = pages[place_of(scene)].text.partition('id="exact"')
+    copied = unescape(re.sub(r"<[^>]+>", "", block.partition("<pre>")[2].partition("</pre>")[0]))
     file = tmp_path / "copied.csv"
-    file.write_text(context["values"] + "\n", encoding="utf-8")
+    file.write_text(copied, encoding="utf-8")
     read_back = read(str(file))
-    portrait = found.portrait(scene)
+    portrait = Report(report).portrait(scene)
     assert portrait is not None
     rows = portrait["values"]["rows"]
     assert list(read_back.times) == [Fraction(row["t"]) for row in rows]
-    first = context["values"].splitlines()[1].split(",")
+    first = copied.splitlines()[1].split(",")
     assert [text.strip() for text in first[1:4]] == rows[0]["linear_impulse"]
 
 
@@ -208,7 +287,7 @@ def test_the_polhode_lies_on_its_ellipsoid(report: Path) -> None:
     assert portrait is not None
     figure = motion.polhode(portrait, None)
     assert figure is not None
-    ball = figure.drawings[0].traces[0]["ball"]
+    ball = figure.traces[0]["ball"]
     for omega in portrait["course"]["omega"]:
         along = [sum(a * w for a, w in zip(axis, omega, strict=True)) for axis in ball["axes"]]
         square = sum((w / s) ** 2 for w, s in zip(along, ball["semi"], strict=True))
@@ -222,7 +301,7 @@ def test_a_loaded_body_has_no_ellipsoid(report: Path) -> None:
     assert portrait is not None
     figure = motion.polhode(portrait, None)
     assert figure is not None
-    assert {trace["type"] for trace in figure.drawings[0].traces} == {"scatter3d"}
+    assert {trace["type"] for trace in figure.traces} == {"scatter3d"}
 
 
 @given(st.lists(st.tuples(*[st.floats(-1, 1)] * 3), min_size=3, max_size=60), st.floats(1e-3, 0.2))
@@ -243,63 +322,49 @@ def on_chord(one: tuple[float, ...], other: tuple[float, ...], part: float) -> l
     return [a + part * (b - a) for a, b in zip(one, other, strict=True)]
 
 
-def test_digits_left() -> None:
-    """10^-n leaves n digits, one or more leaves none, and what was not run has no number."""
-    assert [work.digits_left(error) for error in (1e-6, 2e-6, 1.0, 30.0)] == [6, 5, 0, 0]
-    assert work.digits_left(None) is None
-
-
 # Words, formulas, links
 
 
-def prose(folder: Path) -> Prose:
-    pages = {"tables/README.md": "tables/index.html", "claims.md": "claims.html"}
-    return Prose(Links(folder, pages, {"euler/generic": "scenes/euler-generic.html"}))
-
-
-def test_a_scene_in_a_table_leads_to_its_page(tmp_path: Path) -> None:
-    """A code span that is a scene's name is a link; another one, or one within a link, is none."""
-    found = prose(tmp_path).html("`euler/generic` and `omega`", "tables/x.md", "tables/x.html")
-    assert 'href="../scenes/euler-generic.html"' in found
-    assert found.count("<a ") == 1
-    within = prose(tmp_path).html("[`euler/generic`](https://a.b)", "x.md", "x.html")
-    assert within.count("<a ") == 1
-
-
 def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
-    """A page becomes its HTML, a folder its index; what lies outside the report gets no link."""
-    (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "worst.json").write_text("{}", encoding="utf-8")
-    links = {
-        "[a](../claims.md#errata)": 'href="../claims.html#errata"',
-        "[a](README.md)": 'href="index.html"',
-        "[a](../tables)": 'href="index.html"',
-        "[a](../data/worst.json)": 'href="../data/worst.json"',
+    """A folder leads to its index, a file comes along, what is not there gets no link."""
+    for name in ("tables/README.md", "claims.md", "data/worst.json"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("# A title\n", encoding="utf-8")
+    stage = Stage(tmp_path, None)
+    expected = {
+        "[a](../claims.md#errata)": "[a](../claims.md#errata)",
+        "[a](README.md)": "[a](README.md)",
+        "[a](../tables)": "[a](README.md)",
+        "[a](../data/worst.json)": "[a](../data/worst.json)",
+        "[claims](https://a.b/c.md)": "[claims](https://a.b/c.md)",
+        "[a](../../verify/taylor_verify/run.py)": "a",
+        "[a](../data/none.json)": "a",
     }
-    for markdown, expected in links.items():
-        assert expected in prose(tmp_path).html(markdown, "tables/x.md", "tables/x.html")
-    for markdown in ("[a](../../verify/taylor_verify/run.py)", "[a](../data/none.json)"):
-        assert "<a" not in prose(tmp_path).html(markdown, "tables/x.md", "tables/x.html")
+    for markdown, text in expected.items():
+        stage.add_pages({"reports/tables/x.md": markdown})
+        assert stage.files["reports/tables/x.md"] == text
+    assert stage.files["reports/data/worst.json"] == b"# A title\n"
 
 
-def test_a_file_name_becomes_a_title(tmp_path: Path) -> None:
-    """A link that shows nothing but its own path shows the title of the page instead."""
-    (tmp_path / "claims.md").write_text("# What *they* claim\n", encoding="utf-8")
-    found = prose(tmp_path).html("[claims.md](claims.md) [these](claims.md)", "x.md", "x.html")
-    assert re.findall(r">([^<>]+)</a>", found) == ["What they claim", "these"]
+def test_a_heading_keeps_its_words_and_its_link() -> None:
+    """Sphinx takes no link to a file in a heading: it stands below it."""
+    text = relinked("## [a.py](a.py) (T1)\n\nb\n", "", "", lambda place: place)
+    assert text == "## a.py (T1)\n\n[a.py](a.py)\n\nb\n"
 
 
-def test_somebody_elses_html_is_text(tmp_path: Path) -> None:
-    """Markup in the Markdown is shown and never taken for a part of the page."""
-    found = prose(tmp_path).html("<script>alert(1)</script>", "x.md", "x.html")
-    assert "<script" not in found
-
-
-def test_ways() -> None:
-    """A way leads from the folder of a page; a percent sign in a name is no escape in it."""
-    assert way("scenes/a.html", "index.html") == "../index.html"
-    assert way("index.html", "scenes/a.html") == "scenes/a.html"
-    assert way("index.html", "scenes/_a%20b.html") == "scenes/_a%2520b.html"
+def test_somebody_elses_html_is_text(report: Path, tmp_path: Path) -> None:
+    """Markup in the words of a scene is shown and never taken for a part of the page."""
+    place = tmp_path / "report"
+    shutil.copytree(report, place)
+    file = place / "data" / "portraits" / "euler-with-attitude.json"
+    portrait = json.loads(file.read_text("utf-8"))
+    markup = "<script>alert(1)</script>"
+    portrait |= {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
+    file.write_text(json.dumps(portrait), encoding="utf-8")
+    page = ScenePage("euler/with-attitude", Report(place), ()).markdown()
+    html = MarkdownIt("commonmark").enable("table").render(page)
+    assert html.count("alert(1)") >= 4
+    assert "<script>alert" not in html
 
 
 def test_formulas_are_set() -> None:
@@ -315,40 +380,38 @@ def test_formulas_are_set() -> None:
         mathml(r"\frac{1}{")
 
 
-def test_anchors_are_githubs() -> None:
-    """Headings have the anchors that links in the Markdown ask for."""
-    taken: dict[str, int] = {}
-    assert slug_of("How to read a cell", taken) == "how-to-read-a-cell"
-    assert slug_of("Euler, by `taylor`", taken) == "euler-by-taylor"
-    assert slug_of("How to read a cell", taken) == "how-to-read-a-cell-1"
-
-
-def test_sections() -> None:
-    """A file parts at its second headings, and nothing of it is lost."""
-    text = "# a\n\nb\n\n## c\n\nd\n\n### e\n\n## f\n"
-    found = sections(text)
-    assert list(found) == ["", "c", "f"]
-    assert "".join(found.values()) == text
-
-
 # Colours, files
 
 
 def test_lines_stand_out_in_both_themes() -> None:
-    """Every rung and solver has the contrast of 3 of WCAG 2.1 (1.4.11) on light paper and on dark."""
-    palette = Palette()
-    names = [palette.rung(rung) for rung in ("f32", "f64", "f80", "f128", "mp237")]
-    names += [palette.family(f"scipy {name}", "f64") for name in ("RK45", "DOP853", "BDF")]
-    names += [palette.line(n) for n in range(6)]
-    found = palette.document()
-    for name in (token.removeprefix("$") for token in names):
-        assert contrast(found["light"][name], PAPER) >= LINE_CONTRAST, name
-        assert contrast(found["dark"][name], DARK_PAPER) >= LINE_CONTRAST, name
+    """The colours of a motion have the contrast of 3 of WCAG 2.1 (1.4.11) on light paper and on dark."""
+    for theme, paper in (("light", PAPER), ("dark", DARK_PAPER)):
+        colours = conf.html_theme_options[f"{theme}_css_variables"]
+        for name in ("ink", "quiet", "low", "middle", "high"):
+            assert contrast(colours[f"motion-{name}"], paper) >= LINE_CONTRAST, name
 
 
-def test_the_site_is_the_same_every_time(report: Path, site: dict[str, str | bytes]) -> None:
+def test_a_fault_of_a_page_is_an_error(report: Path, tmp_path: Path) -> None:
+    """A page that Sphinx warns of ends in an error that names it, and nothing is written."""
+    shutil.copytree(report, tmp_path / "report")
+    page = tmp_path / "report" / "claims.md"
+    page.write_text(page.read_text("utf-8") + "\n[a](#no-such-heading)\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"claims\.md.*no-such-heading"):
+        build(tmp_path / "report", tmp_path / "site")
+    assert not (tmp_path / "site").exists()
+
+
+def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A missing package is named as pip knows it, before anything is done."""
+    monkeypatch.setitem(builder._NEEDED, "no_such_module", "no-such-package")
+    with pytest.raises(ImportError) as raised:
+        contents(report)
+    assert raised.value.name == "no-such-package"
+
+
+def test_the_site_is_the_same_every_time(checkout: Path, site: dict[str, str | bytes]) -> None:
     """Made again from the same folder, no byte differs."""
-    assert contents(report) == site
+    assert contents(checkout / "reports") == site
 
 
 def test_a_folder_of_somebody_else_is_left_alone(report: Path, tmp_path: Path) -> None:

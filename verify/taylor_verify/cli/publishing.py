@@ -53,8 +53,8 @@ def add_options(verb: argparse.ArgumentParser, in_full: bool) -> None:
     made.add_argument(
         "--site",
         metavar="SITE",
-        help="instead make static pages of what DIR holds, into the folder SITE (jinja2, "
-        "markdown-it-py, latex2mathml, plotly)",
+        help="instead make static pages of docs and of what DIR holds, into the folder SITE (sphinx, "
+        "myst-parser, furo, sphinx-copybutton, latex2mathml, plotly)",
     )
     if in_full:
         _add_options_of_studies(verb)

@@ -1,108 +1,46 @@
-"""Where a link of the published folder leads in the site: to a page, to a file beside it, or nowhere.
-
-Files that pages link to come along; one that is large comes packed, so that the site stays small, and
-one whose numbers the pages have in their pictures does not come at all. What lies outside the folder,
-such as a source file of the suite, is no part of the site and gets no link.
-"""
+"""Links of Markdown files that are shown in another place than the one they were written in."""
 
 from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import Final
-from urllib.parse import quote
 
-# Bytes. Above this only sheets and data are found, of which a packed one has a tenth.
-_LARGE: Final = 30_000
-_SHOWN: Final = ".svg"
-PACKED: Final = ".tar.xz"
-# What pages show already: samples and courses in their pictures, drawings in the other format.
-_ON_PAGES: Final = ("data/records/", "data/portraits/")
-_TWIN: Final = ".pdf"
-# Exact trajectories: the two forms of one have the same digits, and share an archive.
-_REFERENCE: Final = "reference/"
-_TITLE: Final = re.compile(r"^# (.+)$", re.MULTILINE)
-_ABROAD: Final = ("http://", "https://", "mailto:")
+# Text and target of a link or a picture within the tree; text may have escaped brackets.
+_LINK: Final = re.compile(r"!?\[((?:\\.|[^\\\[\]])*)\]\((?!\w+:|#)([^()#\s]+)(#[^()\s]*)?\)")
+# Sphinx reads no file's link in a heading.
+_HEADING: Final = re.compile(r"^#+ .*\]\(.*$", re.MULTILINE)
 
 
-class Links:
-    """The links of one site. ``pages`` has the page of each Markdown file, ``scenes`` of each scene."""
+def relinked(
+    text: str, written_in: str, shown_in: str, resolve: Callable[[str], str | None]
+) -> str:
+    """Return Markdown of the folder ``written_in`` as it has to stand in the folder ``shown_in``.
 
-    def __init__(self, folder: Path, pages: Mapping[str, str], scenes: Mapping[str, str]) -> None:
-        self._folder = folder
-        self.pages = pages
-        self.scenes = scenes
-        self._files: dict[str, set[Path]] = {}
+    ``resolve`` takes the place that a link leads to, from the top of the tree, and returns the
+    place that the new link leads to; it may have a prefix ``path:``, Sphinx's mark of a file that
+    is no page. A link that resolves to None is replaced by its own text. A link whose text is its
+    path shows the title of the page instead.
+    """
 
-    @property
-    def files(self) -> dict[str, list[Path]]:
-        """The files that pages link to, by their place in the site: more than one in an archive."""
-        return {name: sorted(files) for name, files in sorted(self._files.items())}
+    def moved(link: re.Match[str]) -> str:
+        words, path, anchor = link[1], link[2], link[3] or ""
+        place = resolve(posixpath.normpath(posixpath.join(written_in, path)))
+        if place is None:
+            return words
+        prefix = "path:" if place.startswith("path:") else ""
+        way = posixpath.relpath(place.removeprefix(prefix), shown_in or ".")
+        mark = "!" if link[0].startswith("!") else ""
+        if prefix:
+            return f"[{words}]({prefix}{way})"
+        is_named_by_path = words == path and place.endswith(".md")
+        return f"{mark}[{'' if is_named_by_path else words}]({way}{anchor})"
 
-    def scene(self, name: str, page: str) -> str | None:
-        """The way from a page to that of a scene; None for a name that is no scene."""
-        found = self.scenes.get(name)
-        return None if found is None else way(page, found)
-
-    def resolved(self, link: str, source: str, page: str) -> str | None:
-        """The link of a Markdown file ``source`` as it stands on ``page``; None where it leads out."""
-        if link.startswith((*_ABROAD, "#")):
-            return link
-        markdown = self.markdown(link, source)
-        if markdown is None:
-            return self.file(_place(link, source), page)
-        fragment = link.partition("#")[2]
-        return way(page, self.pages[markdown]) + (f"#{fragment}" if fragment else "")
-
-    def markdown(self, link: str, source: str) -> str | None:
-        """The Markdown file that a link of ``source`` leads to; None where it is none with a page."""
-        place = _place(link, source)
-        return next((name for name in (place, f"{place}/README.md") if name in self.pages), None)
-
-    def title(self, markdown: str) -> str:
-        """The first heading of a Markdown file, without its marks."""
-        return title_of((self._folder / markdown).read_text(encoding="utf-8"))
-
-    def file(self, place: str, page: str) -> str | None:
-        """The way from a page to a file of the published folder, which then comes along."""
-        file = self._folder / place
-        if place.startswith("..") or not file.is_file() or _has_a_page(place):
-            return None
-        name = _name(place, file)
-        self._files.setdefault(name, set()).add(file)
-        return way(page, name)
-
-    def drawing(self, stem: str) -> str | None:
-        """The place in the site of a published drawing, which then comes along."""
-        return self.file(f"figures/{stem}.svg", "index.html")
+    return _LINK.sub(moved, _HEADING.sub(_links_below, text))
 
 
-def title_of(text: str) -> str:
-    """The first heading of a Markdown text, without its marks."""
-    found = _TITLE.search(text)
-    return found[1].replace("`", "").replace("*", "") if found else "Untitled"
-
-
-def _place(link: str, source: str) -> str:
-    """Where in the published folder a link leads, without its anchor."""
-    path = link.partition("#")[0]
-    return posixpath.normpath(posixpath.join(posixpath.dirname(source), path))
-
-
-def _has_a_page(place: str) -> bool:
-    return place.startswith(_ON_PAGES) or place.endswith(_TWIN)
-
-
-def _name(place: str, file: Path) -> str:
-    """Where a file stands in the site, itself or packed."""
-    if place.startswith(_REFERENCE) and file.suffix in (".csv", ".json"):
-        return place.removesuffix(file.suffix) + PACKED
-    large = file.stat().st_size > _LARGE and file.suffix != _SHOWN
-    return f"{place}{PACKED}" if large else place
-
-
-def way(page: str, target: str) -> str:
-    """The relative link from one page of the site to another of its files."""
-    return quote(posixpath.relpath(target, posixpath.dirname(page) or "."))
+def _links_below(heading: re.Match[str]) -> str:
+    """The heading in plain words, its links in a line of their own."""
+    links = " ".join(link[0] for link in _LINK.finditer(heading[0]))
+    return f"{_LINK.sub(lambda link: link[1], heading[0])}\n\n{links}" if links else heading[0]

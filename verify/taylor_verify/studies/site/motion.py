@@ -1,4 +1,4 @@
-"""Pictures of one motion in space: the polhode, the body's axis, the path, and Clebsch's quartic.
+"""Pictures of one motion in space, to be turned: the polhode, the body's axis, the path.
 
 A portrait has a dense course in floats, a record the errors at fewer samples: between these the
 logarithm of the error is drawn as a straight line, for the colour alone.
@@ -11,16 +11,7 @@ from itertools import pairwise
 from math import dist, log10, sqrt
 from typing import Any, Final
 
-from taylor_verify.studies.site.figure import (
-    SPACE,
-    Drawing,
-    Figure,
-    Layout,
-    Trace,
-    axis,
-    column,
-    components,
-)
+from taylor_verify.studies.site.figure import Figure, Trace, column, components
 
 Portrait = Mapping[str, Any]
 Record = Mapping[str, Any]
@@ -30,7 +21,6 @@ _WARM: Final = [[0, "$low"], [0.5, "$middle"], [1, "$high"]]
 _FLATTEST: Final = 1e-3
 # Of a curve's extent, a third of a pixel on the screen.
 _UNSEEN: Final = 0.0008
-_POTENTIAL_POINTS: Final = 161
 
 
 def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
@@ -46,7 +36,6 @@ def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
         return None
     surface = _ellipsoid(portrait, rows) if euler else _sphere(rows)
     label = "ω" if euler else "x"
-    where = "body axes"
     named = "angular velocity" if euler else "linear impulse"
     on_it = (
         " It runs along the polhode, which lies on the ellipsoid of its kinetic energy."
@@ -58,19 +47,13 @@ def polhode(portrait: Portrait, record: Record | None) -> Figure | None:
         name="polhode",
         title="Polhode" if euler and surface else named.capitalize(),
         caption=f"{what}{_of_colour(record, quantity)}",
-        alt=f"{portrait['title']}: the curve of the {named} in {where}.{_of_colour(record, quantity)}",
-        drawings=[
-            Drawing(
-                where,
-                [
-                    *([surface] if surface else []),
-                    _curve(rows, record, quantity, course["t"]),
-                    _start(rows[0]),
-                ],
-                _space([f"{label}₁", f"{label}₂", f"{label}₃"]),
-            )
+        alt=f"{portrait['title']}: the curve of the {named} in body axes.{_of_colour(record, quantity)}",
+        traces=[
+            *([surface] if surface else []),
+            _curve(rows, record, quantity, course["t"]),
+            _start(rows[0]),
         ],
-        shape=SPACE,
+        axes=[f"{label}₁", f"{label}₂", f"{label}₃"],
     )
 
 
@@ -91,10 +74,8 @@ def axis_in_space(portrait: Portrait, record: Record | None) -> Figure | None:
         f"{_of_colour(record, 'attitude')}",
         alt=f"{portrait['title']}: the curve of body axis 3 on the unit sphere of space."
         f"{_of_colour(record, 'attitude')}",
-        drawings=[
-            Drawing("space", [_ball((1, 1, 1)), curve, _start(third[0])], _space(["X", "Y", "Z"]))
-        ],
-        shape=SPACE,
+        traces=[_ball((1, 1, 1)), curve, _start(third[0])],
+        axes=["X", "Y", "Z"],
     )
 
 
@@ -110,76 +91,20 @@ def path(portrait: Portrait, record: Record | None) -> Figure | None:
         caption="The path of the body's origin in space axes, all three at one scale."
         f"{_of_colour(record, 'centre')}",
         alt=f"{portrait['title']}: the path of the centre in space.{_of_colour(record, 'centre')}",
-        drawings=[Drawing("space", traces, _space(["X", "Y", "Z"], "data"))],
-        shape=SPACE,
+        traces=traces,
+        axes=["X", "Y", "Z"],
     )
-
-
-def potential(portrait: Portrait) -> Figure | None:
-    """Clebsch's quartic with its real roots, and the interval that the orbit swings in."""
-    found = portrait.get("potential")
-    if not found:
-        return None
-    name = "x₃" if found["variable"] == "x3" else str(found["variable"])
-    low, high = found["interval"]
-    real = sorted(root for root, imaginary in found["roots"] if abs(imaginary) == 0)
-    ends = [low, high, *(root for root in real if abs(root - low) < 2 * (high - low or 1.0))]
-    margin = 0.25 * (max(ends) - min(ends) or 1.0)
-    left, right = min(ends) - margin, max(ends) + margin
-    points = [left + (right - left) * k / (_POTENTIAL_POINTS - 1) for k in range(_POTENTIAL_POINTS)]
-    values = [_polynomial(found["coefficients"], x) for x in points]
-    seen = [root for root in real if left <= root <= right]
-    within = [x for x in points if low <= x <= high]
-    traces: list[Trace] = [
-        _graph(f"X₃({name})", points, values, "$quiet", 1.5),
-        _graph("the orbit", within, [_polynomial(found["coefficients"], x) for x in within]),
-        {
-            **{"type": "scatter", "mode": "markers", "name": "real roots", "x": column(seen, 6)},
-            **{"y": [0] * len(seen), "marker": {"color": "$high", "size": 9, "symbol": "diamond"}},
-            "hovertemplate": "root %{x:.6g}<extra></extra>",
-        },
-    ]
-    roots = ", ".join(f"{root:.4g}" for root in real) or "none"
-    return Figure(
-        name="potential",
-        title="Clebsch's quartic",
-        caption=f"The square of the rate of {name} is r² X₃({name}): the orbit moves where X₃ is not "
-        "negative, and turns at its simple roots.",
-        alt=f"X3 against {found['variable']}; real roots {roots}; the orbit keeps within "
-        f"{low:.4g} and {high:.4g}.",
-        drawings=[
-            Drawing(
-                "X3",
-                traces,
-                {"xaxis": axis(name), "yaxis": axis("X₃", zeroline=True, zerolinecolor="$ink")},
-            )
-        ],
-    )
-
-
-def _graph(
-    name: str,
-    x: Sequence[float],
-    y: Sequence[float],
-    colour: str = "$low",
-    width: float = 4.0,
-) -> Trace:
-    return {
-        **{"type": "scatter", "mode": "lines", "name": name, "x": column(x), "y": column(y)},
-        "line": {"color": colour, "width": width},
-        "hovertemplate": "%{x:.4g}, %{y:.4g}<extra></extra>",
-    }
-
-
-def _polynomial(coefficients: Sequence[float], x: float) -> float:
-    """Horner, the highest coefficient first."""
-    value = 0.0
-    for one in coefficients:
-        value = value * x + one
-    return value
 
 
 # Curves and surfaces.
+
+
+def motions_of(portrait: Portrait, record: Record | None) -> list[Figure]:
+    """Every picture in space of one scene."""
+    if not portrait.get("course"):
+        return []
+    figures = (make(portrait, record) for make in (polhode, axis_in_space, path))
+    return [figure for figure in figures if figure is not None]
 
 
 def _curve(
@@ -319,14 +244,6 @@ def _ball(
         "lighting": {"ambient": 0.8, "diffuse": 0.4, "specular": 0.05, "roughness": 0.9},
         "contours": {name: {"highlight": False} for name in "xyz"},
     }
-
-
-def _space(names: Sequence[str], aspect: str = "data") -> Layout:
-    axes = {
-        f"{letter}axis": {"title": {"text": name}, "nticks": 5}
-        for letter, name in zip("xyz", names, strict=True)
-    }
-    return {"scene": {**axes, "aspectmode": aspect}}
 
 
 def _is_a_point(rows: Sequence[Sequence[float]]) -> bool:

@@ -1,13 +1,13 @@
-"""The page of one scene: what it asks, what is exact about it, and how each rung answered."""
+"""The page of one scene as Markdown: its question, its exact motion, and each rung's answer."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
 from itertools import groupby
 from typing import Any, Final
-
-from markupsafe import Markup
 
 from taylor_verify.publish.cells import (
     conclusion,
@@ -19,147 +19,188 @@ from taylor_verify.publish.cells import (
     word,
 )
 from taylor_verify.publish.markdown import Column, bullets, code, prose, table
-from taylor_verify.publish.mathml import mathml
+from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.records.file_names import of_scene
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, GATE_FACTOR
 from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.site import errors, motion
-from taylor_verify.studies.site.figure import Figure
-from taylor_verify.studies.site.links import Links
-from taylor_verify.studies.site.looks import Palette
-from taylor_verify.studies.site.prose import Prose
+from taylor_verify.studies.site.motion import motions_of
 from taylor_verify.studies.site.source import Document, Report
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade
 
 # The rung whose errors colour the curves in space.
 _SHOWN: Final = "f64"
-# What the published drawing of each picture is called.
-_DRAWN: Final = {
-    "error": "errors",
-    "polhode": "polhode",
-    "axis": "axis",
-    "path": "centre",
-    "potential": "potential",
-}
+# The table of scenes leads here: hundreds of lines would be no navigation.
+_ORPHAN: Final = "---\norphan: true\n---"
 
 
 @dataclass(frozen=True)
 class ScenePage:
-    """What the template ``scene.html`` is filled with, and where the page stands."""
+    """What is stored of one scene, and the pictures of it that stand still."""
 
+    scene: str
     report: Report
-    prose: Prose
-    links: Links
-    palette: Palette
+    pictures: Sequence[Picture]
 
-    def context(self, scene: str) -> dict[str, Any]:
-        page = self.links.scenes[scene]
-        runs = self.report.runs_of(scene)
-        portrait = self.report.portrait(scene) or {}
-        records = self.report.records(scene)
+    def markdown(self) -> str:
+        """The whole page; a section without contents is left out."""
+        runs = self.report.runs_of(self.scene)
+        portrait = self.report.portrait(self.scene) or {}
+        records = self.report.records(self.scene)
         record = next(iter(records.values()), {})
         explained = portrait.get("explain", {})
-
-        def html(markdown: str) -> Markup:
-            return self.prose.html(markdown, page, page)
-
-        found = {
-            "scene": scene,
-            "title": portrait.get("title") or record.get("title") or scene,
-            "chips": list(_chips(runs, portrait, record)),
-            "why": _paragraphs(portrait.get("why", ())),
-            "warnings": portrait.get("warnings", ()),
-            "formulas": [mathml(tex, display=True) for tex in portrait.get("tex", ())],
-            "built": "\n".join(explained.get("equations") or record.get("equations", ())),
-            "built_by": "; ".join((explained.get("cost") or {}).get("because", ()))
-            or "in this form",
-            "sentences": explained.get("sentences", ()),
-            "orbit": html(_analytic(portrait["analytic"])) if portrait.get("analytic") else "",
-            "toml": portrait.get("toml", "").strip(),
-            "accuracy": html(_accuracy(runs)),
-            "solvers": html(_solvers(trade)) if (trade := self.report.trade(scene)) else "",
-            "pictures": self._pictures(scene, portrait, records),
-            "condition": (explained.get("condition") or {}).get("sentence", ""),
-            "gates": html(_gates(runs)),
-            "values": _values(portrait["values"]) if portrait.get("values") else "",
-            "values_are": _values_are(portrait.get("values") or {}),
-            "reproduce": _commands(scene, self.report.rungs, portrait),
-            "reference": self._reference(scene, page),
-            "sha256": portrait.get("sha256") or _digest(runs),
+        title = portrait.get("title") or record.get("title") or self.scene
+        sections = {
+            "": [
+                f"[Scenes](../scenes.md) / {code(self.scene)}",
+                _facts(runs, portrait, record),
+                *_words(portrait),
+            ],
+            "Equations of motion": _equations(portrait, record),
+            "The orbit in numbers": _orbit(portrait),
+            "Initial data": _data(portrait),
+            "Accuracy": [_accuracy(runs)],
+            "Other solvers": _solvers(self.report.trade(self.scene)),
+            "Pictures": [*self._drawings(), *self._motions(portrait, records)],
+            "The arithmetic of the gates": [
+                prose((explained.get("condition") or {}).get("sentence", "")),
+                _folded("Every bound with its terms", _gates(runs)),
+            ],
+            "Exact values": _values(portrait.get("values") or {}),
+            "How to reproduce this": [
+                _block("text", _commands(self.scene, self.report.rungs, portrait), "commands"),
+                self._reference(),
+                f"SHA-256 of the scene: {code(portrait.get('sha256') or _digest(runs))}. "
+                f"{made_with(self.report)}",
+            ],
         }
-        return {**found, "parts": _parts(found)}
+        blocks = [_ORPHAN, f"# {prose(title)}"]
+        for heading, parts in sections.items():
+            filled = [part for part in parts if part]
+            blocks += [f"## {heading}"] if heading and filled else []
+            blocks += filled
+        return "\n\n".join(blocks) + "\n"
 
-    def _pictures(
-        self, scene: str, portrait: Document, records: Mapping[str, Document]
-    ) -> list[Figure]:
-        shown = records.get(_SHOWN)
-        found = [errors.against_time(records, self.palette)]
-        if portrait.get("course"):
-            found += [
-                motion.polhode(portrait, shown),
-                motion.axis_in_space(portrait, shown),
-                motion.path(portrait, shown),
-                motion.potential(portrait),
-            ]
-        return [
-            replace(one, fallback=self.links.drawing(f"{of_scene(scene)}-{_DRAWN[one.name]}"))
-            for one in found
-            if one is not None
+    def _drawings(self) -> Iterator[str]:
+        for picture in self.pictures:
+            yield shown(picture)
+            if picture.stem.endswith("-errors"):
+                yield (
+                    f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave "
+                    "on this orbit; the table above has both."
+                )
+
+    def _motions(self, portrait: Document, records: Mapping[str, Document]) -> list[str]:
+        found = [one.html() for one in motions_of(portrait, records.get(_SHOWN))]
+        return ['<div class="motions">', *found, "</div>"] if found else []
+
+    def _reference(self) -> str:
+        """Links to the exact trajectory, as CSV and as JSON."""
+        names = (f"{of_scene(self.scene)}{ending}" for ending in (".csv", ".json"))
+        links = [
+            f"[{name}](../reference/{name})"
+            for name in names
+            if self.report.has(f"reference/{name}")
         ]
+        if not links:
+            return ""
+        return (
+            f"Exact trajectory with 32 digits and proven radii: {', '.join(links)}. "
+            "[What the columns mean](../reference/README.md)."
+        )
 
-    def _reference(self, scene: str, page: str) -> list[dict[str, str]]:
-        """The archive of the exact trajectory, as CSV and JSON."""
-        files = (f"reference/{of_scene(scene)}{ending}" for ending in (".csv", ".json"))
-        found = dict.fromkeys(link for file in files if (link := self.links.file(file, page)))
-        return [{"name": link.rpartition("/")[2], "link": link} for link in found]
+
+def shown(picture: Picture, folder: str = "") -> str:
+    """A picture of ``folder`` with what it shows in words."""
+    return f"![{prose(picture.alt)}]({folder}{picture.stem}.svg)"
 
 
-def _chips(runs: Sequence[Run], portrait: Document, record: Document) -> Iterable[dict[str, str]]:
+def made_with(report: Report) -> str:
+    """The versions and machines that the numbers were made with, in a sentence."""
+    packages = ", ".join(f"{name} {version}" for name, version in report.versions.items())
+    machines = "; ".join(
+        f"{prose(machine.get('processor', 'an unnamed processor'))}, {code(machine.get('command', ''))}"
+        for machine in report.machines
+    )
+    return f"Made with {'; '.join(filter(None, (packages or 'unknown versions', machines)))}."
+
+
+def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
     verdicts = [verdict for run in runs for verdict in run.verdicts]
-    found = {
+    facts = {
         "verdict": gravest(verdicts).value,
         "model": portrait.get("model") or (runs[0].model.lower() if runs else ""),
         "regime": portrait.get("regime") or record.get("regime", ""),
-        "period": next(
-            (figure_of(one) for one in portrait.get("analytic", ()) if _is_period(one)), ""
-        ),
+        "period": next(map(_rounded, filter(_is_period, portrait.get("analytic", ()))), ""),
         "compared": ", ".join(dict.fromkeys(v.quantity for run in runs for v in run.state)),
         "truth": portrait.get("route") or record.get("route", ""),
         "source": portrait.get("source") or "",
     }
-    return ({"name": name, "value": value} for name, value in found.items() if value)
+    return "\n".join(f":{name}: {prose(value)}" for name, value in facts.items() if value)
 
 
-def _is_period(one: Document) -> bool:
-    return bool(one["name"] == "period")
+def _is_period(quantity: Document) -> bool:
+    return bool(quantity["name"] == "period")
 
 
-def figure_of(one: Document) -> str:
+def _rounded(quantity: Document) -> str:
     """An analytic quantity to the digits that a line has room for."""
-    text = str(one["value"])
+    text = str(quantity["value"])
     try:
         return f"{float(text):.6g}"
     except ValueError:
         return text
 
 
-def _paragraphs(lines: Iterable[str]) -> list[str]:
-    """Comment lines run together; an empty one parts two paragraphs."""
-    groups = groupby((line.strip() for line in lines), key=bool)
-    told = (" ".join(group).removeprefix("Why: ") for filled, group in groups if filled)
-    return [f"{text[0].upper()}{text[1:]}" for text in told]
+def _words(portrait: Document) -> Iterator[str]:
+    """Why there is this scene, and what it warns of."""
+    # Comment lines run together; an empty one parts two paragraphs.
+    groups = groupby((line.strip() for line in portrait.get("why", ())), key=bool)
+    for filled, lines in groups:
+        text = " ".join(lines).removeprefix("Why: ")
+        if filled:
+            yield prose(f"{text[0].upper()}{text[1:]}")
+    for warning in portrait.get("warnings", ()):
+        yield f"```{{warning}}\n{prose(warning)}\n```"
 
 
-def _analytic(rows: Iterable[Document]) -> str:
+def _equations(portrait: Document, record: Document) -> list[str]:
+    explained = portrait.get("explain", {})
+    formulas = [f"$$\n{tex}\n$$" for tex in portrait.get("tex", ())]
+    built = "\n".join(explained.get("equations") or record.get("equations", ()))
+    because = "; ".join((explained.get("cost") or {}).get("because", ())) or "in this form"
+    fold = _folded(f"As they are integrated: {because}", _block("text", built)) if built else ""
+    return [*formulas, fold] if formulas else []
+
+
+def _orbit(portrait: Document) -> list[str]:
+    rows = portrait.get("analytic")
+    if not rows:
+        return []
     columns = [Column("quantity"), Column("value"), Column("meaning")]
-    return table(
-        columns,
-        (
-            [code(str(r["name"])), code(str(r["value"])), prose(str(r["meaning"] or ""))]
-            for r in rows
-        ),
-    )
+    cells = [
+        [code(str(row["name"])), code(str(row["value"])), prose(str(row["meaning"] or ""))]
+        for row in rows
+    ]
+    return [*map(prose, portrait.get("explain", {}).get("sentences", ())), table(columns, cells)]
+
+
+def _data(portrait: Document) -> list[str]:
+    text = portrait.get("toml", "").strip()
+    return ["The whole scene, in exact numbers:", _block("toml", text, "scene")] if text else []
+
+
+def _block(language: str, text: str, name: str = "") -> str:
+    """Text to be copied; ``name`` is its anchor on the page."""
+    option = f":name: {name}\n" if name else ""
+    # Longer than any in the text, which could end the block.
+    fence = "`" * max(3, 1 + max(map(len, re.findall("`+", text)), default=0))
+    return f"{fence}{{code-block}} {language}\n{option}\n{text}\n{fence}"
+
+
+def _folded(summary: str, contents: str) -> str:
+    """Markdown behind a line that opens it."""
+    return f"<details>\n<summary>{escape(summary)}</summary>\n\n{contents}\n\n</details>"
 
 
 # Tables.
@@ -194,8 +235,10 @@ def _accuracy_row(run: Run, verdict: Verdict) -> list[str]:
     ]
 
 
-def _solvers(trade: Trade) -> str:
+def _solvers(trade: Trade | None) -> list[str]:
     """Return the most accurate sound setting of each family, with its time over that of the yardstick."""
+    if trade is None:
+        return []
     best: dict[tuple[str, str], TimedPoint] = {}
     for row in trade.sound:
         key = (row.point.family, row.point.rung)
@@ -218,7 +261,7 @@ def _solvers(trade: Trade) -> str:
         "The most accurate setting of every family of solvers that was sound on this scene; *time* is "
         "that of a solve over that of taylor on f64."
     )
-    return f"{what}\n\n{table(columns, lines)}"
+    return [what, table(columns, lines)]
 
 
 def _gates(runs: Sequence[Run]) -> str:
@@ -249,11 +292,25 @@ def _bound(verdict: Verdict) -> tuple[str, str]:
 # Text to copy.
 
 
-def _values(document: Document) -> str:
+def _values(document: Document) -> list[str]:
     """Ten instants as the columns of a trajectory file, each number with all of its digits."""
-    rows = document["rows"]
+    rows = document.get("rows")
     if not rows:
-        return ""
+        return []
+    radii = [float(row["radius"]) for row in rows if row.get("radius")]
+    route = {"arb": "ball arithmetic", "mpmath": "the second closed form"}.get(
+        document.get("route", ""), "Taylor series in ball arithmetic"
+    )
+    error = f"; no row is off by more than {figure(max(radii))} of itself" if radii else ""
+    what = (
+        f"{document['digits']} digits by {route}{error}. The columns are those that "
+        "`taylor-verify check` reads."
+    )
+    return [what, _block("text", trajectory_text(rows), "exact")]
+
+
+def trajectory_text(rows: Sequence[Document]) -> str:
+    """Exact states as a trajectory file, its columns one below the other."""
     keys = [key for key in COLUMNS if key in rows[0]]
     heading = ["t", *(name for key in keys for name in COLUMNS[key])]
     lines = [heading, *([str(r["t"]), *(n for key in keys for n in _flat(r[key]))] for r in rows)]
@@ -266,20 +323,6 @@ def _values(document: Document) -> str:
 
 def _flat(value: Sequence[Any]) -> list[str]:
     return [n for row in value for n in (row if isinstance(row, list) else [row])]
-
-
-def _values_are(document: Document) -> str:
-    if not document.get("rows"):
-        return ""
-    radii = [float(row["radius"]) for row in document["rows"] if row.get("radius")]
-    route = {"arb": "ball arithmetic", "mpmath": "the second closed form"}.get(
-        document.get("route", ""), "Taylor series in ball arithmetic"
-    )
-    error = f"; no row is off by more than {figure(max(radii))} of itself" if radii else ""
-    return (
-        f"{document['digits']} digits by {route}{error}. The columns are those that "
-        "taylor-verify check reads."
-    )
 
 
 def _commands(scene: str, rungs: Sequence[str], portrait: Document) -> str:
@@ -299,18 +342,3 @@ def _commands(scene: str, rungs: Sequence[str], portrait: Document) -> str:
 
 def _digest(runs: Sequence[Run]) -> str:
     return next((str(v.provenance.get("scene", "")) for run in runs for v in run.verdicts), "")
-
-
-def _parts(found: Mapping[str, Any]) -> list[dict[str, str]]:
-    """The sections that the page has, in their order."""
-    names = {
-        "equations": ("Equations", found["formulas"]),
-        "orbit": ("Orbit", found["orbit"]),
-        "data": ("Data", found["toml"]),
-        "accuracy": ("Accuracy", True),
-        "pictures": ("Pictures", True),
-        "gates": ("Gates", True),
-        "values": ("Exact values", found["values"]),
-        "reproduce": ("Reproduce", True),
-    }
-    return [{"anchor": key, "name": name} for key, (name, there) in names.items() if there]

@@ -19,11 +19,7 @@ from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.studies.controls.document import Sight
 from taylor_verify.studies.controls.stored import CONTROLS
-from taylor_verify.studies.growth.document import GrowthStudy
-from taylor_verify.studies.growth.page import GROWTH
 from taylor_verify.studies.portraits import stored as portraits
-from taylor_verify.studies.reach.document import ReachStudy
-from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.stored import Trade, Trades
 
@@ -91,13 +87,13 @@ class Report:
         found = self.trades.trades if self.trades else ()
         return next((trade for trade in found if trade.scene == scene), None)
 
-    @cached_property
-    def growth(self) -> GrowthStudy | None:
-        return GROWTH.find(self.folder)
+    def has(self, place: str) -> bool:
+        """Return True for the place of a published file."""
+        return (self.folder / place).is_file()
 
-    @cached_property
-    def reach(self) -> ReachStudy | None:
-        return REACH.find(self.folder)
+    def read(self, place: str) -> str:
+        """The text of a published file; empty where there is none."""
+        return (self.folder / place).read_text(encoding="utf-8") if self.has(place) else ""
 
     def _record(self, scene: str, rung: str) -> Document | None:
         name = f"{of_scene(scene)}.{of_solver(_SOLVER)}.{rung}.json"

@@ -5,6 +5,8 @@
   // A number with what may stand before and behind it: "<1e-3", "11.5, 7.42 @ 77", "1.26e-5 fail".
   const NUMBER = /^[<>~≈]?\s*([-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)/i;
   const NOTHING = /^(?:–|-|—|)$/;
+  // A table of fewer lines is seen at a glance, one of more is looked through with a filter.
+  const SORTABLE = 6, FILTERABLE = 40;
 
   function value(cell) {
     const text = cell.textContent.trim();
@@ -47,15 +49,27 @@
 
   function addSorting(table) {
     Array.from(table.tHead.rows[0].cells).forEach(function (heading, index) {
-      const button = heading.querySelector("button");
-      if (button) button.addEventListener("click", function () { sort(table, heading, index); });
+      const button = document.createElement("button");
+      button.type = "button";
+      button.append(...heading.childNodes);
+      heading.append(button);
+      button.addEventListener("click", function () { sort(table, heading, index); });
     });
   }
 
-  function addFilter(input) {
-    const rows = Array.from(document.getElementById(input.dataset.filter).tBodies[0].rows);
-    const count = document.querySelector('[data-count="' + input.dataset.filter + '"]');
+  function addFilter(table, number) {
+    const rows = Array.from(table.tBodies[0].rows);
     const texts = rows.map(function (row) { return row.textContent.toLowerCase().replace(/\s+/g, " "); });
+    const line = document.createElement("p"), label = document.createElement("label");
+    const input = document.createElement("input"), count = document.createElement("span");
+    line.className = "filter";
+    label.textContent = "Filter";
+    label.htmlFor = input.id = "filter-" + number;
+    input.type = "search";
+    input.autocomplete = "off";
+    count.setAttribute("role", "status");
+    line.append(label, input, count);
+    (table.closest(".table-wrapper") || table).before(line);
 
     function filter() {
       const asked = input.value.toLowerCase().split(/\s+/).filter(Boolean);
@@ -71,13 +85,13 @@
     filter();
   }
 
-  // Only what scrolls is a stop for the keyboard.
+  // Only what scrolls is a stop for the keyboard; a fold that opens shows its table for the first time.
   function addStops() {
-    document.querySelectorAll(".scroll").forEach(function (box) {
+    document.querySelectorAll(".table-wrapper, .formula").forEach(function (box) {
       if (box.scrollWidth > box.clientWidth) {
         box.tabIndex = 0;
         box.setAttribute("role", "region");
-        box.setAttribute("aria-label", box.dataset.label);
+        box.setAttribute("aria-label", (box.closest("section") || document).querySelector("h1, h2, h3, h4").firstChild.textContent);
       } else {
         box.removeAttribute("tabindex");
         box.removeAttribute("role");
@@ -86,8 +100,15 @@
     });
   }
 
-  document.querySelectorAll("table.sortable").forEach(addSorting);
-  document.querySelectorAll("input[data-filter]").forEach(addFilter);
-  addStops();
-  window.addEventListener("resize", addStops);
+  document.addEventListener("DOMContentLoaded", function () {
+    document.querySelectorAll("article table").forEach(function (table, number) {
+      const rows = table.tHead && table.tBodies.length ? table.tBodies[0].rows.length : 0;
+      table.id = table.id || "table-" + (number + 1);
+      if (rows >= SORTABLE) addSorting(table);
+      if (rows >= FILTERABLE) addFilter(table, number + 1);
+    });
+    addStops();
+    window.addEventListener("resize", addStops);
+    document.addEventListener("toggle", addStops, true);
+  });
 })();

@@ -1,0 +1,63 @@
+"""Sphinx settings of every page: theme, Markdown, formulas and scripts; docs/conf.py adds its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from taylor_verify.records.version import __version__
+
+project = "taylor-verify"
+author = "The taylor-verify authors"
+version = release = __version__
+
+extensions = ["myst_parser", "sphinx_copybutton", "taylor_verify.studies.site.extension"]
+exclude_patterns = ["_build"]
+# GitHub sets a formula between dollars, and anchors every heading by its words.
+myst_enable_extensions = ["deflist", "dollarmath", "fieldlist"]
+myst_heading_anchors = 4
+# A transcript is text: a lexer that stumbles over it says nothing about the page.
+highlight_language = "text"
+# Pages are written with the quotation marks they mean.
+smartquotes = False
+
+html_theme = "furo"
+html_title = project
+html_math_renderer = "mathml"
+html_static_path = [str(Path(__file__).parent / "assets")]
+html_css_files = ["site.css"]
+html_js_files = ["tables.js", "motions.js"]
+html_show_copyright = False
+html_show_sourcelink = False
+html_copy_source = False
+html_domain_indices = html_use_index = False
+# Found pages are shown without an excerpt: a page that is opened as a file cannot read another one.
+html_show_search_summary = False
+# Names of colours in the style sheet and in the pictures. On dark paper a hue is lightened until a
+# line has the contrast of 3 that WCAG 2.1 (1.4.11) asks for.
+html_theme_options = {
+    "light_css_variables": {
+        "motion-ink": "#1B1D21",
+        "motion-quiet": "#5B616A",
+        "motion-faint": "#E3E5E8",
+        "motion-surface": "#C9CED6",
+        "motion-low": "#2F7DB5",
+        "motion-middle": "#8A6AA8",
+        "motion-high": "#C4500A",
+        "color-problem": "#A83C00",
+    },
+    "dark_css_variables": {
+        "motion-ink": "#E8E8E4",
+        "motion-quiet": "#A6ABB2",
+        "motion-faint": "#31363D",
+        "motion-surface": "#59616C",
+        "motion-low": "#4FA3DC",
+        "motion-middle": "#A98BC9",
+        "motion-high": "#EE8A4E",
+        "color-problem": "#F0976A",
+    },
+}
+pygments_style = "default"
+pygments_dark_style = "monokai"
+# Prompts and what a command printed are not copied with it.
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True

@@ -1,0 +1,76 @@
+"""A Sphinx extension: MathML without a script, names of scenes as links, tables kept out of the search."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+from docutils import nodes
+from sphinx import addnodes
+
+from taylor_verify.publish.mathml import inline, mathml
+from taylor_verify.records.file_names import of_scene
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+SCENES: Final = "reports/scenes"
+
+# GitHub's formula within a line is a code span between dollars; MyST's has the dollars alone.
+_FORMULA: Final = re.compile(r"\$`([^`\n]+)`\$")
+_SCENE: Final = re.compile(r"\w+(?:/[\w-]+)+")
+# A table of more rows is a list of numbers: nobody looks for one, and the index would be mostly these.
+_SEARCHED_ROWS: Final = 20
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register everything with Sphinx."""
+    app.connect("source-read", _read_formulas)
+    app.connect("doctree-read", _link_scenes)
+    app.connect("doctree-read", _leave_out_of_search)
+    app.add_html_math_renderer("mathml", (_write_inline, None), (_write_block, None))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _read_formulas(_app: Sphinx, _page: str, content: list[str]) -> None:
+    content[0] = _FORMULA.sub(r"$\1$", content[0])
+
+
+def _link_scenes(app: Sphinx, doctree: nodes.document) -> None:
+    """Make each code span that is the name of a scene with a page a link to that page."""
+    for span in list(doctree.findall(nodes.literal)):
+        text = span.astext()
+        page = f"{SCENES}/{of_scene(text)}" if _SCENE.fullmatch(text) else ""
+        is_elsewhere = page in app.env.found_docs and page != app.env.docname
+        if not is_elsewhere or _is_within_link_or_heading(span):
+            continue
+        link = addnodes.pending_xref(
+            "", refdomain="std", reftype="doc", reftarget=f"/{page}", refexplicit=True, refwarn=True
+        )
+        span.replace_self(link)
+        link += span
+
+
+def _is_within_link_or_heading(node: nodes.Node) -> bool:
+    parent = node.parent
+    while parent is not None:
+        if isinstance(parent, nodes.reference | nodes.title | addnodes.pending_xref):
+            return True
+        parent = parent.parent
+    return False
+
+
+def _leave_out_of_search(_app: Sphinx, doctree: nodes.document) -> None:
+    for table in doctree.findall(nodes.table):
+        if len(list(table.findall(nodes.row))) > _SEARCHED_ROWS:
+            table["classes"].append("no-search")
+
+
+def _write_inline(writer: Any, node: nodes.math) -> None:
+    writer.body.append(inline(node.astext()))
+    raise nodes.SkipNode
+
+
+def _write_block(writer: Any, node: nodes.math_block) -> None:
+    writer.body.append(f'<div class="formula">{mathml(node.astext(), display=True)}</div>\n')
+    raise nodes.SkipNode

@@ -1,0 +1,118 @@
+"""The source folder that Sphinx reads: pages of docs and of the report, and the files they link to.
+
+Places are those of a checkout: ``docs/method.md``, ``reports/tables/README.md``. So a link that holds
+there holds here.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+from taylor_verify.studies.site.drawing import smaller
+from taylor_verify.studies.site.links import relinked
+
+DOCS: Final = "docs"
+REPORTS: Final = "reports"
+FRONT: Final = "index.md"
+
+_ROOMS: Final = ("figures", "tables", "reference", "upstream")
+_INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
+_TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
+_ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
+
+
+def docs_beside(folder: Path) -> Path | None:
+    """The folder of docs in the checkout that ``folder`` is the report of; None without one."""
+    docs = folder.resolve().parent / DOCS
+    return docs if (docs / "conf.py").exists() else None
+
+
+@dataclass
+class Stage:
+    """The files to be read, by place. ``folder`` has the report, ``docs`` the pages beside it."""
+
+    folder: Path
+    docs: Path | None
+    files: dict[str, str | bytes] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._pages = dict(self._markdown())
+        self._places = {*self._pages}
+        # The front page takes the place of the list of docs, a page that of the file it includes.
+        self._stand_ins = {f"{DOCS}/index.md": FRONT}
+        for place, file in self._pages.items():
+            for included in _INCLUDED.findall(file.read_text(encoding="utf-8")):
+                self._stand_ins[_joined(place, included)] = place
+
+    def _markdown(self) -> Iterator[tuple[str, Path]]:
+        for room in (self.folder, *(self.folder / name for name in _ROOMS)):
+            for file in sorted(room.glob("*.md")):
+                yield f"{REPORTS}/{file.relative_to(self.folder).as_posix()}", file
+        for file in sorted(self.docs.rglob("*.md")) if self.docs else ():
+            place = file.relative_to(self.docs or file)
+            if place.parts[0] != "_build" and place.as_posix() != "index.md":
+                yield f"{DOCS}/{place.as_posix()}", file
+
+    @property
+    def report_pages(self) -> list[str]:
+        """The pages of the report as a toctree names them."""
+        pages = [place for place in self._pages if place.startswith(f"{REPORTS}/")]
+        return [place.removesuffix(".md") for place in pages]
+
+    def toctrees(self) -> str:
+        """The lists of pages of docs/index.md, for the navigation; none without docs."""
+        if self.docs is None:
+            return ""
+        text = (self.docs / "index.md").read_text(encoding="utf-8")
+        lists = (_ENTRY.sub(rf"{DOCS}/\1", found[0]) for found in _TOCTREE.finditer(text))
+        return "\n\n".join(lists).replace(":maxdepth: 1", ":hidden:")
+
+    def add_pages(self, made: Mapping[str, str]) -> None:
+        """Add the pages that are stored and those of ``made``, with the files that they link to."""
+        stored = {place: file for place, file in self._pages.items() if place not in made}
+        self._places |= made.keys()
+        for place, file in stored.items():
+            text = file.read_text(encoding="utf-8")
+            self._add(place, _INCLUDED.sub(partial(self._included, place), text))
+        for place, text in made.items():
+            self._add(place, text)
+
+    def _add(self, place: str, text: str) -> None:
+        folder = PurePosixPath(place).parent.as_posix()
+        self.files[place] = relinked(text, folder, folder, self._resolve)
+
+    def _included(self, place: str, block: re.Match[str]) -> str:
+        """The file that a page includes, with links as they are on that page."""
+        included = _joined(place, block[1])
+        text = self._origin(included).read_text(encoding="utf-8")
+        written_in = PurePosixPath(included).parent.as_posix()
+        return relinked(text, written_in, PurePosixPath(place).parent.as_posix(), lambda at: at)
+
+    def _resolve(self, place: str) -> str | None:
+        """The page or file that a link leads to; None for what is neither, or outside the tree."""
+        for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
+            if page in self._places:
+                return page
+        if place not in self.files:
+            if place.startswith("..") or not self._origin(place).is_file():
+                return None
+            content = self._origin(place).read_bytes()
+            is_drawing = place.endswith(".svg")
+            self.files[place] = smaller(content.decode()) if is_drawing else content
+        return f"path:{place}" if place.endswith(".md") else place
+
+    def _origin(self, place: str) -> Path:
+        """Where a file is stored; without docs there is no checkout around the report."""
+        if place.startswith(f"{REPORTS}/") or self.docs is None:
+            return self.folder / place.removeprefix(f"{REPORTS}/")
+        return self.docs.parent / place
+
+
+def _joined(place: str, path: str) -> str:
+    return posixpath.normpath(posixpath.join(posixpath.dirname(place), path))
