@@ -16,20 +16,23 @@ LIGHT, DARK = "light", "dark"
 # One of each kind; the whole site is walked through once, in `test_every_page_loads`.
 KINDS = (
     "index.html",
-    "scenes.html",
-    "scenes/euler-with-attitude.html",
-    "scenes/kirchhoff-whole-motion.html",
-    "solvers.html",
-    "extremes.html",
-    "controls.html",
-    "errata.html",
-    "method.html",
-    "claims.html",
-    "tables/index.html",
-    "tables/tradeoff.html",
-    "tables/traps.html",
-    "reference/index.html",
+    "docs/method.html",
+    "docs/tutorials/check-my-simulator.html",
+    "docs/reference/calls.html",
+    "reports/README.html",
+    "reports/claims.html",
+    "reports/scenes.html",
+    "reports/scenes/euler-with-attitude.html",
+    "reports/scenes/kirchhoff-whole-motion.html",
+    "reports/figures/README.html",
+    "reports/reference/README.html",
+    "reports/tables/README.html",
+    "reports/tables/controls.html",
+    "reports/tables/tradeoff.html",
+    "reports/tables/traps.html",
 )
+SCENES = tuple(page for page in KINDS if page.startswith("reports/scenes/"))
+SCENE = "reports/scenes/kirchhoff-whole-motion.html"
 # What Chromium says of its own drawing of 3D by software; no fault of a page.
 OF_THE_DRIVER = ("GL Driver Message", "Canvas2D", "GPU stall", "swiftshader", "WebGL fallback")
 # A picture of a few hundred points takes a second by software; a machine that is busy, many.
@@ -110,7 +113,7 @@ class Reader:
                 self.run(
                     f"""const plot = {one};
                     return {{
-                      title: plot.closest("figure").querySelector("h3").textContent,
+                      title: plot.closest("figure").querySelector("b").textContent,
                       points: (plot.data || []).reduce((n, t) => n + ((t.x || t.z || []).length), 0),
                       marks: plot.querySelectorAll("path, image, canvas").length,
                       height: plot.getBoundingClientRect().height,
@@ -167,9 +170,7 @@ def test_text_can_be_read(reader: Reader, page: str, theme: str, size: tuple[int
     assert [text for ratio, text in found if not ratio >= 4.5] == []
 
 
-@pytest.mark.parametrize(
-    "page", [page for page in KINDS if page.startswith(("index", "scenes/", "solvers", "extremes"))]
-)
+@pytest.mark.parametrize("page", SCENES)
 def test_pictures_are_drawn(reader: Reader, page: str) -> None:
     """Every picture comes to have marks of its data when it is scrolled to."""
     reader.open(page)
@@ -184,7 +185,7 @@ def test_pictures_are_drawn(reader: Reader, page: str) -> None:
 
 def test_bodies_in_space_show_something(reader: Reader) -> None:
     """The picture of the path has pixels of more than one colour: WebGL has drawn a curve."""
-    reader.open("scenes/kirchhoff-whole-motion.html")
+    reader.open(SCENE)
     assert sum(picture["space"] for picture in reader.draw()) >= 3
     colours = reader.run(
         """const plot = document.querySelector("#path .plot");
@@ -213,21 +214,6 @@ def test_bodies_in_space_show_something(reader: Reader) -> None:
     assert colours > 5
 
 
-def test_a_choice_changes_the_picture(reader: Reader) -> None:
-    """Another quantity, by mouse or by arrow key, is another set of points; so is the unit."""
-    from selenium.webdriver.common.keys import Keys
-
-    reader.open("scenes/kirchhoff-whole-motion.html")
-    reader.draw()
-    shown = "return JSON.stringify(document.querySelector('#error .plot').data[1].y.slice(1, 9))"
-    first = reader.run(shown)
-    inputs = reader.driver.find_elements("css selector", "#error .choices input")
-    inputs[0].send_keys(Keys.ARROW_RIGHT)
-    second = reader.until(lambda: (now := reader.run(shown)) != first and now, "another quantity")
-    reader.run("document.querySelector('#error .units input').click()")
-    reader.until(lambda: reader.run(shown) != second, "other units")
-
-
 def column(reader: Reader, table: str, index: int) -> list[str]:
     rows: list[str] = reader.run(
         "return Array.from(document.querySelectorAll(arguments[0] + ' tbody tr'))"
@@ -240,7 +226,7 @@ def column(reader: Reader, table: str, index: int) -> list[str]:
 
 def test_tables_sort_numbers_as_numbers(reader: Reader) -> None:
     """A click sorts 1e-5 above 2e-15, a second one turns it round, and aria-sort says which."""
-    reader.open("scenes.html")
+    reader.open("reports/scenes.html")
     headings = [
         one.text.partition(" ")[0]
         for one in reader.driver.find_elements("css selector", "#table-1 thead th button")
@@ -265,14 +251,14 @@ def test_tables_sort_numbers_as_numbers(reader: Reader) -> None:
 
 def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
     """On a page with two large tables a filter hides rows of its own table alone."""
-    reader.open("scenes/kirchhoff-whole-motion.html")
+    reader.open(SCENE)
     # The arithmetic of the bounds is behind a fold.
-    fold = reader.driver.find_element("css selector", "details:has(input[data-filter]) > summary")
-    assert not reader.driver.find_elements("css selector", "details[open] input[data-filter]")
+    fold = reader.driver.find_element("css selector", "details:has(.filter) > summary")
+    assert not reader.driver.find_elements("css selector", "details[open] .filter input")
     fold.click()
-    boxes = reader.driver.find_elements("css selector", "input[data-filter]")
+    boxes = reader.driver.find_elements("css selector", ".filter input")
     assert len(boxes) == 2
-    tables = [f"#{box.get_attribute('data-filter')}" for box in boxes]
+    tables = [f"#{box.get_attribute('id').replace('filter', 'table')}" for box in boxes]
     before = [column(reader, table, 0) for table in tables]
     boxes[1].send_keys("centre")
     assert column(reader, tables[0], 0) == before[0]
@@ -281,16 +267,16 @@ def test_each_table_has_a_filter_of_its_own(reader: Reader) -> None:
 
 def test_the_big_table_can_be_searched(reader: Reader) -> None:
     """The filter leaves the rows that have every word, says how many, and gives all back."""
-    reader.open("tables/gates.html")
+    reader.open("reports/tables/gates.html")
     every = column(reader, "#table-1", 0)
-    box = reader.driver.find_element("css selector", "input[data-filter=table-1]")
+    box = reader.driver.find_element("css selector", "#filter-1")
     box.send_keys("kirchhoff f80")
     found = column(reader, "#table-1", 0)
     assert found
     assert len(found) < len(every)
     assert all("kirchhoff" in name for name in found)
     assert set(column(reader, "#table-1", 1)) == {"f80"}
-    said = reader.driver.find_element("css selector", "[data-count=table-1]").text
+    said = reader.driver.find_element("css selector", ".filter [role=status]").text
     assert said == f"{len(found)} of {len(every)} rows"
     box.clear()
     box.send_keys(" ")
@@ -301,44 +287,80 @@ def test_the_keyboard_reaches_everything(reader: Reader) -> None:
     """Tab leads to the skip link first, then to the navigation, the theme and a table's headings."""
     from selenium.webdriver.common.keys import Keys
 
-    reader.open("scenes.html")
+    reader.open("reports/scenes.html")
     body = reader.driver.find_element("css selector", "body")
     reached = []
-    for _ in range(24):
+    for _ in range(80):
         body.send_keys(
             Keys.TAB
         ) if not reached else reader.driver.switch_to.active_element.send_keys(Keys.TAB)
         reached.append(
             reader.run(
-                """const one = document.activeElement, style = getComputedStyle(one);
+                """const one = document.activeElement;
+                const edges = [one, one.nextElementSibling].filter(Boolean).map(e => getComputedStyle(e));
                 return [one.className || one.id || one.tagName, one.closest("th") !== null,
-                        style.outlineStyle !== "none"]"""
+                        edges.some(style => style.outlineStyle !== "none")]"""
             )
         )
-    assert reached[0][0] == "skip"
-    assert any(name == "theme" for name, *_ in reached)
+    assert reached[0][0].startswith("skip-to-content")
+    for part in ("sidebar-search", "theme-toggle", "filter-1"):
+        assert any(name.startswith(part) for name, *_ in reached), part
+    assert any("reference internal" in name for name, *_ in reached)
     assert sum(heading for _, heading, _ in reached) >= 3
-    assert all(outlined for *_, outlined in reached)
+    assert [name for name, _, outlined in reached if not outlined] == []
     reader.driver.switch_to.active_element.send_keys(Keys.ENTER)
 
 
 def test_the_theme_is_kept(reader: Reader) -> None:
-    """The button turns the page dark, pictures too, and the next page is dark with it."""
-    reader.open("index.html")
+    """The button turns the page dark, motions too, and the next page is dark with it."""
+    reader.open(SCENE)
     reader.draw()
     paper = "return getComputedStyle(document.body).backgroundColor"
-    ink = "return document.querySelector('.plot .xtick text').style.fill"
-    light, drawn = reader.run(paper), reader.run(ink)
-    reader.driver.find_element("css selector", "#theme").click()
+    drawn = "return document.querySelector('.plot').dataset.drawn"
+    light, ink = reader.run(paper), reader.run(drawn)
+    button = reader.driver.find_element("css selector", ".theme-toggle-content .theme-toggle")
+    for _ in range(3):
+        if reader.run(paper) == light:
+            reader.run("arguments[0].click()", button)
     assert reader.run(paper) != light
-    reader.until(lambda: reader.run(ink) != drawn, "the picture in other colours")
-    reader.open("method.html")
-    assert reader.run(paper) != light
+    reader.until(lambda: reader.run(drawn) != ink, "the motion in other colours")
+    dark = reader.run(paper)
+    reader.open("docs/method.html")
+    assert reader.run(paper) == dark
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+def test_drawings_are_on_white_paper(reader: Reader, theme: str) -> None:
+    """A drawing, whose ink is dark, lies on white in both themes."""
+    reader.set(theme=theme)
+    reader.open(SCENE)
+    papers = reader.run(
+        "return Array.from(document.querySelectorAll('article img'))"
+        ".map(image => getComputedStyle(image).backgroundColor)"
+    )
+    assert len(papers) >= 2
+    assert set(papers) == {"rgb(255, 255, 255)"}
+
+
+def test_the_search_finds_pages(reader: Reader) -> None:
+    """Opened as a file, the search finds a page of docs, a scene and a page of the report."""
+    from selenium.webdriver.common.keys import Keys
+
+    reader.open("index.html")
+    reader.driver.find_element("css selector", "input.sidebar-search").send_keys(
+        "separatrix", Keys.ENTER
+    )
+    links = "return Array.from(document.querySelectorAll('#search-results li a')).map(a => a.href)"
+    for place in ("docs/method.html", "scenes/euler-separatrix.html", "reports/tables/reach.html"):
+        reader.until(
+            lambda at=place: at in "\n".join(reader.run(links)), f"{place} among the found"
+        )
+    assert reader.complaints() == []
 
 
 def test_formulas_are_set(reader: Reader) -> None:
     """Every formula of a scene takes room, and letters of another alphabet are no empty boxes."""
-    reader.open("scenes/kirchhoff-whole-motion.html")
+    reader.open(SCENE)
     sizes = reader.run(
         "return Array.from(document.querySelectorAll('math'))"
         ".map(m => [m.getBoundingClientRect().width, m.getBoundingClientRect().height])"
@@ -348,26 +370,27 @@ def test_formulas_are_set(reader: Reader) -> None:
 
 
 def test_exact_values_can_be_copied(reader: Reader) -> None:
-    """The button puts the values into the clipboard, or asks to select them; they are plain text."""
-    reader.open("scenes/euler-with-attitude.html")
-    button = reader.driver.find_element("css selector", ".copy:has(+ #exact) button")
+    """The button puts the values into the clipboard and says so; they are plain text."""
+    reader.open("reports/scenes/euler-with-attitude.html")
+    button = reader.driver.find_element("css selector", "#exact button.copybtn")
     reader.run("arguments[0].scrollIntoView({behavior: 'instant', block: 'center'})", button)
     button.click()
-    reader.until(lambda: button.text in ("Copied", "Select and copy"), "an answer of the button")
-    text = reader.driver.find_element("css selector", "#exact").text
+    reader.until(
+        lambda: button.get_attribute("data-tooltip") == "Copied!", "an answer of the button"
+    )
+    text = reader.driver.find_element("css selector", "#exact pre").text
     assert text.split()[0].startswith("t,")
 
 
 def test_without_a_script_the_words_are_there(reader: Reader) -> None:
-    """With scripts switched off a scene still has its tables, its values, and each picture in words
-    or as a drawing."""
+    """With scripts switched off a scene still has its tables, its values, and each motion in words."""
     reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})
     try:
-        reader.open("scenes/kirchhoff-whole-motion.html")
+        reader.open(SCENE)
         told = reader.driver.find_elements("css selector", "noscript > *")
-        assert len(told) >= 4
+        assert len(told) >= 3
         assert all(one.is_displayed() for one in told)
-        assert reader.driver.find_element("css selector", "#exact").text.split()[0] == "t,"
+        assert reader.driver.find_element("css selector", "#exact pre").text.split()[0] == "t,"
         assert reader.driver.find_elements("css selector", "table tbody tr")
     finally:
         reader.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})

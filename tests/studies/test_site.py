@@ -197,7 +197,7 @@ def test_a_page_of_docs_reaches_the_rest(
     assert "../reports/tables/controls.html#what-each-gate-sees" in page.links
     assert "../index.html" in page.links
     files = [name.rpartition("/")[2] for name in site if name.startswith("_downloads/")]
-    assert {"verdicts.json", "notes.txt"} <= set(files)
+    assert {"verdicts.json.tar.xz", "notes.txt"} <= set(files)
     assert "nothing" in page.text
     assert "none.txt" not in page.text
 

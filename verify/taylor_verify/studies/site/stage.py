@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import posixpath
 import re
+import tarfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from io import BytesIO
 from pathlib import Path, PurePosixPath
 from typing import Final
 
@@ -21,6 +23,9 @@ DOCS: Final = "docs"
 REPORTS: Final = "reports"
 FRONT: Final = "index.md"
 
+# Bytes. Above this only sheets and data are found, of which a packed one has a tenth.
+_LARGE: Final = 30_000
+PACKED: Final = ".tar.xz"
 _ROOMS: Final = ("figures", "tables", "reference", "upstream")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
@@ -90,28 +95,48 @@ class Stage:
     def _included(self, place: str, block: re.Match[str]) -> str:
         """The file that a page includes, with links as they are on that page."""
         included = _joined(place, block[1])
-        text = self._origin(included).read_text(encoding="utf-8")
-        written_in = PurePosixPath(included).parent.as_posix()
-        return relinked(text, written_in, PurePosixPath(place).parent.as_posix(), lambda at: at)
+        file = self._origin(included)
+        if file is None:
+            raise ValueError(f"expected a file of the checkout, got {block[1]} @ {place}")
+        written_in, shown_in = (PurePosixPath(at).parent.as_posix() for at in (included, place))
+        return relinked(file.read_text(encoding="utf-8"), written_in, shown_in, lambda at: at)
 
     def _resolve(self, place: str) -> str | None:
         """The page or file that a link leads to; None for what is neither, or outside the tree."""
         for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
             if page in self._places:
                 return page
+        file = self._origin(place)
+        if file is None or not file.is_file():
+            return None
+        if file.suffix != ".svg" and file.stat().st_size > _LARGE:
+            place += PACKED
         if place not in self.files:
-            if place.startswith("..") or not self._origin(place).is_file():
-                return None
-            content = self._origin(place).read_bytes()
-            is_drawing = place.endswith(".svg")
-            self.files[place] = smaller(content.decode()) if is_drawing else content
+            self.files[place] = _content(file, place.endswith(PACKED))
         return f"path:{place}" if place.endswith(".md") else place
 
-    def _origin(self, place: str) -> Path:
-        """Where a file is stored; without docs there is no checkout around the report."""
-        if place.startswith(f"{REPORTS}/") or self.docs is None:
+    def _origin(self, place: str) -> Path | None:
+        """Where a file is stored; None outside the report and the checkout around it."""
+        if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
-        return self.docs.parent / place
+        return None if self.docs is None or place.startswith("..") else self.docs.parent / place
+
+
+def _content(file: Path, is_packed: bool) -> str | bytes:
+    """A file as it is, a drawing made smaller, or an archive with the file."""
+    content = file.read_bytes()
+    if is_packed:
+        return _packed(file.name, content)
+    return smaller(content.decode()) if file.suffix == ".svg" else content
+
+
+def _packed(name: str, content: bytes) -> bytes:
+    archive = BytesIO()
+    with tarfile.open(fileobj=archive, mode="w:xz", format=tarfile.USTAR_FORMAT) as packed:
+        about = tarfile.TarInfo(name)
+        about.size = len(content)
+        packed.addfile(about, BytesIO(content))
+    return archive.getvalue()
 
 
 def _joined(place: str, path: str) -> str:
