@@ -232,17 +232,8 @@ def _summed(sight: Sight, wanted: Callable[[str], bool]) -> str:
 
 
 _FIELDS: Final = (
-    *("defect", "scene", "quantity", "seen", "error_over_bound", "max", "bound", "unit"),
-    *(
-        "verdict",
-        "outcome",
-        "time_shift",
-        "residual",
-        "shift",
-        "twin",
-        "twin_verdict",
-        "twin_ratio",
-    ),
+    *("defect", "scene", "quantity", "seen", "error_over_bound", "max", "bound", "unit", "verdict"),
+    *("outcome", "time_shift", "residual", "shift", "twin", "twin_verdict", "twin_ratio"),
 )
 
 

@@ -15,6 +15,7 @@ from taylor_verify.publish.markdown import bold, bullets, code, prose, table
 from taylor_verify.publish.page import made_on, whole
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.sheet import sheet as csv_sheet
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.studies import figures
@@ -215,10 +216,9 @@ def sheet(study: GrowthStudy) -> str:
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
     late, late_low, late_high = row.late
     shared = ("scene", "solver", "rung", "lost", "period")
-    own = ("quantity", "in_walks", "exponent", "low", "high", "word", "late_word", "level")
     return {
+        **complete(row),
         **{name: getattr(run, name) for name in shared},
-        **{name: getattr(row, name) for name in own},
         "starts": run.lanes,
         "periods_first": run.counts[0],
         "periods_last": run.counts[-1],

@@ -231,15 +231,7 @@ def _method(study: ReachStudy) -> list[str]:
 
 
 _SHEET: Final = (
-    "family",
-    "value",
-    "rung",
-    "periods",
-    "error",
-    "attainable",
-    "lost",
-    "steps",
-    "why",
+    *("family", "value", "rung", "periods", "error", "attainable", "lost", "steps", "why"),
 )
 
 

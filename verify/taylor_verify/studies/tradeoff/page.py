@@ -77,7 +77,7 @@ def page(found: Trades, folder: Path) -> str:
         "## The closed form in plain doubles",
         doubles_table(found.numbers.plain_doubles),
         "## What is timed",
-        what_is_timed(found),
+        what_is_timed(),
         "## How it was timed, and where",
         bullets(how_it_was_timed(found)),
         "## To remake this",

@@ -41,8 +41,8 @@ _WHAT_IS_TIMED: Final = (
 )
 
 
-def what_is_timed(found: Trades) -> str:
-    del found
+def what_is_timed() -> str:
+    """Return what a time has in it and what not, solver by solver."""
     columns = ["solver", "in the time", "not in it"]
     return table(columns, [[code(name), inside, apart] for name, inside, apart in _WHAT_IS_TIMED])
 

@@ -58,15 +58,8 @@ def page(study: WorstStudy) -> str:
 
 
 def _table(families: Sequence[WorstOfFamily]) -> str:
-    columns = [
-        "family",
-        "scenes:",
-        "error over attainable:",
-        "in",
-        "its error:",
-        "verdict",
-        "kept as",
-    ]
+    numbers = ("scenes:", "error over attainable:")
+    columns = ["family", *numbers, "in", "its error:", "verdict", "kept as"]
     rows = [
         [
             prose(row.what),
