@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 
 from taylor_verify.publish.cells import NOTHING
-from taylor_verify.publish.pictures.wording import floors_of
 from taylor_verify.records.standing import Standing
 from taylor_verify.studies.report import publish_tradeoff
 from taylor_verify.studies.tradeoff.document import (
@@ -28,6 +27,7 @@ from taylor_verify.studies.tradeoff.document import (
     TradeTimings,
 )
 from taylor_verify.studies.tradeoff.page import front, page
+from taylor_verify.studies.tradeoff.pictures.wording import floors_of
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
 
 
