@@ -19,10 +19,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from taylor_verify.publish.pictures.palette import INK, QUIET, contrast, for_text, lightness
-from taylor_verify.publish.pictures.panels import panels_of
 from taylor_verify.publish.pictures.picture import Picture, plotting, save
 from taylor_verify.publish.pictures.ratio import Ratio
-from taylor_verify.publish.pictures.series import front_of, series_of
 from taylor_verify.publish.pictures.style import (
     KINDS,
     PAGE_WIDTH,
@@ -31,10 +29,12 @@ from taylor_verify.publish.pictures.style import (
     look_of_line,
     look_of_rung,
 )
-from taylor_verify.publish.pictures.wording import label_of, power_of_ten
+from taylor_verify.publish.pictures.wording import power_of_ten
 from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.studies.prices import picture as prices
 from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade
+from taylor_verify.studies.tradeoff.pictures.series import front_of, panels_of, series_of
+from taylor_verify.studies.tradeoff.pictures.wording import label_of
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -514,7 +514,7 @@ def test_alt_texts_need_no_matplotlib() -> None:
     rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
     code = (
         "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from taylor_verify.studies.tradeoff.pictures import trade\n"
+        "from taylor_verify.studies.tradeoff.pictures import time_by_rung, trade\n"
         f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
     )
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -13,8 +13,8 @@ import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE, point
 
 from taylor_verify.publish.cells import NOTHING
-from taylor_verify.publish.pictures.wording import floors_of
 from taylor_verify.studies.tradeoff.page import front, page
+from taylor_verify.studies.tradeoff.pictures.wording import floors_of
 from taylor_verify.studies.tradeoff.stored import NUMBERS, TIMINGS, TimedPoint, Trades, load, write
 from taylor_verify.studies.tradeoff.study import STUDY
 

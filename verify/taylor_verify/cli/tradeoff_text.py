@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
-from taylor_verify.publish.pictures.wording import label_of
+from taylor_verify.studies.tradeoff.pictures.wording import label_of
 
 _NOT_RUN = "not run"
 _HEADINGS = {

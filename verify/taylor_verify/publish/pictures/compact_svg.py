@@ -1,7 +1,8 @@
 """The SVG of a picture in a third of matplotlib's bytes, and the same to the eye.
 
 Coordinates have two digits after the point, a hundredth of a point of print. A style that many marks
-share is written once, as a class. Groups and names that nothing refers to are left out.
+share is written once, as a class. Groups and names that nothing refers to are left out. scour writes a
+style at every mark: its maps of digits and time diagrams are up to twice as large.
 """
 
 from __future__ import annotations

@@ -3,6 +3,9 @@
 Lengths are in points from the figure's lower left corner. A figure has 72 pixels to the inch while
 it is laid out, so that both are the same; what is written stays there at any other resolution. Boxes
 have shape (n, 4), each left, low, right, top; spots have shape (n, 2).
+
+textalloc and adjustText place the name of a point. They take no line that may be named at any of its
+marks: at one end alone, names strike through marks or leave a full panel.
 """
 
 from __future__ import annotations
@@ -16,7 +19,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from taylor_verify.publish.pictures.named import Named, Spot
 from taylor_verify.publish.pictures.palette import PAPER, for_text
 from taylor_verify.publish.pictures.style import SMALL
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
 
 Numbers = NDArray[np.float64]
+Spot = tuple[float, float]
 
 # To the inch.
 POINTS: Final = 72
@@ -53,6 +56,15 @@ _NOT_AN_END: Final = 0.6
 _PER_POINT_AWAY: Final = 0.06
 _FORBIDDEN: Final = 1e4
 _SWEEPS: Final = 4
+
+
+@dataclass(frozen=True)
+class Named:
+    """A line with its name: its pieces are joined points, in the axes' own units."""
+
+    name: str
+    colour: str
+    pieces: Sequence[Sequence[Spot]]
 
 
 @dataclass(frozen=True)

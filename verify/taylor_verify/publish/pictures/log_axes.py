@@ -1,7 +1,8 @@
-"""The numbers at two logarithmic axes: powers of ten, and on a short axis 1, 2 and 5 of each."""
+"""Limits and numbers of logarithmic axes: powers of ten, and on a short axis 1, 2 and 5 of each."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Final
@@ -11,6 +12,10 @@ from taylor_verify.publish.pictures.wording import power_of_ten
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+Limits = tuple[float, float]
+
+# An axis shows a decade at least, however close its points.
+_LEAST_DECADES: Final = 1.0
 # Between them a number is shorter in plain digits.
 _LEAST_PLAIN: Final = 1e-3
 _MOST_PLAIN: Final = 1e5
@@ -48,3 +53,12 @@ def number(value: float, is_long: bool) -> str:
     power = floor(log10(value) + 1e-9)
     digit = round(value / 10.0**power)
     return power_of_ten(10.0**power) if digit == 1 else f"{digit}·{power_of_ten(10.0**power)}"
+
+
+def widened(values: Sequence[float], before: float, after: float) -> Limits:
+    """The limits of a logarithmic axis that shows these with so much room, in parts of its length."""
+    least, most = (log10(end(values)) if values else 0.0 for end in (min, max))
+    lacking = max(_LEAST_DECADES - (most - least), 0.0) / 2
+    least, most = least - lacking, most + lacking
+    length = (most - least) / (1 - before - after)
+    return 10 ** (least - before * length), 10 ** (most + after * length)

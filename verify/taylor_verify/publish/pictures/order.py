@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures import panels as at
-from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
-from taylor_verify.publish.pictures.legend import draw_legend, foot_of
-from taylor_verify.publish.pictures.log_axes import number_axes
-from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.labels import Named, write_names
+from taylor_verify.publish.pictures.log_axes import number_axes, widened
 from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.panels import Frame, width_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
+from taylor_verify.publish.pictures.sheet import sheet
+from taylor_verify.publish.pictures.style import look_of_line
 from taylor_verify.publish.pictures.wording import stem_of
 from taylor_verify.records.answers import Order
 from taylor_verify.records.quantities import STATES
@@ -25,7 +22,8 @@ if TYPE_CHECKING:
 
 Points = list[tuple[float, float]]
 
-_TALLER: Final = 1.5
+# In inches.
+_HEIGHT: Final = 3.525
 _DOTTED: Final[dict[str, Any]] = {"linestyle": (0, (1, 2)), "linewidth": 0.7}
 
 
@@ -52,22 +50,15 @@ def picture(title: str, orders: Sequence[Order]) -> Picture:
 
 
 def _figure(orders: Sequence[Order]) -> Figure:
-    from matplotlib.figure import Figure
-
     panels = [group for group in _panels(orders) if group[1]]
     entries = [
         ({"color": QUIET, "linewidth": 1.8}, "order read here"),
         ({"color": QUIET, **_DOTTED}, "roundoff floor"),
     ]
-    low, width = foot_of(entries, "") + at.BELOW, width_of(len(panels))
-    height = at.HEIGHT * _TALLER
-    figure = Figure(figsize=(PAGE_WIDTH, low + height + at.HEADING), dpi=72)
-    for i, (heading, group) in enumerate(panels):
-        left = at.LEFT + i * (width + at.LEFT + at.RIGHT)
-        axes = add_axes(figure, Frame(left, low, width, height))
+    figure, places = sheet(len(panels), entries, height=_HEIGHT)
+    for axes, (heading, group) in zip(places, panels, strict=True):
         axes.set_title(heading, pad=4)
         _draw(axes, group)
-    draw_legend(figure, entries, "", None)
     return figure
 
 
@@ -78,8 +69,6 @@ def _panels(orders: Sequence[Order]) -> list[tuple[str, list[Order]]]:
 
 
 def _draw(axes: Axes, orders: Sequence[Order]) -> None:
-    from taylor_verify.publish.pictures.labels import write_names
-
     errors = [_errors(order) for order in orders]
     floors = [_floors(order) for order in orders]
     everything = [point for points in (*errors, *floors) for point in points]
@@ -88,7 +77,7 @@ def _draw(axes: Axes, orders: Sequence[Order]) -> None:
     axes.set(ylim=widened([error for _, error in everything], 0.06, 0.06))
     number_axes(axes)
     for i, order in enumerate(orders):
-        look = line_of(look_of_line(i))
+        look = look_of_line(i).line
         axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
         read = [p for p in errors[i] if order.order is not None and _is_read(order, p[0])]
         if read:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 from zlib import crc32
 
-from taylor_verify.publish.pictures.palette import FAINT, INK, QUIET
+from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET
 from taylor_verify.records.precisions import FORMATS, bits_of, place_of_rung
 
 Dashes = tuple[float, ...]
@@ -42,6 +42,19 @@ class Look:
     dashes: Dashes = SOLID
     width: float = 1.1
     size: float = 4.5
+
+    @property
+    def line(self) -> dict[str, Any]:
+        """How matplotlib draws its line and marks."""
+        return {
+            "color": self.colour,
+            "marker": self.marker,
+            "markersize": self.size,
+            "markeredgecolor": PAPER,
+            "markeredgewidth": 0.4,
+            "linewidth": self.width,
+            "linestyle": (0, self.dashes) if self.dashes else "solid",
+        }
 
 
 @dataclass(frozen=True)

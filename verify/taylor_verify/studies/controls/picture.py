@@ -11,11 +11,19 @@ from functools import partial
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes, widened
-from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from taylor_verify.publish.pictures.log_axes import widened
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import BELOW, HEADING, Frame
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import (
+    BELOW,
+    HEADING,
+    Entry,
+    Frame,
+    add_axes,
+    blank,
+    draw_legend,
+    foot_of,
+)
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
 from taylor_verify.publish.pictures.wording import plain, power_of_ten, stem_of
 from taylor_verify.records.reason import Kind
@@ -77,12 +85,10 @@ def picture(verdicts: Sequence[Verdict], scene: str) -> Picture:
 
 
 def _figure(found: Sequence[Mapping[str, Any]]) -> Figure:
-    from matplotlib.figure import Figure
-
     entries = _entries()
     foot = foot_of(entries, _NOTE)
     height = _LINE * len(found)
-    figure = Figure(figsize=(PAGE_WIDTH, foot + BELOW + height + HEADING), dpi=72)
+    figure = blank(foot + BELOW + height + HEADING)
     frame = Frame(_LEFT, foot + BELOW, PAGE_WIDTH - _LEFT - _RIGHT, height)
     axes = add_axes(figure, frame)
     axes.set(xscale="log", ylim=(len(found) - 0.5, -0.5))
@@ -95,7 +101,7 @@ def _figure(found: Sequence[Mapping[str, Any]]) -> Figure:
     axes.set_title("shift (time)", pad=4, loc="right", x=1.0 + _RIGHT / frame.width, fontsize=SMALL)
     for line, one in enumerate(found):
         _draw(axes, line, one)
-    draw_legend(figure, entries, _NOTE, None)
+    draw_legend(figure, entries, _NOTE)
     return figure
 
 

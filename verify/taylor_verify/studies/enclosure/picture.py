@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes, frames_of, widened
-from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from taylor_verify.publish.pictures.log_axes import widened
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
+from taylor_verify.publish.pictures.sheet import Entry, sheet
 from taylor_verify.publish.pictures.wording import plain, power_of_ten
 from taylor_verify.studies.enclosure.document import EnclosureStudy
 
@@ -59,16 +58,12 @@ def picture(study: EnclosureStudy) -> Picture:
 
 
 def _figure(motions: Motions) -> Figure:
-    from matplotlib.figure import Figure
-
     entries: list[Entry] = [(dict(_WIDTH), "proven width"), (dict(_ERROR), "true error")]
-    frames, height = frames_of([0] * len(motions), foot_of(entries, ""))
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    figure, places = sheet(len(motions), entries)
     # One scale for all: a motion that is regular is told from one that is not.
     points = [point for lines in motions.values() for drawn in lines.values() for point in drawn]
     limits = widened([e for _, e in points], 0.04, 0.04)
-    for frame, (scene, lines) in zip(frames, motions.items(), strict=True):
-        axes = add_axes(figure, frame)
+    for axes, (scene, lines) in zip(places, motions.items(), strict=True):
         axes.set(yscale="log", ylim=limits, xlim=(0, _BEYOND * max(t for t, _ in points)))
         axes.set(xlabel="time since the start", ylabel="relative to the vector")
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
@@ -76,5 +71,4 @@ def _figure(motions: Motions) -> Figure:
         axes.set_title(scene, pad=4)
         for name, look in (("error", _ERROR), ("width", _WIDTH)):
             axes.plot(*zip(*lines[name], strict=True), gid=name, **look)
-    draw_legend(figure, entries, "", None)
     return figure

@@ -11,14 +11,11 @@ from functools import partial
 from math import log10
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.publish.pictures import panels as at
-from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
-from taylor_verify.publish.pictures.legend import draw_legend, foot_of
-from taylor_verify.publish.pictures.log_axes import number_axes
+from taylor_verify.publish.pictures.log_axes import number_axes, widened
 from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.panels import Frame, width_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_line
+from taylor_verify.publish.pictures.sheet import sheet
+from taylor_verify.publish.pictures.style import SMALL, look_of_line
 from taylor_verify.publish.pictures.wording import plain, stem_of
 from taylor_verify.studies.growth.document import Ensemble
 
@@ -79,18 +76,11 @@ def _said(label: str, run: Ensemble) -> str:
 
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
-    from matplotlib.figure import Figure
-
     labels = list(next(iter(lines.values())))
     looks = {label: look_of_line(i) for i, label in enumerate(labels)}
-    entries = [(line_of(looks[label]), label) for label in labels]
-    foot = foot_of(entries, _NOTE)
-    width, low = width_of(len(PANELS)), foot + at.BELOW
-    height = low + at.HEIGHT + at.HEADING
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
-    for i, (quantity, heading, powers) in enumerate(PANELS):
-        left = at.LEFT + i * (width + at.LEFT + at.RIGHT)
-        axes = add_axes(figure, Frame(left, low, width, at.HEIGHT))
+    entries = [(looks[label].line, label) for label in labels]
+    figure, places = sheet(len(PANELS), entries, _NOTE)
+    for axes, (quantity, heading, powers) in zip(places, PANELS, strict=True):
         drawn = {label: points for label, points in lines[quantity].items() if points}
         axes.set(xscale="log", yscale="log", xlabel="periods", ylabel=heading)
         axes.set_title("conserved quantity" if quantity != "phase" else "phase", pad=4)
@@ -104,8 +94,7 @@ def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:
             for power, name in powers:
                 _draw_power(axes, points, power, name)
         for label, points in drawn.items():
-            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **line_of(looks[label]))
-    draw_legend(figure, entries, _NOTE, None)
+            axes.plot(*zip(*points, strict=True), gid=label, zorder=3, **looks[label].line)
     return figure
 
 

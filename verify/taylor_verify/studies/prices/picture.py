@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes
-from taylor_verify.publish.pictures.legend import draw_legend
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio, check
+from taylor_verify.publish.pictures.sheet import Frame, add_axes, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, look_of_rung
 from taylor_verify.publish.pictures.wording import stem_of, times
 
@@ -47,10 +45,8 @@ def picture(scene: str, yardstick: str, found: Sequence[Ratio]) -> Picture:
 
 
 def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
-    from matplotlib.figure import Figure
-
     height = _ABOVE + _BAR * len(found) + _BELOW + _FOOT
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    figure = blank(height)
     left = min(0.25 + _LETTER * max(len(_name(one)) for one in found), _WIDEST)
     axes = add_axes(
         figure, Frame(left, _BELOW + _FOOT, PAGE_WIDTH - left - _RIGHT, _BAR * len(found))
@@ -58,7 +54,7 @@ def _figure(found: Sequence[Ratio], yardstick: str) -> Figure:
     _draw_bars(axes, found)
     axes.set(xlabel=f"time, as a multiple of that of {yardstick}")
     if any(one.least < one.greatest for one in found):
-        draw_legend(figure, [(dict(_RANGE), "least to greatest seen")], "", None)
+        draw_legend(figure, [(dict(_RANGE), "least to greatest seen")])
     return figure
 
 

@@ -12,10 +12,9 @@ from functools import partial
 from math import floor, log10
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes
 from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET, contrast
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Frame, add_axes, blank
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
 from taylor_verify.publish.pictures.wording import power_of_ten
 from taylor_verify.studies.reach.document import ReachFamily, ReachRow
@@ -140,11 +139,9 @@ def _periods(count: int) -> str:
 
 
 def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
-    from matplotlib.figure import Figure
-
     heights = [_CELL * len(one.periods) for one in maps]
     height = _TOP + sum(heights) + _GAP * (len(maps) - 1) + _BELOW + _LEGEND
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    figure = blank(height)
     width = (PAGE_WIDTH - _LEFT - _BETWEEN - _RIGHT) / 2
     top = height - _TOP
     for one, own in zip(maps, heights, strict=True):

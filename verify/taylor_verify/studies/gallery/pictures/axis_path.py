@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures.legend import Entry, draw_legend
 from taylor_verify.publish.pictures.palette import INK, PAPER
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry, Frame, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
 from taylor_verify.publish.pictures.wording import stem_of
 from taylor_verify.studies.gallery.pictures.solids import (
@@ -116,9 +115,8 @@ def picture(portrait: Document) -> Picture:
 
 def _figure(found: Series) -> Figure:
     from matplotlib.colors import Normalize
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
+    figure = blank(_HEIGHT)
     view = View.facing([float(v) for v in _middle(found)])
     axes = stage(figure, Frame(0.0, 0.0, _STAGE, _HEIGHT), reach(_SPHERE, view))
     draw_surface(axes, _SPHERE, view)

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures.legend import Entry, draw_legend
 from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry, Frame, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
 from taylor_verify.publish.pictures.wording import stem_of
 from taylor_verify.studies.gallery.pictures.axis_path import axis_of
@@ -116,9 +115,8 @@ def _told(point: Numbers) -> str:
 
 def _figure(found: Series) -> Figure:
     from matplotlib.colors import Normalize
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
+    figure = blank(_HEIGHT)
     view = _view(found.path)
     box = _Box.of(found.path, view)
     axes = stage(figure, Frame(0.0, 0.0, _STAGE, _HEIGHT), view.seen(box.corners), _BELOW)

@@ -15,12 +15,11 @@ from itertools import accumulate
 from math import exp, isfinite, log
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes, frames_of, free_place, line_of, widened
-from taylor_verify.publish.pictures.legend import draw_legend, foot_of
-from taylor_verify.publish.pictures.log_axes import number_axes
+from taylor_verify.publish.pictures.log_axes import number_axes, widened
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_rung
+from taylor_verify.publish.pictures.sheet import sheet
+from taylor_verify.publish.pictures.style import look_of_rung
 from taylor_verify.publish.pictures.wording import plain, stem_of
 from taylor_verify.records.precisions import place_of_rung
 
@@ -109,17 +108,13 @@ def panels_of(found: Mapping[str, Mapping[str, Points]]) -> list[Panel]:
 
 
 def _figure(panels: Sequence[Panel]) -> Figure:
-    from matplotlib.figure import Figure
-
     rungs = sorted({rung for panel in panels for rung in panel.lines}, key=place_of_rung)
-    entries = [(line_of(look_of_rung(rung)), rung) for rung in rungs]
+    entries = [(look_of_rung(rung).line, rung) for rung in rungs]
     powers = dict.fromkeys(panel.words for panel in panels if panel.power)
     entries += [(dict(_POWER), " and ".join(powers))] if powers else []
-    frames, height = frames_of([0] * len(panels), foot_of(entries, _NOTE))
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
-    for frame, panel in zip(frames, panels, strict=True):
-        _draw(add_axes(figure, frame), panel)
-    draw_legend(figure, entries, _NOTE, free_place(frames))
+    figure, places = sheet(len(panels), entries, _NOTE)
+    for axes, panel in zip(places, panels, strict=True):
+        _draw(axes, panel)
     return figure
 
 
@@ -136,7 +131,7 @@ def _draw(axes: Axes, panel: Panel) -> None:
     if panel.power:
         draw_power(axes, everything, panel.power)
     for rung, points in lines.items():
-        look = {**line_of(look_of_rung(rung)), "markevery": _marked(points)}
+        look = {**look_of_rung(rung).line, "markevery": _marked(points)}
         axes.plot(*zip(*points, strict=True), gid=rung, zorder=3, alpha=0.9, **look)
 
 

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures.legend import Entry, draw_legend
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
+from taylor_verify.publish.pictures.sheet import Entry, Frame, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH
 from taylor_verify.publish.pictures.wording import plain, stem_of
 from taylor_verify.studies.gallery.pictures.solids import (
@@ -145,9 +144,7 @@ def _view(found: Series) -> View:
 
 
 def _figure(found: Series, rung: str) -> Figure:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
+    figure = blank(_HEIGHT)
     surface, view = Ellipsoid(found.semi_axes), _view(found)
     axes = stage(figure, Frame(0.0, 0.0, _STAGE, _HEIGHT), reach(surface, view))
     draw_surface(axes, surface, view)

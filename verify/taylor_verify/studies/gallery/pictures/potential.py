@@ -13,13 +13,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures import panels as at
-from taylor_verify.publish.pictures.diagram import add_axes
-from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import Frame, width_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL
+from taylor_verify.publish.pictures.sheet import Entry, sheet
+from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.publish.pictures.wording import stem_of
 from taylor_verify.studies.gallery.pictures.view import Numbers
 
@@ -39,7 +36,6 @@ _LEAST: Final = 0.25
 _ABOVE: Final = 1.35
 _BELOW: Final = 0.75
 _HEIGHT: Final = 1.75
-_ABREAST: Final = 2
 
 
 @dataclass(frozen=True)
@@ -106,21 +102,9 @@ _MULTIPLE: Final = {2: " (double)", 3: " (triple)", 4: " (fourfold)"}
 
 
 def _figure(found: Sequence[Series]) -> Figure:
-    from matplotlib.figure import Figure
-
-    entries = _entries(found)
-    across = min(_ABREAST, len(found))
-    rows = -(-len(found) // across)
-    foot, width = foot_of(entries, ""), width_of(len(found))
-    step = at.HEADING + _HEIGHT + at.BELOW
-    figure = Figure(figsize=(PAGE_WIDTH, foot + rows * step), dpi=72)
-    for i, one in enumerate(found):
-        row, column = divmod(i, across)
-        left = at.LEFT + column * (width + at.LEFT + at.RIGHT)
-        low = foot + (rows - 1 - row) * step + at.BELOW
-        axes = add_axes(figure, Frame(left, low, width, _HEIGHT))
+    figure, places = sheet(len(found), _entries(found), height=_HEIGHT)
+    for axes, one in zip(places, found, strict=True):
         _draw(axes, one)
-    draw_legend(figure, entries, "", None)
     return figure
 
 

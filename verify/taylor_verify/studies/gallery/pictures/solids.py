@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.publish.pictures.diagram import add_axes
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET
-from taylor_verify.publish.pictures.panels import Frame
+from taylor_verify.publish.pictures.sheet import Frame, add_axes
 from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.studies.gallery.pictures.view import Ellipsoid, Numbers, View, pieces
 

@@ -7,21 +7,20 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.diagram import (
-    Diagram,
-    add_axes,
-    draw_series,
-    frames_of,
-    free_place,
-    names_of,
-)
-from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
+from taylor_verify.publish.pictures.labels import write_names
 from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.panels import Panel, panels_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.series import Series, requests_tolerance, series_of
-from taylor_verify.publish.pictures.style import PAGE_WIDTH
-from taylor_verify.publish.pictures.wording import names, stem_of
+from taylor_verify.publish.pictures.sheet import Entry, sheet
+from taylor_verify.publish.pictures.wording import stem_of
+from taylor_verify.studies.tradeoff.pictures.diagram import Diagram, draw_series, names_of
+from taylor_verify.studies.tradeoff.pictures.series import (
+    Panel,
+    Series,
+    panels_of,
+    requests_tolerance,
+    series_of,
+)
+from taylor_verify.studies.tradeoff.pictures.wording import names
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,15 +58,10 @@ def _typical(series: Sequence[Series]) -> str:
 
 
 def _figure(panels: Sequence[Panel]) -> Figure:
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
-    from taylor_verify.publish.pictures.labels import write_names
-
-    frames, height = frames_of([0] * len(panels), foot_of(_LEGEND, ""))
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
-    for panel, frame in zip(panels, frames, strict=True):
-        axes = add_axes(figure, frame)
+    figure, places = sheet(len(panels), _LEGEND)
+    for panel, axes in zip(panels, places, strict=True):
         most_x, most_y = _most(panel, _X), _most(panel, _Y)
         axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -83,7 +77,6 @@ def _figure(panels: Sequence[Panel]) -> Figure:
         for one in panel.drawn:
             draw_series(axes, one, Diagram(_X, _Y))
         write_names(axes, names_of(panel, _X, _Y), [diagonal])
-    draw_legend(figure, _LEGEND, "", free_place(frames))
     return figure
 
 

@@ -10,18 +10,16 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, Final
 
-from taylor_verify.publish.pictures.diagram import Diagram, figure_of
-from taylor_verify.publish.pictures.panels import panels_of
 from taylor_verify.publish.pictures.picture import Picture
-from taylor_verify.publish.pictures.series import front_of, series_of
-from taylor_verify.publish.pictures.wording import (
+from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.studies.tradeoff.pictures.diagram import Diagram, figure_of
+from taylor_verify.studies.tradeoff.pictures.series import front_of, panels_of, series_of
+from taylor_verify.studies.tradeoff.pictures.wording import (
     error_name,
     fallen,
     floors_of,
     label_of,
     names,
-    plain,
-    stem_of,
 )
 
 AXES: Final = {

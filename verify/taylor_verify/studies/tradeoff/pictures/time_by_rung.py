@@ -10,13 +10,12 @@ from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.publish.pictures.diagram import add_axes, line_of, widened
-from taylor_verify.publish.pictures.legend import draw_legend
-from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.labels import Named, write_names
+from taylor_verify.publish.pictures.log_axes import widened
 from taylor_verify.publish.pictures.palette import QUIET
-from taylor_verify.publish.pictures.panels import Frame
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio, check
+from taylor_verify.publish.pictures.sheet import Frame, add_axes, blank, draw_legend
 from taylor_verify.publish.pictures.style import PAGE_WIDTH, look_of_line
 from taylor_verify.publish.pictures.wording import stem_of, times
 from taylor_verify.records.precisions import bits_of, place_of_rung
@@ -65,11 +64,7 @@ def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
 
 
 def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
-    from matplotlib.figure import Figure
-
-    from taylor_verify.publish.pictures.labels import write_names
-
-    figure = Figure(figsize=(PAGE_WIDTH, _HEIGHT), dpi=72)
+    figure = blank(_HEIGHT)
     axes = add_axes(figure, _FRAME)
     looks = {label: look_of_line(i) for i, label in enumerate(lines)}
     found = [one for line in lines.values() for one in line]
@@ -100,7 +95,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
             [one.ratio for one in line],
             gid=label,
             zorder=3,
-            **line_of(look),
+            **look.line,
         )
     named = [
         Named(label, looks[label].colour, [[(bits_of(r.rung), r.ratio) for r in line]])
@@ -109,7 +104,7 @@ def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
     write_names(axes, named)
     if any(one.least < one.greatest for one in found):
         bar = {"color": QUIET, "linewidth": 0.6, "marker": "|", "markersize": 6}
-        draw_legend(figure, [(bar, "least to greatest seen")], "", None)
+        draw_legend(figure, [(bar, "least to greatest seen")])
     return figure
 
 

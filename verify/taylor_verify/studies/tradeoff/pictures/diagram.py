@@ -8,24 +8,29 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import log10
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures import panels as at
-from taylor_verify.publish.pictures.legend import Entry, draw_legend, foot_of
-from taylor_verify.publish.pictures.log_axes import number_axes
-from taylor_verify.publish.pictures.named import Named
+from taylor_verify.publish.pictures.labels import Named, write_names
+from taylor_verify.publish.pictures.log_axes import Limits, number_axes, widened
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
-from taylor_verify.publish.pictures.panels import Frame, Panel, columns, width_of
-from taylor_verify.publish.pictures.series import Row, Series, amount, front_of
-from taylor_verify.publish.pictures.style import PAGE_WIDTH, SMALL, Look
+from taylor_verify.publish.pictures.sheet import (
+    STRIP,
+    Entry,
+    Frame,
+    add_axes,
+    blank,
+    draw_legend,
+    foot_of,
+    frames_of,
+    free_place,
+)
+from taylor_verify.publish.pictures.style import SMALL, Look
 from taylor_verify.records.standing import Standing
+from taylor_verify.studies.tradeoff.pictures.series import Panel, Row, Series, amount, front_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-Limits = tuple[float, float]
 
 # Room beside the points for their names, in parts of the panel.
 _MARGIN_LEFT: Final = 0.06
@@ -39,8 +44,6 @@ _FRONT: Final[Mapping[str, Any]] = {
     "zorder": 1,
     "gid": "front",
 }
-# An axis shows a decade at least, however close its points.
-_LEAST_DECADES: Final = 1.0
 
 
 @dataclass(frozen=True)
@@ -62,17 +65,13 @@ class Diagram:
 
 def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
     """The whole figure: the panels row by row, the meaning of the marks below."""
-    from matplotlib.figure import Figure
-
-    from taylor_verify.publish.pictures.labels import write_names
-
     strips = [_strip_rows(panel, diagram.x) for panel in panels]
     drawn = [one for panel in panels for one in panel.drawn]
     front = front_of((row for one in drawn for row in one.rows), diagram.x, diagram.y)
     exact = any(_exact_rows(one, diagram) for one in drawn)
     entries = legend_of(diagram, bool(front), exact, strips)
     frames, height = frames_of([len(rows) for rows in strips], foot_of(entries, diagram.note))
-    figure = Figure(figsize=(PAGE_WIDTH, height), dpi=72)
+    figure = blank(height)
     shared = _limits_x([p for p in panels if p.yardstick], diagram)
     for panel, rows, frame in zip(panels, strips, frames, strict=True):
         axes = add_axes(figure, frame)
@@ -95,45 +94,6 @@ def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
     return figure
 
 
-def frames_of(strips: Sequence[int], foot: float) -> tuple[list[Frame], float]:
-    """The place of each panel below its strip of so many lines, and the height of the figure.
-
-    The headings of a row are on one line: a panel with a lower strip is higher by the difference.
-    """
-    across, width = columns(len(strips)), width_of(len(strips))
-    rows = [list(strips[i : i + across]) for i in range(0, len(strips), across)]
-    heights = [at.HEADING + at.STRIP * max(row) + at.HEIGHT + at.BELOW for row in rows]
-    # A place free beside the last panel has the legend; else it is at the foot.
-    total = sum(heights) + (0.0 if _leaves_a_place(len(strips)) else foot)
-    found, top = [], total
-    for row, height in zip(rows, heights, strict=True):
-        for column, lines in enumerate(row):
-            left = at.LEFT + column * (width + at.LEFT + at.RIGHT)
-            own = at.HEIGHT + at.STRIP * (max(row) - lines)
-            found.append(Frame(left, top - height + at.BELOW, width, own))
-        top -= height
-    return found, total
-
-
-def free_place(frames: Sequence[Frame]) -> Frame | None:
-    """Beside the last panel, where it stands alone in a row of two."""
-    if not _leaves_a_place(len(frames)):
-        return None
-    last, right = frames[-1], frames[1]
-    return Frame(right.left, last.low, last.width, last.height)
-
-
-def _leaves_a_place(count: int) -> bool:
-    return count > 1 and count % 2 == 1
-
-
-def add_axes(figure: Figure, frame: Frame) -> Axes:
-    width, height = figure.get_size_inches()
-    return figure.add_axes(
-        (frame.left / width, frame.low / height, frame.width / width, frame.height / height)
-    )
-
-
 def draw_series(axes: Axes, series: Series, diagram: Diagram) -> None:
     """The lines of a family, one for each run of sound neighbours, and a bar where times spread."""
     look = series.look
@@ -147,7 +107,7 @@ def draw_series(axes: Axes, series: Series, diagram: Diagram) -> None:
             axes.errorbar(
                 x, y, xerr=beyond, fmt="none", ecolor=look.colour, elinewidth=0.5, alpha=0.6
             )
-        axes.plot(x, y, gid=series.family, zorder=_above(series), **line_of(look))
+        axes.plot(x, y, gid=series.family, zorder=_above(series), **look.line)
 
 
 def _exact_rows(series: Series, diagram: Diagram) -> list[Row]:
@@ -168,26 +128,13 @@ def _draw_exact(axes: Axes, series: Series, diagram: Diagram) -> None:
             transform=axes.get_xaxis_transform(),
             clip_on=False,
             gid="exact",
-            **{**line_of(series.look), "linestyle": "none", "marker": "v"},
+            **{**series.look.line, "linestyle": "none", "marker": "v"},
         )
 
 
 def _above(series: Series) -> float:
     """Thick lines below thin ones."""
     return 4 - series.look.width / 10
-
-
-def line_of(look: Look) -> dict[str, Any]:
-    """How matplotlib draws a look's line and its marks."""
-    return {
-        "color": look.colour,
-        "marker": look.marker,
-        "markersize": look.size,
-        "markeredgecolor": PAPER,
-        "markeredgewidth": 0.4,
-        "linewidth": look.width,
-        "linestyle": (0, look.dashes) if look.dashes else "solid",
-    }
 
 
 def names_of(panel: Panel, x: str, y: str) -> list[Named]:
@@ -244,7 +191,7 @@ def _draw_strip(
     limits: Limits,
 ) -> Axes:
     """Above the panel a line for each family with what is no answer, at the work that it took."""
-    above = Frame(frame.left, frame.low + frame.height, frame.width, at.STRIP * len(found))
+    above = Frame(frame.left, frame.low + frame.height, frame.width, STRIP * len(found))
     axes = add_axes(figure, above)
     axes.set(xscale="log", xlim=limits, ylim=(len(found) - 0.5, -0.5), yticks=[])
     axes.tick_params(which="both", bottom=False, labelbottom=False)
@@ -337,12 +284,3 @@ def _limits_y(panel: Panel, diagram: Diagram) -> Limits:
     rungs = {one.rung for one in panel.drawn if one.kind == "taylor"}
     floors = [floor for rung, floor in diagram.floors.items() if rung in rungs and floor > 0]
     return widened([*(row[diagram.y] for row in drawn), *floors], _MARGIN_LOW, _MARGIN_HIGH)
-
-
-def widened(values: Sequence[float], before: float, after: float) -> Limits:
-    """The limits of a logarithmic axis that shows these with so much room, in parts of its length."""
-    least, most = (log10(end(values)) if values else 0.0 for end in (min, max))
-    lacking = max(_LEAST_DECADES - (most - least), 0.0) / 2
-    least, most = least - lacking, most + lacking
-    length = (most - least) / (1 - before - after)
-    return 10 ** (least - before * length), 10 ** (most + after * length)
