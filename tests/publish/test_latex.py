@@ -39,7 +39,7 @@ def body(text: str) -> str:
 
 
 def read_back(written: str) -> str:
-    """What pdflatex makes of escaped ASCII: every macro its sign, every other sign itself."""
+    """Undo the escaping of ASCII as pdflatex does: every macro its sign, every other sign itself."""
     pattern = "|".join(re.escape(macro) for macro in sorted(WRITTEN, key=len, reverse=True))
     return re.sub(pattern, lambda found: WRITTEN[found[0]], written.replace("-{}-", "--"))
 
@@ -72,12 +72,12 @@ def test_a_sign_without_a_macro_is_seen_to_be_missing() -> None:
     ],
 )
 def test_words_of_a_formula_can_break(statement: str, expected: str) -> None:
-    """What a formula says in words outside every brace is words; the rest stays mathematics."""
+    """Words of a formula outside every brace become words; the rest stays mathematics."""
     assert latex_text.formula(statement) == expected
 
 
 def test_a_formula_whose_words_do_not_end_is_refused() -> None:
-    """Which one it is, is said."""
+    """The refusal names the formula."""
     with pytest.raises(ValueError, match=r"closing brace, got none @ \\text\{for"):
         latex_text.formula(r"\text{for M")
 

@@ -111,7 +111,7 @@ def test_to_name_and_to_list_makes_no_environment(script: Script, cache: Path) -
 
 
 def test_an_environment_is_made_once(script: Script) -> None:
-    """What is there is not made again, by whichever of its names it is asked for."""
+    """An environment that is there is not made again, by whichever of its names it is asked for."""
     script()
     said: list[str] = []
     prepare("tiny-still", said.append)

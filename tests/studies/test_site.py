@@ -185,7 +185,7 @@ def test_what_a_page_takes_from_another_is_there(
 
 
 def test_exact_values_are_a_trajectory(report: Path, tmp_path: Path) -> None:
-    """What is copied from a page is a file that `check` reads: every digit of it is the portrait's."""
+    """Values copied from a page are a file that `check` reads, with every digit of the portrait."""
     found = Report(report)
     scene = "kirchhoff/whole-motion"
     prose = Prose(Links(report, {}, {scene: place_of(scene)}))
