@@ -139,7 +139,7 @@ def compare_routes(name: str) -> None:
 
 
 def many_times(name: str) -> None:
-    """From nothing; the set-up, with the first time, is also measured by itself."""
+    """The whole time, and that of the set-up with the first time alone."""
     scene, times = tracking_all(name), instants(MANY_TIMES)
 
     def from_nothing() -> object:
@@ -273,7 +273,7 @@ def line(name: str, *cells: str) -> str:
 
 
 def processor() -> str:
-    """As the kernel names it, where it does."""
+    """The processor's name as the kernel has it; empty where there is none."""
     listing = Path("/proc/cpuinfo")
     for entry in listing.read_text().splitlines() if listing.exists() else []:
         if entry.startswith("model name"):

@@ -173,7 +173,7 @@ def test_a_call_that_says_two_things_is_refused(wrong: dict[str, Any]) -> None:
     ],
 )
 def test_an_argument_of_a_wrong_kind_is_refused(wrong: dict[str, Any], sentence: str) -> None:
-    """One sentence each, all of them at once, before anything runs."""
+    """All faults are named at once, in one sentence each, before anything runs."""
     with pytest.raises(ValueError, match=sentence):
         taylor_verify.run_many(**{"scenes": ["euler/rest"], **wrong})
 

@@ -171,7 +171,7 @@ def test_an_error_of_the_executor_names_the_work(at_once: bool) -> None:
 
 
 def test_an_error_of_the_work_is_no_error_of_the_executor() -> None:
-    """What the work says it raises is raised as it is."""
+    """An exception of the work is raised as it is."""
 
     def work(one: int) -> int:
         raise Failed(f"{one} is broken")

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
-from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
@@ -62,10 +61,3 @@ def _turned(q: Array, angle: Array) -> Array:
     s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
     turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + np.cross(q[1:], v))]
     return np.array(turned) / np.linalg.norm(turned)
-
-
-def in_space_axes(columns: Columns) -> Columns:
-    """omega as most engines have it, by the engine's own attitude."""
-    R = rotations(np.array([columns[name] for name in QUATERNION]).T)
-    w = np.array([columns[name] for name in VECTORS["omega"]]).T
-    return columns | named(VECTORS["omega"], (R @ w[:, :, None])[:, :, 0])

@@ -119,7 +119,7 @@ def links_lead_somewhere(folder: Path, rendered: Mapping[str, str]) -> None:
 
 
 def compiled(folder: Path, name: str, out: Path) -> str:
-    """What pdflatex says the second time, when the contents of a paper are known."""
+    """The output of pdflatex's second run, when the contents of a paper are known."""
     program = shutil.which("pdflatex")
     if program is None:
         pytest.skip("there is no pdflatex on this machine")

@@ -231,7 +231,7 @@ def with_rates(message: Any, columns: Columns, frame: str = "SC_BODY_1") -> Any:
 
 
 def write_aem(file: Path, message: Any) -> None:
-    """As text (KVN), or as XML by the name of the file."""
+    """Write a message as text (KVN), or as XML by the name of the file."""
     form = mapping.NDMFileFormats.XML if file.suffix == ".xml" else mapping.NDMFileFormats.KVN
     ndm_io.NdmIo().to_file(message, form, file)
 

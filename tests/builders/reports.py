@@ -7,18 +7,23 @@ from __future__ import annotations
 
 import atexit
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from itertools import product
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Final
+from types import SimpleNamespace
+from typing import Any, Final
+
+import pytest
 
 from builders.studies.claims import STUDY
 from builders.studies.extremes import study as extremes_study
 from builders.studies.reach import study as reach_study
 from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
 from builders.studies.worst import worst_of
+from builders.verdicts import row
+from taylor_verify.batch.job import Job
 from taylor_verify.controls.defects import DEFECTS
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
@@ -70,6 +75,23 @@ def write_runs(place: Path, runs: Iterable[tuple[str, str]]) -> None:
     verdicts = [verdict for result in results for verdict in result.verdicts]
     records = [result.record for result in results if result.record is not None]
     report.write(place, verdicts, records)
+
+
+def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[str, float]) -> None:
+    """Write rows of two scenes, and have each run make just these rows again."""
+    made = [
+        row(**errors, scene=scene, quantity=quantity)
+        for scene in ("euler/generic", "euler/full-tensor")
+        for quantity in ("omega", "T", "H2")
+    ]
+    report.write(place, made, [])
+
+    def judged(jobs: list[Job], *_: Any) -> list[Any]:
+        scenes = {job.name for job in jobs}
+        rows = tuple(verdict for verdict in made if verdict.scene in scenes)
+        return [SimpleNamespace(verdicts=rows, record=None, costs={}, causes=())]
+
+    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
 
 
 def write_portraits(place: Path, scenes: Iterable[str]) -> None:

@@ -11,7 +11,10 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+import taylor_verify
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.velocities import angular_velocity
 from taylor_verify.models.problem import adopt
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -20,6 +23,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 Columns = dict[str, list[float]]
+Sound = Mapping[str, Sequence[float]]
 VECTORS = {
     "omega": ("w1", "w2", "w3"),
     "linear_impulse": ("x1", "x2", "x3"),
@@ -87,3 +91,34 @@ def write_csv(
     lines += [",".join(map(text, row)) for row in zip(*columns.values(), strict=True)]
     path.write_text("\n".join(lines) + "\n")
     return str(path)
+
+
+def file_judgement(file: str, scene: str | Scene, **options: Any) -> FileJudgement:
+    """The judgement of one file."""
+    found = taylor_verify.check(scene, file, **options)
+    assert isinstance(found, FileJudgement)
+    return found
+
+
+# Sound columns, and what a file of another convention would have.
+
+
+def replaced(sound: Sound, names: Sequence[str], rows: object) -> Columns:
+    """The columns with these rows in place of those of the names."""
+    return {**{k: list(v) for k, v in sound.items()}, **named(names, rows)}
+
+
+def scalar_last(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, np.roll(rows_of(sound, QUATERNION), -1, axis=1))
+
+
+def conjugate(sound: Sound) -> Columns:
+    return replaced(sound, QUATERNION, rows_of(sound, QUATERNION) * [1, -1, -1, -1])
+
+
+def in_space_axes(sound: Sound) -> Columns:
+    """omega as most engines have it, by the attitude of the columns."""
+    R = rotations(rows_of(sound, QUATERNION))
+    return replaced(
+        sound, VECTORS["omega"], (R @ rows_of(sound, VECTORS["omega"])[:, :, None])[:, :, 0]
+    )

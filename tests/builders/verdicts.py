@@ -125,3 +125,8 @@ RECORD = Record(
     times=(0.0, 0.1),
     gates=(GateRecord("omega", "max|omega|", (0.0, math.nan), (1e-300, math.inf), 5e-324),),
 )
+
+
+def by_quantity(found: Any) -> dict[str, Verdict]:
+    """The verdicts of a judgement by their quantities."""
+    return {verdict.quantity: verdict for verdict in found.verdicts}

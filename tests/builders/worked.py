@@ -109,7 +109,7 @@ def compare(shown: str, found: str, numbers: Numbers = Numbers.AS_PRINTED) -> No
 
 
 def _matches(expected: Sequence[str], got: Sequence[str], numbers: Numbers) -> bool:
-    """Whether the tokens agree; a gap in ``expected`` takes as few as it can, then more."""
+    """Return True if the tokens agree; a gap in ``expected`` takes as few as it can, then more."""
     i = j = 0
     gap: tuple[int, int] | None = None
     while j < len(got):

@@ -11,7 +11,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import scene_file
 from builders.verdicts import row
 
 from taylor_verify.batch.comparison import Earlier, compare_with_baseline
@@ -79,7 +79,7 @@ def test_a_part_that_the_caller_accepts_and_a_missing_format_count_for_nothing()
 
 
 def test_a_new_row_counts_if_it_fails() -> None:
-    """Nothing says that it is no worse; one that passes needs no baseline."""
+    """A new row that fails is a regression; one that passes needs no baseline."""
     assert status_alone([ordinary()], [ordinary(), row(quantity="T")]) == 0
     assert status_alone([ordinary()], [ordinary(), ordinary(quantity="T")]) == 3
 
@@ -103,7 +103,7 @@ def elements(text: str) -> list[str]:
 
 
 def test_a_row_beyond_its_bound_is_green_for_a_ci_and_a_regression_is_red() -> None:
-    """In JUnit and in the annotations; a missing number format stays skipped."""
+    """JUnit and annotations are green for the row and red for the regression; a skip stays one."""
     rows = [ordinary(), ordinary(quantity="T"), row(rung="f80", verdict=Status.UNAVAILABLE)]
     grew = Remark("euler/generic", "taylor", "", "f64", "T", Status.FAIL, "regression: grew")
     doubt = grew._replace(status=Status.UNDECIDED, text="not comparable: another text")
@@ -131,8 +131,7 @@ COARSE = "scipy:RK45?rtol={}"
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.chdir(tmp_path)
-    Path("short.toml").write_text(THREE_INSTANTS, encoding="utf-8")
-    return "short.toml"
+    return str(scene_file(Path()))
 
 
 def test_run_is_decided_by_the_baseline_in_both_directions(scene: str, capsys: Captured) -> None:
@@ -223,7 +222,7 @@ def test_a_file_is_compared_with_the_one_file_of_a_baseline(scene: str, capsys: 
 
 
 def test_of_several_files_the_one_with_the_same_name_counts(scene: str, capsys: Captured) -> None:
-    """One that is not among them is compared with none, and the names are said."""
+    """A file that is not among the baselines is compared with none, and the names are said."""
     rows = []
     for name in ("monday.csv", "tuesday.csv"):
         write_answer(name, 1.0)

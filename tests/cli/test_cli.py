@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import LISTED_INSTANTS
+from builders.scenes import LISTED_INSTANTS, scene_file
 from mpmath import mp
 
 import taylor_verify
@@ -44,9 +44,7 @@ Captured = pytest.CaptureFixture[str]
 @pytest.fixture
 def short(tmp_path: Path) -> Path:
     """A scene file that is judged in a moment."""
-    file = tmp_path / "short.toml"
-    file.write_text(LISTED_INSTANTS)
-    return file
+    return scene_file(tmp_path, LISTED_INSTANTS)
 
 
 def command(*arguments: str) -> list[str]:
@@ -178,7 +176,7 @@ def test_rungs_and_scenes_stand_in_any_order(
 def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
     capsys: Captured, short: Path
 ) -> None:
-    """By name and by path one scene is two; a scene named twice is run once."""
+    """A scene by name and by path is two scenes; a scene named twice is run once."""
     scenes = ["euler/separatrix", str(short), str(library.find("euler/separatrix"))]
     assert main(["run", scenes[0], "--json", *scenes[1:], scenes[0]]) == 0
     out, error = capsys.readouterr()
@@ -237,7 +235,7 @@ def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
 def test_the_exit_status_is_that_of_the_gravest_verdict(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path, status: str, code: int
 ) -> None:
-    """One such verdict among passes decides."""
+    """A single grave verdict among passes decides."""
     from dataclasses import replace
 
     found = taylor_verify.run(str(short))
@@ -293,7 +291,7 @@ def test_names_are_shown_as_they_are(capsys: Captured, tmp_path: Path) -> None:
 def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
     monkeypatch: pytest.MonkeyPatch, capfd: Captured
 ) -> None:
-    """What is printed during the work, by Python or below it, goes to stderr."""
+    """Text that is printed during the work, by Python or below it, goes to stderr."""
 
     def noisy(*_: Any) -> list[Any]:
         os.write(1, b"noise from below\n")
@@ -425,7 +423,7 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
 
 
 def test_the_cost_counts_each_operation_once() -> None:
-    """Of a' = (a k) b - a k and b' = (a k) b / b, a k and (a k) b are formed once."""
+    """Shared products are formed once: a k and (a k) b of a' = (a k) b - a k and b' = (a k) b / b."""
 
     def equations(n: Any) -> dict[str, Any]:
         a, b, k = n["a"], n["b"], n["k"]

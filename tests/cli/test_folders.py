@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import scene_file
 
 from taylor_verify.batch.lock import LOCK, Occupied, alone_in
 from taylor_verify.cli import main
@@ -22,9 +22,7 @@ Captured = pytest.CaptureFixture[str]
 
 @pytest.fixture
 def short(tmp_path: Path) -> Path:
-    file = tmp_path / "short.toml"
-    file.write_text(THREE_INSTANTS)
-    return file
+    return scene_file(tmp_path)
 
 
 # The lock.

@@ -77,7 +77,7 @@ def test_json_holds_no_control_character(steering_scene: Path, capsys: Captured)
 
 
 def test_words_of_the_call_are_escaped_when_repeated(capsys: Captured) -> None:
-    """What argparse says of a word that it does not know is harmless too."""
+    """The message of argparse on a word that it does not know is harmless too."""
     with pytest.raises(SystemExit):
         main(["run", "euler/generic", "--bogus", STEERING])
     assert not CONTROL.search(printed(capsys))
@@ -115,7 +115,7 @@ def test_text_without_control_characters_is_left_alone() -> None:
 
 @pytest.mark.slow
 def test_a_terminal_gets_styles_and_no_commands(steering_scene: Path) -> None:
-    """On a terminal of its own the answer has colours, and no control sequence beside them."""
+    """The answer has colours on a terminal of its own, and no control sequence beside them."""
     leader, follower = pty.openpty()
     ended = run(
         [sys.executable, "-m", "taylor_verify", "explain", str(steering_scene)],

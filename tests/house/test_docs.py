@@ -77,10 +77,12 @@ def test_every_page_is_found_from_the_first() -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.relative_to(ROOT).as_posix()
+    "page",
+    [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "README.md"],
+    ids=lambda page: page.relative_to(ROOT).as_posix(),
 )
 def test_every_file_that_is_linked_exists(page: Path) -> None:
-    """No link of a page leads nowhere in the checkout."""
+    """Every link and picture of a page leads to a file of the checkout."""
     links = re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text(encoding="utf-8"))
     included = re.findall(r"^```\{include\} (\S+)", page.read_text(encoding="utf-8"), re.MULTILINE)
     links += included
@@ -93,7 +95,7 @@ def test_every_file_that_is_linked_exists(page: Path) -> None:
     ids=lambda page: page.relative_to(ROOT).as_posix(),
 )
 def test_every_path_that_is_named_exists(page: Path) -> None:
-    """What is marked as a file or folder of the checkout is one; a capital NAME stands for any."""
+    """Every path that is marked as one of the checkout is there; a capital NAME stands for any."""
     marked = re.findall(
         r"`((?:verify|tests|cases|reports|docs)/[\w./-]+)`", page.read_text(encoding="utf-8")
     )
@@ -197,7 +199,13 @@ def test_every_kind_of_solver_is_documented() -> None:
 
 
 COMMANDS = [
-    line for line in text_of("command-line.md").splitlines() if line.startswith("taylor-verify ")
+    line
+    for page in (DOCS / "command-line.md", ROOT / "README.md")
+    for block in re.findall(
+        r"^```\w*\n(.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL
+    )
+    for line in block.splitlines()
+    if line.startswith("taylor-verify ")
 ]
 
 

@@ -86,7 +86,7 @@ WALLS: Final = {
 
 
 def within(name: str, *roots: str) -> bool:
-    """Whether a dotted name is one of these modules or something inside one."""
+    """Return True if a dotted name is one of these modules or something inside one."""
     return any(name == root or name.startswith(f"{root}.") for root in roots)
 
 
@@ -168,7 +168,7 @@ def stands_in_its_own_environment(module: str, source: str) -> Iterator[str]:
 def _beyond(
     allowed: list[str], module: str, source: str, for_types: Iterable[str] = ()
 ) -> Iterator[str]:
-    """What a module imports of taylor_verify beyond these; type hints may use ``for_types`` too."""
+    """Yield the imports of taylor_verify beyond these; type hints may use ``for_types`` too."""
     for target, line, for_types_only in imports(source):
         readable = [*allowed, *for_types] if for_types_only else allowed
         if within(target, "taylor_verify") and not within(target, *readable):
@@ -212,7 +212,7 @@ def imports_heyoka_late(module: str, source: str) -> Iterator[str]:
 
 
 def _imports_on_loading(node: ast.AST) -> Iterator[tuple[str, int]]:
-    """What is imported outside every function, class bodies and conditions included."""
+    """Yield the imports outside every function, class bodies and conditions included."""
     for target in _imported(node):
         yield target, node.lineno
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
@@ -291,7 +291,7 @@ RULES: Final = (
 
 
 def import_graph(sources: Sources) -> dict[str, set[str]]:
-    """Which modules each module imports when it runs, function bodies included."""
+    """Return the modules that each module imports when it runs, function bodies included."""
     return {
         module: {
             owner
@@ -310,7 +310,7 @@ def _owner(target: str, sources: Iterable[str]) -> str | None:
 
 
 def circle(sources: Sources) -> list[str]:
-    """One circle of imports, from a module back to itself; empty where there is none."""
+    """Return a circle of imports, from a module back to itself; empty where there is none."""
     try:
         graphlib.TopologicalSorter(import_graph(sources)).prepare()
     except graphlib.CycleError as error:
@@ -367,7 +367,7 @@ def test_no_import_circle() -> None:
 
 
 def test_no_detour_round_a_wall() -> None:
-    """What exact, models and solvers import does not lead to a forbidden room either."""
+    """No import of exact, models and solvers leads to a forbidden room by way of another."""
     assert list(detours(TREE)) == []
 
 

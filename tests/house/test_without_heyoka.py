@@ -117,7 +117,7 @@ def test_the_plugin_advises_to_install_it(tmp_path: Path) -> None:
 
 
 def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
-    """One that cannot be imported is named with the reason, and the same command mends it."""
+    """A broken heyoka is named with the reason, and the same command mends it."""
     (tmp_path / "heyoka.py").write_text("raise ImportError('no libLLVM')\n")
     done = lacking(tmp_path, (), "-m", "taylor_verify", "run", "euler/rest")
     assert done.returncode == 2
@@ -127,7 +127,7 @@ def test_a_broken_heyoka_is_told_from_a_missing_one(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", [study.name for study in STUDIES if study.needs_heyoka])
 def test_nothing_is_published_without_heyoka(name: str, tmp_path: Path) -> None:
-    """What was measured with it stays as it is: exit status 2, one sentence, and no file."""
+    """Measurements stay as they are: exit status 2, one sentence, and no file."""
     script = (
         "import sys\nfrom pathlib import Path\nfrom taylor_verify.cli import folders, main\n"
         "folders._checkout = lambda place: place\n"
@@ -141,7 +141,7 @@ def test_nothing_is_published_without_heyoka(name: str, tmp_path: Path) -> None:
 
 
 def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
-    """What is measured with heyoka alone is exit status 2 with the same sentence, and no traceback."""
+    """A verb that measures heyoka ends with exit status 2 and the same sentence, without a traceback."""
     script = (
         "import sys\nfrom taylor_verify import cli\n"
         "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"

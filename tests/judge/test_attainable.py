@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.numbers import rationals
 from builders.scenes import CLEBSCH, TENSOR, spun, vector
 from builders.scenes import LOADED as SOLID
 from hypothesis import given
 from hypothesis import strategies as st
-from mpmath import libmp, mp
+from mpmath import mp
 
 from taylor_verify.exact.conditioning import condition
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
@@ -146,16 +147,10 @@ TINY = Fraction(1, 10**20)
 
 
 def _state(asked: Scene, here: Motion) -> tuple[Vector, Vector]:
-    rows = {name: _rational(values[0]) for name, values in here.quantities.items()}
+    rows = {name: rationals(values[0]) for name, values in here.quantities.items()}
     if "omega" in rows:
         return tensors.apply(asked.body.inertia, rows["omega"]), ()
     return rows["linear_impulse"] + rows["angular_impulse"], rows["centre"]
-
-
-def _rational(values: Array) -> Vector:
-    return tuple(
-        Fraction(*(int(part) for part in libmp.to_rational(value._mpf_))) for value in values.flat
-    )
 
 
 def _started(asked: Scene, momenta: Vector) -> Scene:

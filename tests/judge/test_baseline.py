@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders import reports
 from builders.verdicts import ATTAINABLE, row
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
 from taylor_verify.judge.baseline import hold, load
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
@@ -115,7 +115,7 @@ def test_more_steps_excuse_no_error() -> None:
 
 
 def test_another_time_of_the_maximum_is_allowed_for() -> None:
-    """Where the maximum is later, what is attainable there counts."""
+    """A later maximum is compared with what is attainable at its own time."""
     later = row(40, at=99.0, attainable=10 * ATTAINABLE, bound=100 * ATTAINABLE, ratio=4.0)
     assert regressions([row()], [later]) == []
 
@@ -127,7 +127,7 @@ JUDGED = [status for status in Status if status is not Status.UNAVAILABLE]
 
 @pytest.mark.parametrize(("was", "now"), [*product(JUDGED, JUDGED)])
 def test_a_verdict_regresses_by_the_grades_of_the_exit_status(was: Status, now: Status) -> None:
-    """From pass to nothing shown, and from either to fail, is worse; nothing else is."""
+    """A change from pass to nothing shown, or from either to fail, is worse; no other is."""
     grades = {0: "pass", 3: "nothing shown", 1: "fail"}
     order = list(grades)
     before, after = row(verdict=was), row(verdict=now)
@@ -236,7 +236,7 @@ def test_a_row_that_is_none_is_refused_by_its_place(
 
 @pytest.mark.parametrize("text", ["{", "[]", "1", "{}", '{"verdicts": {}}', '{"verdicts": [1]}'])
 def test_a_document_of_something_else_is_refused(tmp_path: Path, text: str) -> None:
-    """What holds no verdicts is no baseline."""
+    """A document without verdicts is refused as a baseline."""
     file = tmp_path / "other.json"
     file.write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=r"other\.json"):
@@ -249,19 +249,7 @@ def test_a_document_of_something_else_is_refused(tmp_path: Path, text: str) -> N
 @pytest.fixture
 def baseline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A baseline of two scenes, and a run that makes just these rows again."""
-    made = [
-        row(6.0, scene=scene, quantity=quantity)
-        for scene in ("euler/generic", "euler/full-tensor")
-        for quantity in ("omega", "T", "H2")
-    ]
-    write(tmp_path, made, [])
-
-    def judged(jobs: list[Job], *_: Any) -> list[Any]:
-        scenes = {job.name for job in jobs}
-        rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}, "causes": ()})]
-
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
+    reports.write_remade(tmp_path, monkeypatch, {"errors": 6.0})
     return tmp_path / "data" / "verdicts.json"
 
 
@@ -314,7 +302,7 @@ def test_a_baseline_of_nothing_that_was_run_is_undecided(baseline: Path, capsys:
 def test_a_baseline_excuses_no_failure(
     baseline: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    """What failed before and fails again is no regression, and exit 1 all the same."""
+    """A row that failed before and fails again is no regression, and the exit status is 1."""
     failed = row(60.0, verdict=Status.FAIL)
     monkeypatch.setattr(
         "taylor_verify.batch.judging.judge_all",

@@ -11,8 +11,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.first_order import engine, in_space_axes, none
-from builders.trajectories import QUATERNION, VECTORS, Columns, columns_at, write_csv
+from builders.first_order import engine, none
+from builders.trajectories import (
+    QUATERNION,
+    VECTORS,
+    Columns,
+    columns_at,
+    conjugate,
+    file_judgement,
+    in_space_axes,
+    scalar_last,
+    write_csv,
+)
 from builders.wrong_dynamics import (
     Array,
     Numbers,
@@ -40,9 +50,7 @@ FORCED, FLUID, LOADED = "euler/moment-oblique", "kirchhoff/general-body", "kirch
 
 
 def judged(path: Path, scene: str | Scene, columns: Columns) -> FileJudgement:
-    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
-    assert isinstance(found, FileJudgement)
-    return found
+    return file_judgement(write_csv(path / "mine.csv", columns), scene)
 
 
 def names(path: Path, scene: str | Scene, columns: Columns) -> set[str]:
@@ -225,15 +233,6 @@ def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     assert found == {name} | ({"damping left on"} if rate is damped else set())
 
 
-def conjugate(columns: Columns) -> Columns:
-    return columns | {name: [-v for v in columns[name]] for name in QUATERNION[1:]}
-
-
-def scalar_last(columns: Columns) -> Columns:
-    names = QUATERNION[1:] + QUATERNION[:1]
-    return columns | dict(zip(QUATERNION, (columns[name] for name in names), strict=True))
-
-
 @pytest.mark.parametrize(
     ("spoil", "expected"),
     [
@@ -247,13 +246,13 @@ def scalar_last(columns: Columns) -> Columns:
 def test_conventions_are_named_beside_wrong_dynamics(
     spoil: Callable[[Columns], Columns], expected: set[str], tmp_path: Path
 ) -> None:
-    """With rows so far apart that the second is wrong already, the row at the start tells the axes."""
+    """The row at the start tells the axes where the second row is wrong already."""
     columns = spoil(engine(FREE, none, 0.01, 41, 50))
     assert names(tmp_path, FREE, columns) == expected | {"no gyroscopic term"}
 
 
 def test_omega_in_space_axes_is_told_without_the_start() -> None:
-    """From an attitude of 1 the start is right in both axes: the motion back in time tells them apart."""
+    """The motion back in time tells the axes apart where the attitude at the start is 1."""
     scene = load(FREE)
     scene = replace(
         scene, initial=replace(scene.initial, attitude=(Fraction(1), *[Fraction(0)] * 3))
@@ -389,7 +388,7 @@ def test_a_geometric_method_has_no_cause(name: str) -> None:
 
 
 def test_what_passes_has_no_cause(tmp_path: Path) -> None:
-    """Nothing is named for the exact motion."""
+    """The exact motion has no cause."""
     scene = load(FREE)
     found = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
     assert found.passed
@@ -397,7 +396,7 @@ def test_what_passes_has_no_cause(tmp_path: Path) -> None:
 
 
 def test_two_rows_name_nothing() -> None:
-    """One step may agree with anything by chance."""
+    """Two rows have no cause: a single step may agree with anything by chance."""
     columns = simulated(load(FREE), damped, times=np.array([0.0, 0.5]))
     assert sentences(load(FREE), columns) == {}
 

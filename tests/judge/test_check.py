@@ -12,7 +12,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.trajectories import MATRIX, VECTORS, Columns, columns_at, exact_columns, write_csv
+from builders.trajectories import (
+    MATRIX,
+    VECTORS,
+    Columns,
+    columns_at,
+    exact_columns,
+    file_judgement,
+    write_csv,
+)
+from builders.verdicts import by_quantity
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -40,22 +49,12 @@ SCENE = "euler/with-attitude"
 OMEGA = VECTORS["omega"]
 
 
-def judged(file: str, scene: str, **options: Any) -> FileJudgement:
-    found = taylor_verify.check(scene, file, **options)
-    assert isinstance(found, FileJudgement)
-    return found
-
-
 def checked(path: Path, scene: str, columns: Mapping[str, Sequence[Any]]) -> FileJudgement:
-    return judged(write_csv(path / "mine.csv", columns), scene)
-
-
-def rows(found: FileJudgement) -> dict[str, Verdict]:
-    return {verdict.quantity: verdict for verdict in found.verdicts}
+    return file_judgement(write_csv(path / "mine.csv", columns), scene)
 
 
 def all_pass(found: FileJudgement) -> bool:
-    """Whether all that was compared passes; whether the file is complete is another row."""
+    """Return True if all that was compared passes; whether the file is complete is another row."""
     return {v.verdict for v in found.verdicts if v.quantity != COMPLETE} == {Status.PASS}
 
 
@@ -85,7 +84,7 @@ def test_exact_motion_rounded_to_float64_passes(
     """Every quantity that the columns determine has its row, and every row passes."""
     found = checked(tmp_path, scene, exact_columns(scene))
     assert all_pass(found)
-    assert set(rows(found)) - {INITIAL} == quantities
+    assert set(by_quantity(found)) - {INITIAL} == quantities
     assert found.conventions == ()
 
 
@@ -94,7 +93,7 @@ def test_matrices_are_judged_as_they_are(tmp_path: Path) -> None:
     sound = exact_columns(SCENE, matrix=True)
     assert all_pass(checked(tmp_path, SCENE, sound))
     scaled = {n: [v * (1 + 1e-9 * (n in MATRIX)) for v in vs] for n, vs in sound.items()}
-    attitude = rows(checked(tmp_path, SCENE, scaled))["attitude"]
+    attitude = by_quantity(checked(tmp_path, SCENE, scaled))["attitude"]
     assert attitude.verdict is Status.FAIL
     # |R (1 + e) - R| = e sqrt 3, and an angle is |difference| / sqrt 2.
     assert attitude.max == pytest.approx(1e-9 * math.sqrt(3 / 2), rel=1e-3)
@@ -120,7 +119,7 @@ def test_times_are_the_files_own(tmp_path: Path) -> None:
     assert all_pass(found)
     spoiled = columns_at(scene, times)
     spoiled["w1"][0] += 1e-6
-    omega = rows(checked(tmp_path, SCENE, spoiled))["omega"]
+    omega = by_quantity(checked(tmp_path, SCENE, spoiled))["omega"]
     assert (omega.verdict, omega.at) == (Status.FAIL, float(times[0]))
 
 
@@ -135,8 +134,8 @@ def test_one_row_is_judged_and_no_trajectory(tmp_path: Path) -> None:
     for instants in ([Fraction(0)], [Fraction(30)]):
         found = checked(tmp_path, SCENE, columns_at(load(SCENE), instants))
         assert all_pass(found)
-        assert rows(found)[COMPLETE].verdict is Status.UNDECIDED
-        assert "one row within it is no trajectory" in rows(found)[COMPLETE].because
+        assert by_quantity(found)[COMPLETE].verdict is Status.UNDECIDED
+        assert "one row within it is no trajectory" in by_quantity(found)[COMPLETE].because
 
 
 @pytest.mark.parametrize(
@@ -152,7 +151,7 @@ def test_only_what_is_in_the_file_is_compared(
     """No row rests on a quantity that the file lacks, and the lack is said."""
     sound = exact_columns(SCENE)
     found = checked(tmp_path, SCENE, without(sound, *(sound.keys() - kept)))
-    assert set(rows(found)) == expected
+    assert set(by_quantity(found)) == expected
     assert all_pass(found)
     assert any("is not judged: the file has no" in note for note in found.notes)
 
@@ -162,9 +161,9 @@ def test_only_omega_of_a_solid_in_a_fluid(tmp_path: Path) -> None:
     scene = "kirchhoff/screw"
     sound = exact_columns(scene)
     columns = {name: list(sound[name]) for name in ("t", *OMEGA)}
-    assert set(rows(checked(tmp_path, scene, columns))) == {INITIAL, "omega", COMPLETE}
+    assert set(by_quantity(checked(tmp_path, scene, columns))) == {INITIAL, "omega", COMPLETE}
     columns["w2"][3] *= 1 + 1e-10
-    omega = rows(checked(tmp_path, scene, columns))["omega"]
+    omega = by_quantity(checked(tmp_path, scene, columns))["omega"]
     assert (omega.verdict, omega.at) == (Status.FAIL, columns["t"][3])
 
 
@@ -173,7 +172,7 @@ def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
     sound = exact_columns("kirchhoff/screw")
     columns = {"t": [t + 2**-11 for t in sound["t"]], **{n: sound[n] for n in OMEGA}}
     found = checked(tmp_path, "kirchhoff/screw", columns)
-    omega = rows(found)["omega"]
+    omega = by_quantity(found)["omega"]
     assert omega.verdict is Status.FAIL
     assert omega.time_shift == pytest.approx(2**-11, rel=1e-9)
     assert omega.residual < 1e-14
@@ -190,7 +189,7 @@ def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) 
 
 
 def test_matrices_of_a_loaded_body(tmp_path: Path) -> None:
-    """With a moment the states are compared, and the balances that need no matrix."""
+    """States are compared under a moment, and the balances that need no matrix."""
     scene = replace(load("euler/constant-moment"), track=frozenset({"attitude"}))
     columns = columns_at(scene, scene.clock.instants[::2], matrix=True)
     found = taylor_verify.check(scene, write_csv(tmp_path / "mine.csv", columns))
@@ -205,7 +204,7 @@ def test_half_a_millisecond_is_seen(tmp_path: Path) -> None:
     """States fail and say by how much they are late; conserved quantities see nothing."""
     sound = exact_columns(SCENE)
     late = {**sound, "t": [t + 5e-4 for t in sound["t"]]}
-    found = rows(checked(tmp_path, SCENE, late))
+    found = by_quantity(checked(tmp_path, SCENE, late))
     for quantity in ("omega", "attitude"):
         assert found[quantity].verdict is Status.FAIL
         assert found[quantity].time_shift == pytest.approx(5e-4, rel=1e-9)
@@ -240,10 +239,10 @@ def test_one_unit_in_the_last_place_of_the_start_passes(tmp_path: Path) -> None:
     truth = solution(adopt(scene, F64, (Fraction(60),)).given).evaluate([Fraction(60)], 40)["omega"]
     error = float(mp.norm(list(motion - truth[0])))
     columns = {"t": [60.0], **{n: [mp.nstr(v, 30)] for n, v in zip(OMEGA, motion, strict=True)}}
-    found = judged(write_csv(tmp_path / "mine.csv", columns, str), SCENE)
+    found = file_judgement(write_csv(tmp_path / "mine.csv", columns, str), SCENE)
     assert error > 1e-15
-    assert rows(found)["omega"].verdict is Status.PASS
-    assert "moved by u" in rows(found)["omega"].because
+    assert by_quantity(found)["omega"].verdict is Status.PASS
+    assert "moved by u" in by_quantity(found)["omega"].because
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-Infinity"])
@@ -252,7 +251,7 @@ def test_what_is_not_finite_fails_its_own_rows(value: str, tmp_path: Path) -> No
     sound = exact_columns(SCENE)
     spoiled = {name: [repr(v) for v in values] for name, values in sound.items()}
     spoiled["q2"][3] = spoiled["q2"][9] = value
-    found = rows(judged(write_csv(tmp_path / "mine.csv", spoiled, str), SCENE))
+    found = by_quantity(file_judgement(write_csv(tmp_path / "mine.csv", spoiled, str), SCENE))
     for quantity in ("attitude", "H_space"):
         assert found[quantity].verdict is Status.FAIL
     assert found["attitude"].at == sound["t"][3]
@@ -264,10 +263,10 @@ def test_what_is_not_finite_fails_its_own_rows(value: str, tmp_path: Path) -> No
 def test_numbers_cut_off_in_printing_are_told(tmp_path: Path) -> None:
     """Six digits are no float64, and the note says so."""
     file = write_csv(tmp_path / "mine.csv", exact_columns(SCENE), lambda v: f"{v:.5e}")
-    found = judged(file, SCENE)
-    assert rows(found)["omega"].verdict is Status.FAIL
+    found = file_judgement(file, SCENE)
+    assert by_quantity(found)["omega"].verdict is Status.FAIL
     assert any("6 significant digits, where f64 has 17" in note for note in found.notes)
-    sound = judged(write_csv(tmp_path / "mine.csv", exact_columns(SCENE)), SCENE)
+    sound = file_judgement(write_csv(tmp_path / "mine.csv", exact_columns(SCENE)), SCENE)
     assert not any("digits" in note for note in sound.notes)
 
 
@@ -276,18 +275,18 @@ def test_storing_as_float32_is_told(tmp_path: Path) -> None:
     columns = exact_columns(SCENE)
     stored = {n: v if n == "t" else [float(np.float32(x)) for x in v] for n, v in columns.items()}
     file = write_csv(tmp_path / "mine.csv", stored)
-    found = judged(file, SCENE)
-    assert rows(found)["omega"].verdict is Status.FAIL
+    found = file_judgement(file, SCENE)
+    assert by_quantity(found)["omega"].verdict is Status.FAIL
     assert any("every number is one of float32, where f64 has 53" in note for note in found.notes)
     # One number of float64 is enough: then it is another fault.
     stored["w2"][3] = math.nextafter(stored["w2"][3], 1.0)
     other = checked(tmp_path, SCENE, stored)
-    assert rows(other)["omega"].verdict is Status.FAIL
+    assert by_quantity(other)["omega"].verdict is Status.FAIL
     assert not any("float32" in note for note in other.notes)
 
 
 def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
-    """What there is is judged, and the note says where the rest begins, also of a motion backwards."""
+    """The rows there are judged, and the note says where the rest begins, also of a motion backwards."""
     for scene in (SCENE, "euler/backward"):
         whole = exact_columns(scene)
         half = {name: values[: len(values) // 2] for name, values in whole.items()}
@@ -307,17 +306,17 @@ def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
     columns = {"t": [float(t) for t in times]}
     columns |= {n: [float(np.float32(float(v))) for v in motion[:, i]] for i, n in enumerate(OMEGA)}
     file = write_csv(tmp_path / "mine.csv", columns)
-    assert rows(judged(file, scene.name))["omega"].verdict is Status.FAIL
-    assert all_pass(judged(file, scene.name, rung="f32"))
+    assert by_quantity(file_judgement(file, scene.name))["omega"].verdict is Status.FAIL
+    assert all_pass(file_judgement(file, scene.name, rung="f32"))
 
 
 def test_reference_trajectories_are_files(tmp_path: Path) -> None:
-    """What `publish --reference` writes has 32 digits of the scene's own numbers: f64 is no bound."""
+    """Files of `publish --reference` have 32 digits of the scene's own numbers: f64 is no bound."""
     from taylor_verify.studies.reference.measure import reference
 
     columns = reference(load("euler/later-start"))["columns"]
     file = write_csv(tmp_path / "mine.csv", {n: v[:20] for n, v in columns.items()}, str)
-    assert all_pass(judged(file, "euler/later-start"))
+    assert all_pass(file_judgement(file, "euler/later-start"))
 
 
 # The problem that others solve.
@@ -336,7 +335,7 @@ def test_others_round_the_inertia_and_we_its_inverse() -> None:
 
 
 def test_response_to_the_input_is_that_of_differences() -> None:
-    """One number moved by u: the response is the motion's own change, in the unit of its gate."""
+    """The response to a number moved by u is the motion's own change, in the unit of its gate."""
     scene = load("euler/generic")
     given = adopt(scene, F64, scene.clock.instants[::10]).given
     found = input_rounding(given, F64).at_samples
@@ -519,7 +518,7 @@ def test_what_is_no_such_file_is_refused(
 
 
 def test_missing_file_and_folder(tmp_path: Path) -> None:
-    """What is not there, and what is a folder, is no trajectory file."""
+    """A missing file and a folder are refused as trajectory files."""
     (tmp_path / "folder.csv").mkdir()
     for name, got in (("none.csv", "no such file"), ("folder.csv", "a folder")):
         with pytest.raises(Refused, match=f"expected a trajectory file, got {got}"):
@@ -538,7 +537,7 @@ def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
 
 
 def test_truth_of_a_path_that_begins_at_the_origin_is_narrow_enough(tmp_path: Path) -> None:
-    """Where the centre begins at zero its first floor is zero, and no row is undecided for it."""
+    """No row is undecided for a centre that begins at zero, whose first floor is zero."""
     scene = load("kirchhoff/planar-turn")
     assert all_pass(checked(tmp_path, scene.name, columns_at(scene, scene.clock.instants[::20])))
 
@@ -564,10 +563,10 @@ def test_numbers_beyond_a_double_are_refused(tmp_path: Path) -> None:
 
 
 def test_far_beyond_a_scene_without_closed_form_is_undecided(tmp_path: Path) -> None:
-    """Where no exact motion is computed nothing is judged, and the row says why."""
+    """Rows without an exact motion are undecided, and the row says why."""
     columns = {"t": ["0", "1e9"], **{n: ["0", "0"] for n in OMEGA}}
     file = write_csv(tmp_path / "mine.csv", columns, str)
-    (verdict,) = judged(file, "euler/constant-moment").verdicts
+    (verdict,) = file_judgement(file, "euler/constant-moment").verdicts
     assert verdict.verdict is Status.UNDECIDED
     assert "no closed form" in verdict.because
 
@@ -666,5 +665,5 @@ def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:
         "[initial]\nomega = [1, 2, 3]\n[time]\nend = 1\nsamples = 2\n"
     )
     file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "w1": [1.0], "w2": [2.0], "w3": [3.0]})
-    (verdict,) = judged(file, str(scene), rung="f32").verdicts
+    (verdict,) = file_judgement(file, str(scene), rung="f32").verdicts
     assert verdict.verdict is Status.REFUSED

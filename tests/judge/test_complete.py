@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 from builders.trajectories import columns_at, write_csv
+from builders.verdicts import by_quantity
 
 import taylor_verify
 from taylor_verify.cli import main
@@ -34,7 +35,7 @@ def file_of(path: Path, rows: Sequence[int], names: Sequence[str] = (), scene: s
 
 def complete(file: str, scene: str = SCENE, partial: bool = False) -> Verdict | None:
     found = taylor_verify.check(scene, file, partial=partial)
-    rows = {verdict.quantity: verdict for verdict in found.verdicts}
+    rows = by_quantity(found)
     assert {v.verdict for name, v in rows.items() if name != COMPLETE} == {Status.PASS}
     return rows.get(COMPLETE)
 
@@ -54,7 +55,7 @@ LACKING = [
 def test_what_a_file_lacks_is_undecided(
     rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
 ) -> None:
-    """One row says all that was not judged, and names both ways out."""
+    """A single row says all that was not judged, and names both ways out."""
     verdict = complete(file_of(tmp_path, rows, names))
     assert verdict is not None
     assert verdict.verdict is Status.UNDECIDED
@@ -68,7 +69,7 @@ def test_what_a_file_lacks_is_undecided(
 def test_a_part_that_was_asked_for_is_vacuous(
     rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
 ) -> None:
-    """With --partial the row says the same, and changes no exit status."""
+    """The row under --partial has the same words, and changes no exit status."""
     file = file_of(tmp_path, rows, names)
     verdict = complete(file, partial=True)
     assert verdict is not None
@@ -145,7 +146,7 @@ def test_nothing_of_it_is_green(tmp_path: Path, capsys: Captured) -> None:
 def test_a_baseline_of_a_part_is_no_regression_of_the_whole(
     tmp_path: Path, capsys: Captured
 ) -> None:
-    """Whether a file is complete is asked of each call, and not compared with another."""
+    """The completeness of a file is judged by each call alone, and not compared with a baseline."""
     file = file_of(tmp_path, range(41), OMEGA)
     assert main(["check", file, "--scene", SCENE, "--json", "--partial"]) == 0
     before = tmp_path / "before.json"
@@ -178,7 +179,7 @@ def test_question_prints_the_file_to_fill_in(tmp_path: Path, capsys: Captured) -
 
 @pytest.mark.parametrize("on", ["f32", "f64", "f128", "mp237"])
 def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
-    """With and without --json it is the document of the protocol on that precision."""
+    """The question is the document of the protocol on that precision, with and without --json."""
     assert main(["question", "kirchhoff/screw", "--rung", on]) == 0
     text = json.loads(capsys.readouterr().out)
     assert main(["question", "kirchhoff/screw", "--rung", on, "--json"]) == 0
@@ -196,7 +197,7 @@ def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
     ],
 )
 def test_a_wrong_question_is_refused(call: list[str], told: str, capsys: Captured) -> None:
-    """One message on stderr, and exit status 2."""
+    """A wrong question ends with a single message on stderr, and exit status 2."""
     assert main(call) == 2
     shown = capsys.readouterr()
     assert told in shown.err

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -16,16 +16,20 @@ from builders.trajectories import (
     QUATERNION,
     VECTORS,
     Columns,
+    Sound,
     columns_at,
+    conjugate,
     exact_columns,
-    named,
+    file_judgement,
+    in_space_axes,
     quaternion,
+    replaced,
     rows_of,
+    scalar_last,
     write_csv,
 )
 from mpmath import mp, mpf
 
-import taylor_verify
 from taylor_verify.judge.conventions.axes import AXES, Frames
 from taylor_verify.judge.conventions.fits import EXPLAINS
 from taylor_verify.judge.conventions.readings import readings, rotations
@@ -39,19 +43,11 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 
-Sound = Mapping[str, Sequence[float]]
 OMEGA = VECTORS["omega"]
 
 
 def judged(path: Path, scene: str, columns: Sound, accept: bool = False) -> FileJudgement:
-    file = write_csv(path / "mine.csv", columns)
-    found = taylor_verify.check(scene, file, accept_conventions=accept)
-    assert isinstance(found, FileJudgement)
-    return found
-
-
-def replaced(sound: Sound, names: Sequence[str], rows: object) -> Columns:
-    return {**{k: list(v) for k, v in sound.items()}, **named(names, rows)}
+    return file_judgement(write_csv(path / "mine.csv", columns), scene, accept_conventions=accept)
 
 
 def statuses(found: FileJudgement) -> set[Status]:
@@ -59,14 +55,6 @@ def statuses(found: FileJudgement) -> set[Status]:
 
 
 # The ways to spoil a file. Each takes sound columns and returns spoiled ones.
-
-
-def scalar_last(sound: Sound) -> Columns:
-    return replaced(sound, QUATERNION, np.roll(rows_of(sound, QUATERNION), -1, axis=1))
-
-
-def conjugate(sound: Sound) -> Columns:
-    return replaced(sound, QUATERNION, rows_of(sound, QUATERNION) * [1, -1, -1, -1])
 
 
 def scalar_last_and_conjugate(sound: Sound) -> Columns:
@@ -80,11 +68,6 @@ def transposed(sound: Sound) -> Columns:
 
 def in_degrees(sound: Sound) -> Columns:
     return replaced(sound, OMEGA, np.degrees(rows_of(sound, OMEGA)))
-
-
-def in_space_axes(sound: Sound) -> Columns:
-    R = rotations(rows_of(sound, QUATERNION))
-    return replaced(sound, OMEGA, (R @ rows_of(sound, OMEGA)[:, :, None])[:, :, 0])
 
 
 def in_milliseconds(sound: Sound) -> Columns:
@@ -212,7 +195,7 @@ def test_what_the_motion_cannot_tell_is_ambiguous_and_never_guessed(
 
 
 def test_sound_file_has_no_conventions(tmp_path: Path) -> None:
-    """Nothing is found in a file that is right, however symmetric its motion."""
+    """A file that is right has no conventions, however symmetric its motion."""
     for scene in ("euler/spherical", "euler/axisymmetric", "euler/with-attitude"):
         assert judged(tmp_path, scene, exact_columns(scene)).conventions == ()
 
@@ -332,7 +315,7 @@ def all_at_once(columns: Columns) -> Columns:
 def test_the_first_rows_of_an_engine_decide(
     scene: str, rows: int, spoil: Callable[[Sound], Columns], subjects: list[str], tmp_path: Path
 ) -> None:
-    """Of semi-implicit Euler at h = 0.01 the first five rows suffice, and a long file hides nothing."""
+    """Five rows of semi-implicit Euler at h = 0.01 suffice, and a long file hides nothing."""
     file = read(write_csv(tmp_path / "mine.csv", spoil(first_order(scene, rows))))
     found = conventions(file, load(scene), rung("f64")).findings
     assert [finding.subject for finding in found] == subjects
@@ -385,7 +368,7 @@ def test_renamed_quaternions_are_those_of_the_renamed_matrices() -> None:
 
 @pytest.mark.parametrize("group", ["omega", "quaternion", "attitude", "centre", "linear_impulse"])
 def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
-    """What is tried in float64 is what is corrected in exact numbers."""
+    """A reading that is tried in float64 is the one that is corrected in exact numbers."""
     width = {"quaternion": 4, "attitude": 9}.get(group, 3)
     rows = np.random.default_rng(1).standard_normal((2, width))
     R = rotations(np.random.default_rng(2).standard_normal((2, 4)))

@@ -9,13 +9,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from builders.integrators import Floats, explicit_euler, fixed_step, rk4
+from builders.scenes import asked_at
 from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.judge.series.convergence import Sweep, convergence, sweep
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 HALVED = [2.0**-k for k in range(1, 11)]
@@ -50,7 +49,7 @@ def test_steps_come_in_any_order(places: list[int]) -> None:
 
 @given(st.integers(1, 6), st.integers(0, 2**32))
 def test_rounding_hides_no_order(order: int, seed: int) -> None:
-    """With noise of the floor added to every error the order is still read, from the steps above it."""
+    """The order is read from the steps above the floor, with noise of the floor added to every error."""
     noise = np.random.default_rng(seed).uniform(0, FLOOR, len(HALVED))
     found = convergence(HALVED, list(errors_of(order) + noise), FLOOR, expected=order)
     assert found.is_expected
@@ -68,7 +67,7 @@ def test_errors_that_stop_falling_at_the_floor_are_rounding() -> None:
 
 
 def test_errors_that_stop_far_above_the_floor_are_no_rounding() -> None:
-    """What no step removes and no rounding explains is told with its multiple of the floor."""
+    """An error that no step removes and no rounding explains is told with its multiple of the floor."""
     found = convergence(HALVED, [e + 2e-5 for e in errors_of(2)], FLOOR)
     assert "errors stop falling at 2e-05: 2e+09 times what rounding leaves" in found.reason
     assert "not by rounding" in found.reason
@@ -109,7 +108,7 @@ def test_scatter_is_no_order(seed: int) -> None:
 
 
 def test_two_steps_show_no_order() -> None:
-    """One ratio of errors agrees with itself: it takes a third step to disagree."""
+    """Two steps have one ratio, which agrees with itself: it takes a third step to disagree."""
     found = convergence([0.2, 0.1], [1.6e-3, 1e-4], FLOOR)
     assert found.order is None
     assert found.reason.startswith("no order: 2 steps show an error of the method, and it takes 3")
@@ -150,11 +149,9 @@ def test_every_step_has_an_error() -> None:
 # Small fixed-step integrators of the test's own.
 
 
-def short(name: str, span: int = 4) -> Scene:
+def short(name: str) -> Scene:
     """A shipped scene asked at every unit of a short time."""
-    return replace(
-        load(name), clock=Clock(Fraction(0), tuple(Fraction(k) for k in range(span + 1)))
-    )
+    return asked_at(name, *range(5))
 
 
 COARSE = [2.0**-k for k in range(1, 7)]
@@ -187,7 +184,7 @@ def test_printed_it_is_read_at_a_glance(averaged: Sweep) -> None:
 
 
 def test_only_the_vector_in_space_sees_it(averaged: Sweep) -> None:
-    """Of the conserved quantities those in body axes are of omega's order; H in space is not."""
+    """Conserved quantities in body axes are of omega's order; H in space is not."""
     orders = {name: found.order for name, found in averaged.quantities.items()}
     assert orders["H_space"] == pytest.approx(2, abs=0.25)
     # Of energy and momentum RK4 loses one order less than of the state.
@@ -204,7 +201,7 @@ def test_explicit_euler_is_first_order() -> None:
 
 
 def test_arithmetic_in_float32_stops_above_the_rounding_of_float64() -> None:
-    """On f64 the level is no rounding; on f32, whose floor is as high, it is."""
+    """The level is no rounding on f64; on f32, whose floor is as high, it is."""
     solve, scene = fixed_step(rk4, np.float32), short("euler/generic")
     steps = [2.0**-k for k in range(0, 8)]
     leak = sweep(scene, solve, steps, "f64", expected=4).quantities["omega"]

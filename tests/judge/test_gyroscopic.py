@@ -8,8 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.first_order import Kick, engine, explicit, implicit, in_space_axes, none
-from builders.trajectories import VECTORS, Columns, columns_at, exact_columns, write_csv
+from builders.first_order import Kick, engine, explicit, implicit, none
+from builders.trajectories import (
+    VECTORS,
+    Columns,
+    columns_at,
+    exact_columns,
+    in_space_axes,
+    write_csv,
+)
 
 import taylor_verify
 from taylor_verify.cli import main

@@ -150,7 +150,7 @@ def test_in_float32_the_best_step_is_not_the_smallest(scene: Path, tmp_path: Pat
 
 
 def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> None:
-    """With the second step told wrong no one order fits, and the file is named with the step it has."""
+    """A file whose step is told wrong is named with the step it has, since no order fits all files."""
     steps = (STEPS[0], 0.09, *STEPS[2:])
     omega = order_of(taylor_verify.check(scene, files, partial=True, steps=steps), "omega")
     assert omega.order is None
@@ -209,7 +209,7 @@ def test_a_file_states_a_step_or_none(
 
 
 def test_a_step_inside_a_file_comes_before_that_of_its_name(scene: Path, tmp_path: Path) -> None:
-    """And one that the caller states comes before both."""
+    """The step inside a file comes before that of its name, and one that the caller states before both."""
     rows = rows_of(scene, rk4, 0.25)[:, :3]
     one = write(tmp_path / "h9.csv", rows, head="# h = 0.25")
     other = write(tmp_path / "h0.5.csv", rows_of(scene, rk4, 0.5)[:, :3])
@@ -343,7 +343,7 @@ def test_a_wrong_call_is_refused(
 
 
 def test_the_faults_of_all_files_are_told(scene: Path, files: list[str], tmp_path: Path) -> None:
-    """One that is not there and one of the other model: both, and none is judged halfway."""
+    """A missing file and one of the other model are both named, and none is judged halfway."""
     foreign = tmp_path / "foreign.csv"
     foreign.write_text("t,x1,x2,x3,y1,y2,y3\n0,1,0,0,1,0,0\n1,1,0,0,1,0,0\n")
     with pytest.raises(Refused) as refused:
@@ -472,7 +472,7 @@ def test_a_wrong_command_is_refused(
 def test_a_file_given_twice_is_refused(
     scene: Path, files: list[str], tmp_path: Path, capsys: Captured
 ) -> None:
-    """By one path or by two; the fault of another file is told with it."""
+    """A file given twice, by one path or by two, is refused; the fault of another file is told with it."""
     link = tmp_path / "link.csv"
     link.symlink_to(files[0])
     status, _, said = called(capsys, files[0], link, files[0], "none.csv", "--scene", scene)
@@ -499,7 +499,7 @@ def test_steps_and_pictures_are_of_several_files(
 def test_a_picture_is_written(
     ending: str, scene: Path, files: list[str], tmp_path: Path, capsys: Captured
 ) -> None:
-    """In each format, and beside the answer; no half-written file stays in the folder."""
+    """The picture is written in each format, beside the answer; no half-written file stays behind."""
     file = tmp_path / "new" / f"order.{ending}"
     status, _, said = called(capsys, *files, "--scene", scene, "--partial", "--picture", file)
     assert (status, f"wrote {file}" in said) == (1, True)
@@ -534,7 +534,7 @@ def test_without_matplotlib_the_mend_is_said(
 
 
 def test_files_of_another_start_are_named(scene: Path, files: list[str], tmp_path: Path) -> None:
-    """One file, of some, that does not begin as the scene does may be of another scene."""
+    """A file that does not begin as the scene does is named: it may be of another scene."""
     rows = rows_of(scene, rk4, 0.5)[:, :3] * math.sqrt(2)
     other = write(tmp_path / "other_h0.5.csv", rows)
     found = taylor_verify.check(scene, [*files, other], partial=True)

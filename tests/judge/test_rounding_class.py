@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders import verdicts
+from builders import reports, verdicts
 
-from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
 from taylor_verify.judge import rounding_class
 from taylor_verify.judge.rounding_class import FACTOR, LEVEL, compare
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.studies.report import write
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -47,14 +45,14 @@ def walk(rng: np.random.Generator) -> tuple[Floats, Floats]:
 
 
 def secular(rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Of a phase that drifts at the rate of the walk: a rounding at j has grown to k - j at k."""
+    """Errors of a phase that drifts at the rate of the walk: a rounding at j has grown to k - j at k."""
     steps = rng.standard_normal((PAIRS, STEPS))
     grown = np.arange(1, STEPS + 1)
     return np.abs(np.cumsum(np.cumsum(steps, axis=1), axis=1)), np.sqrt(np.cumsum(grown**2.0))
 
 
 def unstable(rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Of an orbit that magnifies by e in five steps: the first few roundings are all that counts."""
+    """Errors of an orbit that magnifies by e in five steps: the first few roundings are all that counts."""
     steps = rng.standard_normal((PAIRS, STEPS))
     growth = np.exp(np.arange(STEPS) / 5)
     errors = np.abs(np.cumsum(steps / growth, axis=1)) * growth
@@ -107,7 +105,7 @@ def test_the_stated_rate_of_false_alarms(model: Any) -> None:
 
 
 def test_a_maximum_over_all_samples_is_seldom_small() -> None:
-    """Of a walk asked at every sample, less than one in twenty stays below LEVEL."""
+    """Less than one in twenty walks that are asked at every sample stays below LEVEL."""
     assert float(np.mean(ratios(walk, 5) < LEVEL)) < 1 / 20
 
 
@@ -126,7 +124,7 @@ def test_the_same_verdicts_depart_by_nothing() -> None:
 
 @pytest.mark.parametrize("name", ["max", "mean", "final", "ratio"])
 def test_an_error_thirty_times_as_large_or_as_small_is_named(name: str) -> None:
-    """One number of one row, above what is attainable by chance, is a departure with its place."""
+    """A single number above what is attainable by chance is a departure with its place."""
     old = row(max=2e-14, mean=2e-14, final=2e-14, ratio=2.0)
     large = replace(old, **{name: 30 * getattr(old, name)})
     (there,) = told([old], [large])
@@ -222,19 +220,8 @@ def test_a_rung_that_a_machine_does_not_have_is_not_compared() -> None:
 @pytest.fixture
 def published(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with the rows of two scenes, and a run that makes just these rows again."""
-    made = [
-        row(scene=scene, quantity=quantity, max=2e-14, ratio=2.0)
-        for scene in ("euler/generic", "euler/full-tensor")
-        for quantity in ("omega", "T", "H2")
-    ]
-    write(tmp_path, made, [])
-
-    def judged(jobs: list[Job], *_: Any) -> list[Any]:
-        scenes = {job.name for job in jobs}
-        rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [type("Judged", (), {"verdicts": rows, "record": None, "costs": {}, "causes": ()})]
-
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
+    errors = {"max": 2e-14, "mean": 2e-15, "final": 1e-15, "ratio": 2.0}
+    reports.write_remade(tmp_path, monkeypatch, errors)
     return tmp_path
 
 

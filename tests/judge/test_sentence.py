@@ -178,7 +178,7 @@ def test_a_file_that_conserves_is_told_so(judged: dict[str, dict[str, Verdict]])
 
 
 def test_a_printed_start_is_no_wrong_start(judged: dict[str, dict[str, Verdict]]) -> None:
-    """Where the digits of the file are all that is wrong with its first row, nothing follows from it."""
+    """A first row that is wrong by the digits of the file alone is no wrong start."""
     start = judged["float32"][INITIAL]
     assert start.error_kind is ErrorKind.SINGLE
     assert "is not the scene's initial state" not in start.sentence
@@ -196,7 +196,7 @@ class Tolerant(Verdict):
 
 
 def test_since_is_the_first_sample_above_its_bound() -> None:
-    """Of a failed row only; a tolerance takes the place of what arithmetic leaves."""
+    """Only a failed row has a first sample above its bound; a tolerance replaces what arithmetic leaves."""
     times, attainable = np.arange(5.0) + 7, np.full(5, 1e-3)
     errors = np.array([0.0, 2e-2, 0.0, 3e-2, 1e-2])
     found = diagnosed(row(Status.FAIL), times, 7.0, errors, attainable)
@@ -232,7 +232,7 @@ def test_a_truth_that_is_too_wide_has_no_digits() -> None:
 @pytest.mark.parametrize("power", [0.5, 1.0, 1.5, 2.0, 3.0])
 @pytest.mark.parametrize("scale", [1e-300, 1e-12, 1.0])
 def test_a_power_of_time_is_read_from_the_errors(power: float, scale: float) -> None:
-    """With a factor that swings twofold, at any size; noise and a jump have no power."""
+    """The power is read at any size, through a factor that swings twofold; noise and a jump have none."""
     elapsed = np.linspace(0, 200, 401)
     swing = 1 + np.abs(np.sin(3.3 * elapsed))
     assert power_of_time(elapsed, scale * swing * elapsed**power) == pytest.approx(power, abs=0.1)
@@ -256,7 +256,7 @@ def test_few_samples_show_no_course() -> None:
 @pytest.mark.parametrize("status", Status)
 @pytest.mark.parametrize("quantity", [INITIAL, COMPLETE, *STATES, *CONSERVED])
 def test_every_quantity_of_every_status_has_a_sentence(quantity: str, status: Status) -> None:
-    """Of every kind of error, compared or not, with numbers and without: no hole is printed."""
+    """Every kind of error, compared or not, with numbers and without, is told without a hole."""
     kinds = [None, *ErrorKind]
     rows = [row(status, quantity=quantity, error_kind=kind) for kind in kinds]
     rows += [replace(v, max=None, bound=None, ratio=None) for v in rows]

@@ -112,7 +112,7 @@ def test_rates_are_the_slopes_of_the_exact_motion(name: str) -> None:
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("text", ["0.0005", "-0.0005"])
 def test_half_a_millisecond_late_is_found_and_nothing_remains(name: str, text: str) -> None:
-    """Of exact(t - c) every quantity is late by c, constantly, and what remains is the truth's width."""
+    """Every quantity of exact(t - c) is late by c, constantly, and the truth's width remains."""
     for shift in shifts_of(name, lambda t: Fraction(text)).values():
         assert shift is not None
         assert shift.kind is Kind.CONSTANT
@@ -128,7 +128,7 @@ def test_half_a_millisecond_late_is_found_and_nothing_remains(name: str, text: s
 @settings(max_examples=8)
 @given(st.floats(-5, 5).filter(lambda c: abs(c) > 1e-6))
 def test_a_shift_of_up_to_half_a_period_is_found(c: float) -> None:
-    """Where first order points anywhere a search begins: the period of this orbit is 11.3."""
+    """A search begins where first order points anywhere: the period of this orbit is 11.3."""
     shift = shifts_of("euler/generic", lambda t: exact_value(c), samples=21)["omega"]
     assert shift is not None
     assert shift.kind is Kind.CONSTANT
@@ -174,7 +174,7 @@ def test_a_first_row_that_is_not_late_is_named_and_spoils_no_fit(name: str) -> N
 
 
 def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
-    """Of a clock that runs slow but for two of 41 rows the pace is exact, and both rows are named."""
+    """The pace of a clock that runs slow but for two of 41 rows is exact, and both rows are named."""
 
     def course(t: float) -> Fraction:
         return Fraction(1, 10) if t in (6.0, 13.5) else exact_value(t) / 1000
@@ -191,7 +191,7 @@ def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
 
 
 def test_a_shift_that_few_rows_share_is_no_cause() -> None:
-    """Where a quarter of the rows is late, no shift is constant."""
+    """No shift is constant if a quarter of the rows is late."""
 
     def course(t: float) -> Fraction:
         return Fraction(1, 1000) if t % 2 == 0 else Fraction(0)
@@ -248,7 +248,7 @@ def test_a_shift_that_comes_and_goes_wanders() -> None:
 
 @pytest.mark.parametrize("exponent", [-400, 400])
 def test_the_unit_of_time_does_not_matter(exponent: int) -> None:
-    """The same motion in a unit of time 2^k times as long is late by 2^-k times the number."""
+    """A motion in a unit of time 2^k times as long is late by 2^-k times the number."""
     scene, _ = asked("euler/generic")
     unit = power_of_two(exponent)
     clock = Clock(Fraction(0), tuple(t / unit for t in scene.clock.elapsed))
@@ -310,7 +310,7 @@ def test_where_omega_rests_no_shift_explains_anything(name: str) -> None:
 
 
 def test_the_truth_itself_has_no_error_and_no_shift() -> None:
-    """Of no error at all nothing is explained."""
+    """The truth has no shift and no residual to explain."""
     for shift in shifts_of("kirchhoff/whole-motion", lambda t: Fraction(0)).values():
         assert shift is not None
         assert (shift.kind, shift.time_shift, shift.residual) == (Kind.NONE, 0.0, 0.0)
@@ -352,7 +352,7 @@ def test_an_answer_that_conserves_everything_and_is_late_is_told_so() -> None:
 
 
 def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
-    """Where the gate passes the bound's reason stands alone; conserved quantities never have a shift."""
+    """The bound's reason stands alone if the gate passes; conserved quantities never have a shift."""
     found = run("euler/with-attitude", "taylor", "f64")
     for verdict in found.verdicts:
         is_state = verdict.quantity in ("omega", "attitude")
@@ -367,7 +367,7 @@ def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
 
 
 def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
-    """Where rounding may carry the state as far as it is large only conserved quantities are gated."""
+    """Only conserved quantities are gated if rounding may carry the state as far as it is large."""
     # Beside the unstable axis by 1e-12, and for several flips: e^(t/sqrt 3) grows beyond 2^53.
     edge = replace(
         load("euler/generic"),
@@ -410,7 +410,7 @@ def answered(name: str) -> Any:
 
 
 def test_an_exactly_known_impulse_is_not_undecided_beside_an_inexact_attitude() -> None:
-    """At rest the impulse is zero exactly, with no width, though the attitude's quotients have one."""
+    """The impulse of a body at rest is zero without a width, though the attitude's quotients have one."""
     scene = load("kirchhoff/rest")
     turned = (Fraction(1), Fraction(2), Fraction(3), Fraction(4))
     scene = replace(

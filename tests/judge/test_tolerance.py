@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import exact_columns, write_csv
+from builders.verdicts import by_quantity
 from mpmath import mpf
 
 import taylor_verify
@@ -22,14 +22,12 @@ from taylor_verify.batch.expectations import compare_with_expectations
 from taylor_verify.cli import main
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.gates import GATE_FACTOR, judge
-from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.publish.page import counts
 from taylor_verify.records import store
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.testing.plugin import SolverGate
 
 Captured = pytest.CaptureFixture[str]
@@ -61,20 +59,16 @@ def coarse(tmp_path: Path) -> str:
     return write_csv(tmp_path / "mine.csv", dict(coarse_file(SCENE)))
 
 
-def rows(judgement: Judgement) -> Mapping[str, Verdict]:
-    return {verdict.quantity: verdict for verdict in judgement.verdicts}
-
-
 # Every gate, at the border.
 
 
 def at_the_border(scene: str, solve_or_file: Any) -> None:
     """Every gate passes at its own error, and fails against the next smaller double."""
-    found = rows(taylor_verify.check(scene, solve_or_file, tolerance=0.5))
+    found = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=0.5))
     errors = {name: found[name].max for name in GATES[scene]}
     below = {name: math.nextafter(error or 0, 0) for name, error in errors.items()}
     for asked, status in ((errors, Status.PASS), (below, Status.FAIL)):
-        judged = rows(taylor_verify.check(scene, solve_or_file, tolerance=asked))
+        judged = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=asked))
         assert {name: judged[name].verdict for name in errors} == dict.fromkeys(errors, status)
         assert {name: judged[name].max for name in errors} == errors
         for name, tolerance in asked.items():
@@ -101,7 +95,7 @@ def test_the_start_may_be_off_by_the_tolerance_of_its_state(tmp_path: Path) -> N
     columns["w1"][0] *= 1 + 3e-9
     file = write_csv(tmp_path / "mine.csv", columns)
     for tolerance, status in ((1e-9, Status.FAIL), (1e-8, Status.PASS)):
-        found = rows(taylor_verify.check("euler/generic", file, tolerance=tolerance))
+        found = by_quantity(taylor_verify.check("euler/generic", file, tolerance=tolerance))
         start = found["initial state"]
         assert (start.verdict, start.bound) == (status, tolerance)
         assert found["omega"].verdict is status
@@ -121,18 +115,22 @@ def test_the_length_of_a_quaternion_has_the_tolerance_of_the_attitude(tmp_path: 
     ]
     assert (failed.quantity, failed.bound) == ("unit quaternion", 1e-7)
     assert taylor_verify.check(SCENE, file, tolerance=1e-5).passed
-    assert "unit quaternion" in rows(taylor_verify.check(SCENE, file, tolerance={"omega": 1e-5}))
+    assert "unit quaternion" in by_quantity(
+        taylor_verify.check(SCENE, file, tolerance={"omega": 1e-5})
+    )
 
 
 def test_the_direction_of_time_with_the_larger_error_decides(tmp_path: Path) -> None:
-    """Of a file that goes both ways from the start, the larger error counts and not the larger ratio."""
+    """The larger error of a file that goes both ways from the start counts, and not the larger ratio."""
     scene = taylor_verify.load("euler/generic")
     text = "t,w1,w2,w3\n"
     motion = taylor_verify.exact(scene, ["-1", "0", "1", "50", "100"], 30)["omega"]
     for t, omega, spoil in zip((-1, 0, 1, 50, 100), motion, (2e-9, 0, 0, 0, 9e-9), strict=True):
         text += ",".join(map(repr, (t, *(float(w) * (1 + spoil) for w in omega)))) + "\n"
     (tmp_path / "mine.csv").write_text(text)
-    found = rows(taylor_verify.check(scene, tmp_path / "mine.csv", partial=True, tolerance=5e-9))
+    found = by_quantity(
+        taylor_verify.check(scene, tmp_path / "mine.csv", partial=True, tolerance=5e-9)
+    )
     assert (found["omega"].verdict, found["omega"].at) == (Status.FAIL, 100.0)
 
 
@@ -151,13 +149,13 @@ def gate(
 
 
 def test_a_nan_meets_no_tolerance() -> None:
-    """One sample that is no number fails, however large the tolerance."""
+    """A single sample that is no number fails, however large the tolerance."""
     assert gate([0.0, math.nan, 0.0], tolerance=0.9).status is Status.FAIL
     assert gate([0.0, math.inf], tolerance=0.9).status is Status.FAIL
 
 
 def test_a_truth_wider_than_a_sixteenth_of_the_tolerance_is_undecided() -> None:
-    """Whether the error is within the tolerance or not."""
+    """The row is undecided, whether the error is within the tolerance or not."""
     assert gate([0.0], width=1e-8 / 16).status is Status.PASS
     for error in (0.0, 1.0):
         assert gate([error], width=1.01e-8 / 16).status is Status.UNDECIDED
@@ -198,11 +196,11 @@ def test_the_reason_has_both_bounds() -> None:
 
 
 def test_an_error_within_a_tolerance_keeps_its_shift_of_time() -> None:
-    """What passes by the tolerance alone still says what kind of error it is."""
-    row = rows(taylor_verify.run("euler/generic", COARSE, tolerance=1e-2))["omega"]
+    """A row that passes by the tolerance alone still says what kind of error it has."""
+    row = by_quantity(taylor_verify.run("euler/generic", COARSE, tolerance=1e-2))["omega"]
     assert row.verdict is Status.PASS
     assert row.reason.shift is not None
-    sound = rows(taylor_verify.run("euler/generic", "taylor", tolerance=1e-2))["omega"]
+    sound = by_quantity(taylor_verify.run("euler/generic", "taylor", tolerance=1e-2))["omega"]
     assert sound.reason.shift is None
 
 
@@ -266,7 +264,7 @@ def test_four_ways_agree(factor: float, coarse: str, tmp_path: Path, capsys: Cap
     """check and run, of the command line and of Python, and the fixture of pytest, on one answer."""
     columns = dict(coarse_file(SCENE))
     states = np.array([columns[c] for c in (*COLUMNS["omega"], *COLUMNS["quaternion"])]).T
-    error = rows(taylor_verify.check(SCENE, coarse))["attitude"].max
+    error = by_quantity(taylor_verify.check(SCENE, coarse))["attitude"].max
     assert error is not None
     number = factor * error
     script = tmp_path / "mine.py"
@@ -300,7 +298,7 @@ def test_a_file_that_lacks_a_part_is_no_pass_by_any_tolerance(tmp_path: Path) ->
     """The row `complete` is undecided with a tolerance too."""
     columns = {name: values[:5] for name, values in dict(coarse_file(SCENE)).items()}
     judged = taylor_verify.check(SCENE, write_csv(tmp_path / "a.csv", columns), tolerance=0.5)
-    assert rows(judged)["complete"].verdict is Status.UNDECIDED
+    assert by_quantity(judged)["complete"].verdict is Status.UNDECIDED
     assert not judged.passed
 
 
@@ -352,7 +350,7 @@ def test_states_that_are_compared_apart_take_a_tolerance(
             columns[name] = [*values[:-1], values[-1] + 1e-6]
     file = write_csv(tmp_path / "mine.csv", columns)
     for tolerance, status in ((1e-3, Status.PASS), (1e-9, Status.FAIL)):
-        found = rows(taylor_verify.check(scene, file, tolerance=tolerance))
+        found = by_quantity(taylor_verify.check(scene, file, tolerance=tolerance))
         assert states <= set(found)
         assert {found[name].verdict for name in states} == {status}
         assert {row.bound for row in found.values()} == {tolerance}

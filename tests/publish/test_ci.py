@@ -18,7 +18,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from builders.scenes import LISTED_INSTANTS
+from builders.scenes import LISTED_INSTANTS, scene_file
 from builders.schema import SCHEMA, SCHEMA_FILE, violations
 from builders.verdicts import far_off as row
 from hypothesis import given
@@ -67,7 +67,7 @@ MIXTURES = [
 
 
 def is_green(text: str) -> bool:
-    """As a reader of JUnit XML sees it: no failure and no error, neither counted nor there."""
+    """Return True if a reader of JUnit XML sees no failure and no error, neither counted nor there."""
     root = ElementTree.fromstring(text)
     counted = sum(int(suite.get(n, "0")) for suite in root for n in ("failures", "errors"))
     return counted == 0 and not [*root.iter("failure"), *root.iter("error")]
@@ -81,7 +81,7 @@ def hidden(mixtures: Iterable[list[Verdict]] = MIXTURES) -> list[list[Verdict]]:
 
 
 def test_junit_is_green_where_the_exit_status_is_0_and_only_there() -> None:
-    """For every mixture of up to three statuses."""
+    """JUnit has the colour of the exit status, for every mixture of up to three statuses."""
     assert len(MIXTURES) > 80
     assert hidden() == []
 
@@ -107,7 +107,7 @@ def test_a_status_nobody_thought_of_is_not_green(monkeypatch: pytest.MonkeyPatch
 
 
 def test_junit_counts_what_it_holds() -> None:
-    """Of suites and of the whole, the counts are those of the elements, and no case is lost."""
+    """The counts of suites and of the whole are those of the elements, and no case is lost."""
     rows = [
         row(status, quantity=name, scene=scene, rung=rung)
         for scene in ("euler/generic", "kirchhoff/screw")
@@ -145,7 +145,7 @@ SUREFIRE: dict[str, tuple[set[str], tuple[str, ...]]] = {
 
 
 def faults(element: ElementTree.Element) -> list[str]:
-    """What the two schemas would object to."""
+    """The faults that either schema finds in a document of JUnit."""
     attributes, children = SUREFIRE[element.tag]
     names = {name.rstrip("*") for name in attributes}
     found = [f"{element.tag}@{name}" for name in set(element.keys()) - names]
@@ -191,7 +191,7 @@ def test_what_xml_cannot_hold_is_escaped() -> None:
 
 
 def test_a_failure_says_what_a_person_needs() -> None:
-    """Which quantity, by how much, when, against what, and why that."""
+    """A failure says the quantity, its error and time, the bound, and the reason for the bound."""
     (failure,) = ElementTree.fromstring(junit.junit([row(Status.FAIL)])).iter("failure")
     assert failure.get("message") == (
         "omega: 11 digits are right (largest error 3.3e-12); 10 x attainable; one rounding a step; "
@@ -271,7 +271,7 @@ def _unescaped(text: str) -> str:
 
 
 def test_each_status_has_its_level() -> None:
-    """What is wrong is an error, what shows nothing a warning, a pass is silent."""
+    """A failure is an error, a row that shows nothing a warning; a pass is silent."""
     levels = {s: [read_by_runner(line)[0] for line in annotation_lines([row(s)])] for s in Status}
     assert levels == {
         Status.PASS: [],
@@ -369,13 +369,11 @@ def test_the_summary_is_never_longer_than_github_takes() -> None:
 def short(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A scene file that is judged in a moment, in the working folder."""
     monkeypatch.chdir(tmp_path)
-    file = Path("short.toml")
-    file.write_text(LISTED_INSTANTS, encoding="utf-8")
-    return file
+    return scene_file(Path(), LISTED_INSTANTS)
 
 
 def test_the_document_of_run_is_of_the_published_schema(short: Path, capsys: Captured) -> None:
-    """With a baseline, on a rung that is there and on one that cannot hold the scene."""
+    """The document is of the schema with a baseline, and on a rung that cannot hold the scene."""
     # Two instants that float32 cannot tell apart.
     close = Path("close.toml")
     close.write_text(LISTED_INSTANTS.replace('["0.5"', '["0.5", "0.50000000001"'), encoding="utf-8")
@@ -617,7 +615,7 @@ def test_the_action_installs_what_the_solver_needs(
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the action's scripts are for bash")
 def test_the_script_of_the_action_judges(short: Path) -> None:
-    """As GitHub would call it: two rungs, several scenes, a baseline; 1 if a row of that is gone."""
+    """The script runs as GitHub calls it: rungs, scenes, a baseline; 1 if a row of that is gone."""
     command = Path("taylor-verify/bin/taylor-verify")
     command.parent.mkdir(parents=True)
     command.write_text(

@@ -47,7 +47,7 @@ def body(text: str) -> str:
 
 
 def read_back(written: str) -> str:
-    """What pdflatex makes of escaped ASCII: every macro its sign, every other sign itself."""
+    """Undo the escaping of ASCII as pdflatex does: every macro its sign, every other sign itself."""
     assert not set(MACRO.sub("", written)) & set("#$%&_{}\\~^")
     return MACRO.sub(lambda found: WRITTEN[found[1]], written)
 

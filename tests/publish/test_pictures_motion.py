@@ -115,7 +115,7 @@ def test_the_outline_is_on_the_surface_and_nothing_is_seen_beyond_it(
 
 @given(st.lists(st.booleans(), min_size=2, max_size=30))
 def test_the_pieces_are_the_whole_line(mask: list[bool]) -> None:
-    """In order, each beginning where the last one ended, seen or hidden as its first point is."""
+    """The pieces stand in order, each from the end of the last, seen or hidden as its first point is."""
     line = np.arange(2.0 * len(mask)).reshape(-1, 2)
     found = list(pieces(line, np.array(mask)))
     joined = [found[0][1][0], *(point for _, piece in found for point in piece[1:])]
@@ -136,7 +136,7 @@ def test_a_view_from_below_or_above_is_never_steep() -> None:
 
 @pytest.mark.parametrize("scene", FREE)
 def test_course_and_samples_are_on_the_ellipsoid(scene: str) -> None:
-    """In units of the semi-axes every point has length one: the energy is conserved."""
+    """Every point has length one in units of the semi-axes: the energy is conserved."""
     found = of_polhode(scene)
     for points in (found.course, found.samples, *found.separatrices):
         q = points / np.array(found.semi_axes)
@@ -210,7 +210,7 @@ def test_a_free_motion_keeps_a_direction_in_space() -> None:
 
 
 def test_the_axis_is_that_of_the_motion() -> None:
-    """Of symmetry for Clebsch's body, wherever it lies; else the one that the polhode goes round."""
+    """The axis is that of symmetry for Clebsch's body; else the one that the polhode goes round."""
     assert axis_path.axis_of(stored().portrait("kirchhoff/whole-motion")) == 3
     assert axis_path.axis_of(stored().portrait("kirchhoff/oblate-about-axis-1")) == 1
     assert axis_path.axis_of(stored().portrait("euler/with-attitude")) == 1
@@ -255,7 +255,7 @@ def test_what_a_logarithm_cannot_show_is_left_out() -> None:
 
 
 def test_the_powers_are_those_of_brouwers_law() -> None:
-    """In every panel one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
+    """Every panel has one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
     records = [stored().record("euler/generic", rung) for rung in RUNGS]
     with plotting():
         figure = errors_over_time.picture("euler/generic", records).figure()
@@ -269,7 +269,7 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
 
 
 def test_a_record_of_the_state_alone_has_one_panel() -> None:
-    """Where no conserved quantity was gated there is none to draw."""
+    """A record without gates on conserved quantities has a single panel."""
     record = stored().record("manufactured/euler-resonance", "f64")
     alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
     panels = errors_over_time.panels_of(errors_over_time.series([alone]))
@@ -328,7 +328,7 @@ def test_a_body_without_a_quartic_is_refused() -> None:
 
 
 def fits(picture: Picture) -> None:
-    """Nothing that is drawn reaches beyond the border, by more than a tenth of a millimetre."""
+    """Return True if all that is drawn stays within the border, to a tenth of a millimetre."""
     with plotting():
         figure = picture.figure()
         # In inches, of all that is visible.
@@ -345,7 +345,7 @@ def test_no_text_is_cut(end: str) -> None:
 
 
 def test_no_text_is_cut_in_the_whole_gallery() -> None:
-    """The same of all pictures that are published."""
+    """No picture that is published cuts a text."""
     for one in shown():
         fits(one.picture)
 
@@ -374,7 +374,7 @@ def overlaps(picture: Picture) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize("stem", ["euler-separatrix-errors", "kirchhoff-through-the-pole-errors"])
 def test_a_short_logarithmic_axis_can_be_read(stem: str) -> None:
-    """Of less than two decades it has plain numbers, and none of them lies on another."""
+    """An axis of less than two decades has plain numbers, none of which lies on another."""
     picture = next(one.picture for one in shown() if one.picture.stem == stem)
     assert overlaps(picture) == []
     with plotting():

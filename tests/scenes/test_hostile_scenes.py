@@ -111,7 +111,7 @@ def test_deep_nesting_is_refused(deep: str) -> None:
     ids=["integer", "decimal", "hexadecimal", "exponent", "text"],
 )
 def test_numbers_of_a_million_digits_are_refused(number: str) -> None:
-    """Nothing is built of a number that is too long, and the refusal is short."""
+    """A number that is too long is refused before anything is built of it, in a short sentence."""
     began = time.perf_counter()
     fault = str(refusal(LISTED_INSTANTS.replace(INSTANTS, f"[{number}]")))
     assert time.perf_counter() - began <= PATIENCE

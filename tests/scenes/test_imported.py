@@ -264,7 +264,7 @@ def trace(matrix: Matrix) -> Fraction:
 
 
 def test_angles_of_mjcf_are_degrees_unless_it_says_radian(tmp_path: Path) -> None:
-    """The same words with `angle="radian"` are another turn."""
+    """Angles under `angle="radian"` are another turn than the same numbers in degrees."""
     words = 'diaginertia="1 2 2.5" euler="90 90 0"'
     assert inertia(imported(tmp_path, mjcf(words))) == tensors.diagonal(vector("2.5", 1, 2))
     in_radians = inertia(imported(tmp_path, mjcf(words, 'angle="radian"')))

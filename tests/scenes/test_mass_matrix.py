@@ -159,7 +159,7 @@ def test_explain_shows_the_inverse_and_says_that_it_is_exact() -> None:
 
 
 def test_a_body_by_its_coefficients_has_nothing_to_note() -> None:
-    """What is read as it is written is not commented."""
+    """A body by its coefficients has no note."""
     assert load("kirchhoff/remus-100").notes == ()
     assert load("euler/generic").notes == ()
     (note,) = vehicle(ELLIPSOID).notes

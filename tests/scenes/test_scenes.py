@@ -323,7 +323,7 @@ def test_every_shipped_scene_is_in_the_table_of_the_readme() -> None:
 
 @pytest.mark.parametrize("folder", ["euler", "kirchhoff"])
 def test_there_are_enough_shipped_scenes(folder: str) -> None:
-    """At least sixteen of each model, so that an empty folder cannot pass for a suite."""
+    """At least sixteen scenes of each model are shipped, so that an empty folder cannot pass."""
     assert sum(name.startswith(f"{folder}/") for name in library.names()) >= 16
 
 
@@ -466,7 +466,7 @@ def test_each_scene_moves_as_its_reason_says(name: str, rung_name: str | None) -
 
 @pytest.mark.parametrize("word", MOTIONS)
 def test_every_motion_is_shipped_with_its_path(word: str) -> None:
-    """In each regime some scene tracks attitude and centre."""
+    """Some scene of each regime tracks attitude and centre."""
     tracks = [load(f"kirchhoff/{name}").track for name in MOTIONS[word]]
     assert {"attitude", "centre"} in tracks
 
@@ -557,7 +557,7 @@ BORDERS = {
 
 @pytest.mark.parametrize("name", BORDERS)
 def test_beyond_the_border_b_decides(name: str) -> None:
-    """With A = 0 the sign of B = 2 F (p'-p)/r + G (q'-q)/r, 49 (25), is as the file says."""
+    """The sign of B = 2 F (p'-p)/r + G (q'-q)/r, 49 (25), is as the file says where A = 0."""
     scene = load(name)
     c, (ff, fg, _) = clebsch(scene), invariants(scene)
     # F B, so that G enters as FG.
@@ -598,7 +598,7 @@ VANISHING = {
 
 @pytest.mark.parametrize("name", VANISHING)
 def test_what_vanishes_is_what_the_reason_says(name: str) -> None:
-    """Of F^2, FG and y3 those are zero, exactly, and no others."""
+    """Those of F^2, FG and y3 that the reason names are zero exactly, and no others."""
     assert tuple(value == 0 for value in invariants(load(name))) == VANISHING[name]
 
 
@@ -689,7 +689,7 @@ def sign(value: Fraction) -> int:
 
 
 def multiplicity(polynomial: list[Fraction], z: Fraction) -> int:
-    """How often z is a root, by synthetic division."""
+    """Count how often z is a root, by synthetic division."""
     times = 0
     while True:
         quotient = list(accumulate(polynomial, lambda total, entry: total * z + entry))
@@ -744,7 +744,7 @@ def changes(signs: list[Fraction]) -> int:
 
 
 def test_a_path_is_a_path_and_a_name_a_name() -> None:
-    """The same scene by path and by name is the same question under another name."""
+    """A scene by path and by name is one question under two names."""
     path = str(library.find("euler/generic"))
     by_path, by_name = load(path), load("euler/generic")
     assert by_path.name == path
@@ -764,7 +764,7 @@ def test_the_cases_must_exist(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_model_must_be_known_before_its_body_is_read() -> None:
-    """With no model the other parts are still read, and each of their faults is reported."""
+    """The other parts of a scene without a model are read, and each of their faults is reported."""
     with pytest.raises(Refused, match="@ model") as caught:
         read("[body]\nanything = 1\n[initial]\nomega = 1\n[time]\nend = 0\nsamples = 1\n", "x")
     assert [line.split(" @ ")[1].split()[0] for line in caught.value.faults] == [

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from builders.lacking import lacking
+from builders.verdicts import by_quantity
 from pythonfmu.builder import FmuBuilder
 
 import taylor_verify
@@ -73,7 +74,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 def judged(file: Path, query: str = "step=0.05", scene: str = SCENE) -> dict[str, Verdict]:
     run = taylor_verify.run(scene, f"{PREFIX}{file}?{query}")
-    return {verdict.quantity: verdict for verdict in run.verdicts}
+    return by_quantity(run)
 
 
 Build = Callable[[str], Path]
@@ -151,14 +152,14 @@ def test_what_the_fmu_cannot_be_told_is_said(
 
 
 def test_what_is_built_in_is_not_set(built: Build) -> None:
-    """With ?fixed= the FMU's own numbers are taken, which are those of another body."""
+    """The FMU's own numbers are taken under ?fixed=, and are those of another body."""
     found = judged(built("sound"), "step=0.1&fixed=inertia")
     assert found["initial state"].verdict is Status.PASS
     assert found["omega"].max > 0.1
 
 
 def test_a_broken_file_is_said(tmp_path: Path) -> None:
-    """What is no FMU ends in a sentence of the library, and no traceback."""
+    """A file that is no FMU ends in a sentence of the library, without a traceback."""
     (tmp_path / "no.fmu").write_bytes(b"no archive")
     (verdict,) = judged(tmp_path / "no.fmu").values()
     assert "File is not a zip file" in verdict.because

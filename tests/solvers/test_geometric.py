@@ -10,6 +10,8 @@ from typing import Any, final
 
 import numpy as np
 import pytest
+from builders.scenes import asked_at
+from builders.verdicts import by_quantity
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -23,7 +25,6 @@ from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -55,9 +56,7 @@ U = 2.0**-53
 
 def at(scene: str, *instants: Fraction | int, track: str = "") -> Scene:
     """A shipped scene at instants of its own."""
-    found = load(scene)
-    clock = Clock(Fraction(0), tuple(Fraction(t) for t in instants))
-    return replace(found, clock=clock, track=frozenset(track.split()))
+    return replace(asked_at(scene, *instants), track=frozenset(track.split()))
 
 
 def short(scene: str) -> Scene:
@@ -70,7 +69,7 @@ STEPS = [0.1, 0.05, 0.025, 0.0125]
 
 
 def solving(make: Callable[[Fraction], FixedStep]) -> Callable[[Problem, float], Any]:
-    """What `sweep` asks of a callable of one's own."""
+    """Return the method as a callable that `sweep` takes."""
 
     def solve(problem: Problem, step: float) -> Any:
         found = make(Fraction(str(step))).solve(problem)
@@ -86,7 +85,7 @@ def method(name: str) -> Callable[[Fraction], FixedStep]:
 
 def verdicts(scene: Scene | str, name: str, step: str) -> dict[str, Verdict]:
     found = run(scene, f"geometric:{name}?step={step}")
-    return {verdict.quantity: verdict for verdict in found.verdicts}
+    return by_quantity(found)
 
 
 # Order: the motion is that of the truth, and how fast it becomes so.
@@ -105,7 +104,7 @@ def test_a_method_is_of_its_order(name: str, scene: Scene) -> None:
 
 
 def test_the_midpoint_takes_a_moment() -> None:
-    """With a constant moment the implicit midpoint rule is still of second order."""
+    """The implicit midpoint rule is of second order under a constant moment."""
     scene = at("euler/constant-moment", 0, 2, 4, track="attitude")
     found = sweep(scene, solving(ImplicitMidpoint), STEPS, expected=2)
     assert found.reason.startswith("omega is 2nd order, attitude 2nd, ")
@@ -323,7 +322,7 @@ def solved(scene: Scene | str, name: str, step: str) -> Trajectory:
 
 @pytest.mark.parametrize("scene", ["euler/listed-times", "euler/later-start", "euler/apollo"])
 def test_equal_steps_lead_to_each_sample(scene: str) -> None:
-    """As many as fit, in the scene's own unit of time; a step that divides a span is not cut."""
+    """The steps are as many as fit, in the scene's own unit of time; one that divides a span is not cut."""
     elapsed = load(scene).clock.elapsed
     spans = [abs(b - a) for a, b in zip((Fraction(0), *elapsed), elapsed, strict=False)]
     for step in (max(spans), max(spans) / 4, max(spans) / Fraction("7.3")):
@@ -396,7 +395,7 @@ def test_what_overflows_is_an_outcome() -> None:
 
 
 def test_a_body_at_rest_stays_there() -> None:
-    """Where every scale is zero no method divides by one."""
+    """No method divides by a scale of zero."""
     for name in METHODS:
         found = verdicts("euler/rest", name, "5")
         assert all(verdict.verdict is Status.PASS for verdict in found.values())
@@ -430,7 +429,7 @@ def test_every_method_is_listed() -> None:
     ],
 )
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """What was expected, what came, and where."""
+    """The refusal says what was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
         solver_named(name)
 

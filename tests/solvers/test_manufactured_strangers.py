@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.scenes import asked_at
 from builders.trajectories import columns_at, write_csv
 from mpmath import mp, mpf
 
@@ -26,7 +27,6 @@ from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -43,7 +43,7 @@ RK4 = f"process:{shlex.join([sys.executable, '-S', str(OUTSIDE / 'rk4.py')])}"
 
 
 def short(name: str, end: Fraction) -> Scene:
-    return replace(load(name), clock=Clock(Fraction(0), (Fraction(0), end / 2, end)))
+    return asked_at(name, 0, end / 2, end)
 
 
 # What a program is told.
@@ -61,7 +61,7 @@ def told(entry: Any) -> Any:
 @pytest.mark.parametrize("on", ["f32", "mp237"])
 @pytest.mark.parametrize("name", [EULER, KIRCHHOFF, "manufactured/euler-full-tensor"])
 def test_the_waves_that_are_told_are_the_motion(name: str, on: str) -> None:
-    """From the exact texts, start + cosines (cos nu t - 1) + sines sin nu t is H*, or x* and y*."""
+    """H*, or x* and y*, is start + cosines (cos nu t - 1) + sines sin nu t of the exact texts."""
     problem = pose(load(name), rung(on))
     document, given = asked(problem), replace(problem.given, track=frozenset())
     waves = {key: told(value["text"]) for key, value in document["manufactured"].items()}
@@ -144,7 +144,7 @@ def test_the_example_follows_the_loads_with_order_four(name: str) -> None:
 
 
 def test_the_example_is_sound_in_single_precision() -> None:
-    """With steps whose error is below the roundoff of f32, rk4.py passes states and balances."""
+    """The example rk4.py passes states and balances with steps whose error is below the roundoff of f32."""
     verdicts = run(short(EULER, Fraction(2)), f"{RK4} 0.02", "f32").verdicts
     assert {verdict.quantity: verdict.verdict for verdict in verdicts} == dict.fromkeys(
         ("initial state", "omega", "T", "H2"), Status.PASS
@@ -181,7 +181,7 @@ def test_a_sound_file_passes(name: str, tmp_path: Path) -> None:
 
 
 def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> None:
-    """One component off by 1e-12 in a single row is no motion under these loads."""
+    """A component off by 1e-12 in a single row fails by the balances under these loads."""
     scene = load(EULER)
     columns = columns_at(scene, scene.clock.instants)
     columns["w2"][len(columns["w2"]) // 2] += 1e-12

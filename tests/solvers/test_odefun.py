@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from builders.scenes import asked_at
 from mpmath import mp
 
 from taylor_verify.models.problem import pose
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import odefun
 from taylor_verify.solvers.registry import solver_named
@@ -23,8 +21,7 @@ NAME = "mpmath:odefun"
 
 
 def short(scene: str, end: Fraction = Fraction(2)) -> Scene:
-    clock = Clock(Fraction(0), (Fraction(0), end / 3, end))
-    return replace(load(scene), clock=clock)
+    return asked_at(scene, 0, end / 3, end)
 
 
 @pytest.mark.parametrize(
@@ -37,7 +34,7 @@ def short(scene: str, end: Fraction = Fraction(2)) -> Scene:
     ],
 )
 def test_it_passes_every_gate(scene: str, on: str) -> None:
-    """By itself odefun asks its series for all bits of the rung, and it has them, both models."""
+    """The series of odefun has all bits of the rung, for both models."""
     verdicts = run(short(scene), NAME, on).verdicts
     assert {v.verdict for v in verdicts} == {Status.PASS}
     assert verdicts[0].evaluations >= verdicts[0].steps > 0
@@ -110,6 +107,6 @@ def test_rates_that_are_no_numbers_are_an_outcome() -> None:
     ],
 )
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """What was expected, what came, and where."""
+    """The refusal says what was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
         solver_named(name)

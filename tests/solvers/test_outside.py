@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.programs import imported_tops
 from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
@@ -66,7 +67,7 @@ def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
 
 
 def test_the_absolute_tolerance_follows_the_relative_one() -> None:
-    """Where atol is not set, it is rtol."""
+    """The absolute tolerance is rtol if it is not set."""
     found = named("outside:cvode-bdf?rtol=1e-7")
     assert found.settings == (("rtol", "1e-07"), ("atol", "1e-07"))
     found = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
@@ -146,18 +147,7 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
 def test_no_script_hides_a_library() -> None:
     """No file has the name of a module that a script imports, which Python would find first."""
     own = {file.stem for file in SCRIPTS.glob("*.py")}
-    imported = {
-        name.partition(".")[0]
-        for file in scripts()
-        for node in ast.walk(ast.parse(file.read_text()))
-        for name in (
-            [alias.name for alias in node.names]
-            if isinstance(node, ast.Import)
-            else [node.module or ""]
-            if isinstance(node, ast.ImportFrom)
-            else []
-        )
-    }
+    imported = set().union(*(imported_tops(file.read_text()) for file in scripts()))
     assert own & imported == {"equations", "question"}
 
 
@@ -224,7 +214,7 @@ def error(asked: Problem, answer: protocol.Answer) -> float:
 
 
 def test_the_first_propagation_is_what_compiles(sibling: Callable[[str], Any]) -> None:
-    """Of two propagations the second is timed, and what the first took longer was compiling."""
+    """The second of two propagations is timed; the first took longer by what compiling took."""
     calls = []
 
     def propagate() -> int:

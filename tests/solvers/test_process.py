@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import math
 import os
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.programs import imported_tops, is_alive
 from builders.scenes import THREE_INSTANTS
 from hypothesis import given
 from hypothesis import strategies as st
@@ -181,7 +181,7 @@ def answer(of: Problem, **changes: Any) -> bytes:
     ],
 )
 def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fraction) -> None:
-    """In quotes exactly; bare as the nearest double on f32 and f64, and exactly on wider rungs."""
+    """A number in quotes is exact; a bare one is a double on f32 and f64, and exact on wider rungs."""
     asked = problem(on)
     text = answer(asked, w2=[0, 0, "HERE"]).replace(b'"HERE"', written.encode())
     assert protocol.read(text, asked).states[2][1] == exact
@@ -189,7 +189,7 @@ def test_a_number_is_taken_as_its_form_says(on: str, written: str, exact: Fracti
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_hexadecimal_and_shortest_decimal_of_a_double_are_the_double(value: float) -> None:
-    """Whether a program prints %a or a decimal that is enough, what is judged is what it held."""
+    """The double that a program held is judged, whether it prints %a or a decimal that is enough."""
     asked = problem()
     found = protocol.read(answer(asked, w1=[value.hex()] * 3, w3=[value] * 3), asked)
     assert found.states[0][0] == found.states[0][2] == value
@@ -297,7 +297,7 @@ def test_a_sound_program_is_heard(tmp_path: Path) -> None:
 
 
 def test_a_program_may_time_itself(tmp_path: Path) -> None:
-    """What a program states as seconds and compile_seconds is what its trajectory took."""
+    """The times of a trajectory are the seconds and compile_seconds that the program states."""
     told = f"{SOUND}found.update(seconds=2e-3, compile_seconds=1e-3)\n{TELL}"
     found = solve(tmp_path, f"import time; time.sleep(3e-3)\n{told}")
     assert found.outcome is Outcome.FINISHED
@@ -448,14 +448,6 @@ def test_the_handler_of_a_signal_is_left_as_it_was(tmp_path: Path) -> None:
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def is_alive(pid: str) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state not in {"Z", "X"}
-
-
 def test_neither_side_waits_for_the_other(tmp_path: Path) -> None:
     """A program may fill its output before it reads a question that fills the pipe as well."""
     talkative = "import sys\nsys.stderr.write('x' * 10**6)\nsys.stdout.write(' ' * 10**6)\n"
@@ -474,7 +466,7 @@ def test_a_question_need_not_be_read(tmp_path: Path) -> None:
 
 
 def test_the_last_words_are_shown_without_their_colours(tmp_path: Path) -> None:
-    """Of a long stderr the last lines are told, and no escape sequence passes to the terminal."""
+    """The last lines of a long stderr are told, and no escape sequence passes to the terminal."""
     text = "import sys\nfor i in range(9999): print(f'\\x1b[31mline {i}', file=sys.stderr)\nsys.exit(2)"
     detail = solve(tmp_path, text).detail
     assert "\x1b" not in detail
@@ -580,16 +572,6 @@ def test_the_example_needs_the_standard_library_alone() -> None:
     header = re.match(r"# /// script\n((?:# .*\n)+)# ///\n", text)
     assert header
     assert tomllib.loads(re.sub("^# ", "", header[1], flags=re.MULTILINE))["dependencies"] == []
-    tops = {
-        name.partition(".")[0]
-        for node in ast.walk(ast.parse(text))
-        for name in (
-            [alias.name for alias in node.names]
-            if isinstance(node, ast.Import)
-            else [node.module or ""]
-            if isinstance(node, ast.ImportFrom)
-            else []
-        )
-    }
+    tops = imported_tops(text)
     assert tops
     assert tops <= sys.stdlib_module_names

@@ -78,7 +78,7 @@ def test_every_kind_of_question_is_asked() -> None:
 
 @pytest.mark.parametrize("name", one_of_each_kind().values())
 def test_no_key_occurs_twice(name: str) -> None:
-    """At every level, whatever the table; `text` and `hex` alone stand in every number."""
+    """No key of the question occurs twice; `text` and `hex` alone stand in every number."""
     document = protocol.question(pose(load(name), rung("f64")))
     counts = Counter(keys(document))
     assert {key for key, count in counts.items() if count > 1} == PAIR

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import pytest
+from builders.scenes import asked_at
 
 from taylor_verify.models.problem import pose
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import registry
 from taylor_verify.solvers import scipy as solver
@@ -25,8 +22,7 @@ F64 = rung("f64")
 
 def short(scene: str) -> Scene:
     """The first seven units of time of a shipped scene; the start is no sample."""
-    clock = Clock(Fraction(0), tuple(Fraction(k) for k in range(1, 8)))
-    return replace(load(scene), clock=clock)
+    return asked_at(scene, *range(1, 8))
 
 
 @pytest.fixture
@@ -88,7 +84,7 @@ def test_unset_tolerances_are_scipys_own() -> None:
 
 @pytest.mark.usefixtures("scipy")
 def test_a_fault_in_the_equations_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With time running the wrong way in the rates no gate of the state passes."""
+    """No gate of the state passes if time runs the wrong way in the rates."""
     rates = solver._Run._rates
 
     def reversed_rates(self: Any) -> Any:
@@ -163,7 +159,7 @@ def test_every_method_is_listed() -> None:
     ],
 )
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """What was expected, what came, and where."""
+    """The refusal says what was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
         solver_named(name)
 

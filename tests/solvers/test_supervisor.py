@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from builders.programs import is_alive
 from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import pose
@@ -85,14 +86,6 @@ def hidden(program: Path) -> Iterator[Path]:
 
 def numbers(marker: Path) -> list[int]:
     return [int(line) for line in marker.read_text().split()] if marker.exists() else []
-
-
-def is_alive(pid: int) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state not in {"Z", "X"}
 
 
 def name(program: Path) -> str:

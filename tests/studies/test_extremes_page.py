@@ -104,7 +104,7 @@ def test_a_mismatch_stands_out(page: str) -> None:
 
 
 def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
-    """What was foreseen to be vacuous and passed is a mismatch as well, with its reason."""
+    """A row that was foreseen to be vacuous and passed is a mismatch, with its reason."""
     lucky = replace(VACUOUS, verdict=Status.PASS)
     publish_document(tmp_path, STUDY, extremes.EXTREMES, study((lucky,), ("a mismatch",)))
     (_, reason) = lines((tmp_path / STUDY.path).read_text(encoding="utf-8"), "`long`")
@@ -134,7 +134,7 @@ def test_the_sheet_has_every_quantity(tmp_path: Path) -> None:
 
 
 def test_publish_remakes_it_from_the_data_alone(tmp_path: Path) -> None:
-    """With the tables of a run beside it, and linked from both pages; without data there is none."""
+    """The page is remade with the tables of a run, and linked from both; without data there is none."""
     write(tmp_path, [passed("euler/a", "f64", "omega")], [])
     publish(tmp_path)
     assert not (tmp_path / STUDY.path).exists()

@@ -35,7 +35,7 @@ EACH_FAMILY = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: fam
 @given(st.data())
 @settings(max_examples=20)
 def test_every_place_of_a_cube_is_a_scene(family: Family, data: st.DataObject) -> None:
-    """In the cube and on its edges the text is read, as the model that the family's name begins with."""
+    """Every point of the cube and its edges is a scene of the model that the family's name begins with."""
     place = data.draw(st.lists(st.floats(0, 1), min_size=family.free, max_size=family.free))
     try:
         scene = family.scene(place)
@@ -72,7 +72,7 @@ def _peak(family: Family, place: Sequence[float]) -> Catch:
 
 
 def test_hunt_climbs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From the best of a cloud it comes to the top of a hill, in five dimensions too."""
+    """The hunt comes from the best of a cloud to the top of a hill, in five dimensions too."""
     monkeypatch.setattr(hunt, "caught", _peak)
     family = Family("euler-hill", "hills", 5, lambda place: "")
     (found,) = hunt.hunt([family], 0.5, 1, lambda name: None)
@@ -106,7 +106,7 @@ def test_a_gate_without_a_number_is_the_worst_of_all(ratio: float | None) -> Non
 
 
 def test_vacuous_gates_do_not_count() -> None:
-    """What asks nothing of a solver cannot be the worst, whatever its ratio."""
+    """A vacuous gate cannot be the worst, whatever its ratio."""
     assert not hunt._counts(verdict(1e9, Status.VACUOUS))
     assert hunt._counts(verdict(1e9, Status.FAIL))
 
@@ -121,7 +121,7 @@ def test_every_family_has_its_worst() -> None:
 
 @pytest.mark.parametrize("name", KEPT)
 def test_the_worst_that_was_found_still_passes(name: str) -> None:
-    """As a regression: every gate passes or asks nothing, and the file says why it is there."""
+    """Every gate on the worst that was found passes or asks nothing, and the file says why it is there."""
     text = library.find(name).read_text(encoding="utf-8")
     assert text.startswith("# Why: of ")
     assert load(name).name == name
@@ -170,7 +170,7 @@ def test_rows_that_are_none_are_refused(tmp_path: Path) -> None:
 
 
 def test_old_scenes_make_room(tmp_path: Path) -> None:
-    """What a hunt found earlier goes when a new one has ended."""
+    """Scenes of an earlier hunt go when a new one has ended."""
     worst.keep(tmp_path, {"one": "1\n", "two": "2\n"})
     worst.keep(tmp_path, {"two": "3\n"})
     assert {p.name: p.read_text(encoding="utf-8") for p in tmp_path.iterdir()} == {

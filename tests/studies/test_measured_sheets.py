@@ -74,7 +74,7 @@ def test_reach_has_a_row_for_every_number_of_periods() -> None:
 
 
 def test_prices_have_a_row_for_every_variant_and_rung() -> None:
-    """With both intervals; the price at equal error stands in the rows of f64 alone."""
+    """A row has both intervals; the price at equal error stands in the rows of f64 alone."""
     study = prices.PRICES.load(measured_report())
     found = read(prices.sheet(study))
     assert len(found) == len(study.rows)
@@ -88,7 +88,7 @@ def test_prices_have_a_row_for_every_variant_and_rung() -> None:
 
 
 def test_worst_has_a_row_for_every_family() -> None:
-    """With its scene and its ratio."""
+    """A row has the family's scene and ratio."""
     study = worst.WORST.load(measured_report())
     found = read(worst.sheet(study))
     assert [(c["family"], number(c["ratio"]), c["scene"]) for c in found] == [

@@ -99,7 +99,7 @@ def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
 
 
 def test_no_portrait_holds_a_time_of_the_clock() -> None:
-    """How long the run took is not in it: it would be another file each time."""
+    """No portrait has the time that its run took, which would be another file each time."""
     assert all(stored(name)["explain"]["cost"]["seconds"] is None for name in SCENES)
 
 
@@ -131,7 +131,7 @@ def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
 
 
 def test_a_course_begins_at_the_start_and_covers_the_span_or_some_periods() -> None:
-    """From the start, forward or backward as asked, to the farthest instant or through three periods."""
+    """A course goes from the start, either way, to the farthest instant or through three periods."""
     for name in SCENES:
         scene, found = load(name), stored(name)
         times = found["course"]["t"]

@@ -44,7 +44,7 @@ def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
-    """In rationals its rates are those of the general equations of its own body, at random points."""
+    """The rates of a variant are those of the general equations, in rationals at random points."""
     problem, random = named(name).posed(F64), Random(1)
     general = in_general_form(problem)
     for _ in range(3):
@@ -91,7 +91,7 @@ def test_rows_count_what_is_built(measured: PricesStudy) -> None:
 
 
 def test_equal_error_is_read_between_two_tolerances() -> None:
-    """On a straight line in logarithms; outside the row, or beside NaN, there is no figure."""
+    """Equal error is read on a straight line in logarithms; outside the row, or beside NaN, nowhere."""
     e = prices._EQUAL_ERROR
     halfway = prices._between([100 * e, e / 100], [1.0, 4.0])
     assert halfway is not None

@@ -110,7 +110,7 @@ def clone(tmp_path: Path) -> Path:
 
 
 def test_a_repository_one_likes_to_receive() -> None:
-    """At most 250 files and 8 MB are published."""
+    """The published files are at most 250, and at most 8 MB."""
     assert len(committed()) <= 250
     assert sum((REPORTS / path).stat().st_size for path in committed()) <= 8 * MEGABYTE
 
@@ -310,7 +310,7 @@ def test_published_rows_are_of_the_schema() -> None:
 
 
 def test_errors_agree_with_their_ratios() -> None:
-    """Of every published error the ratio at its own time is at most the largest of all samples."""
+    """The ratio of a published error at its own time is at most the largest of all samples."""
     found = [v for v in verdicts() if v.attainable and v.max is not None]
     assert found
     # The three are rounded to doubles on their own.

@@ -142,7 +142,7 @@ def test_every_cell_tells_its_digits(figure: Figure) -> None:
 
 
 def test_the_map_is_as_wide_as_the_page(figure: Figure) -> None:
-    """Nothing of it stands beyond the page."""
+    """The map stays within the page."""
     assert figure.get_size_inches()[0] == PAGE_WIDTH
     box = figure.get_tightbbox()
     width, height = figure.get_size_inches()
@@ -166,7 +166,7 @@ def test_no_name_hides_another() -> None:
 
 
 def test_classes_are_told_in_grey() -> None:
-    """From class to class the lightness falls by ten or more of a hundred, the first by five."""
+    """The lightness falls by ten or more of a hundred from class to class, the first by five."""
     levels = [lightness(colour) for _, colour in digits_map.CLASSES]
     falls = [before - after for before, after in pairwise(levels)]
     assert falls[0] >= 5

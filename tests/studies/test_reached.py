@@ -38,7 +38,7 @@ def asked(capsys: pytest.CaptureFixture[str], scene: str, times: str) -> tuple[i
 
 
 def test_rows_before_a_time_out_of_reach_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    """In the order asked, both signs of time; the exit is 3, and the first missing time is named."""
+    """Rows stand in the order asked, of both signs; the exit is 3, and the first missing time is named."""
     status, found, error = asked(capsys, UNSTABLE, "1e5,-20,60,-1e6,0,2e5")
     assert status == 3
     assert [row["t"] for row in found["rows"]] == ["-20", "60", "0"]
@@ -121,7 +121,7 @@ def test_rows_are_certified_once_they_have_their_digits(monkeypatch: pytest.Monk
 
 
 def test_a_precision_that_does_not_suffice_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With few bits the nearest time that lacks some is the one that is named."""
+    """The nearest time that lacks digits is named where the bits are few."""
     monkeypatch.setattr(taylor, "_MOST_BITS", 0)
     with pytest.raises(Unsettled, match="does not shrink to a radius of 2") as raised:
         TaylorSolution(taylor_verify.load(UNSTABLE)).motion(list(map(Fraction, (75, 1, 0))), 12)
@@ -158,7 +158,7 @@ def test_a_closed_form_hands_over_its_rows_as_well(known: Enclosed | Settled) ->
 
 
 def test_a_closed_form_that_fails_leaves_the_rows_of_the_series() -> None:
-    """Where integrals are hard and the series end early, their rows are what is known."""
+    """The rows of the series stand where a closed form fails and the series ends early."""
     few = TaylorSolution(FASTER, most_steps=60)
     both = CheaperSolution(_Balls(), few)
     with pytest.raises(Unsettled, match="steps") as raised:

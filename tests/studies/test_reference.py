@@ -294,7 +294,7 @@ def test_remaking_gives_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_a_time_without_a_finite_decimal_is_the_decimal_that_is_printed(tmp_path: Path) -> None:
-    """At t = 1/3 the row is the motion at 0.33...3, 32 digits: time and motion go together."""
+    """The row of t = 1/3 is the motion at 0.33...3, 32 digits: time and motion go together."""
     scene = tmp_path / "third.toml"
     scene.write_text(
         'title = "a third"\nmodel = "euler"\n[body]\ninertia = [1, 2, 3]\n'

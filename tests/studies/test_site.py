@@ -266,7 +266,7 @@ def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, P
 def test_exact_values_are_a_trajectory(
     report: Path, pages: dict[str, Page], tmp_path: Path
 ) -> None:
-    """What is copied from a page is a file that `check` reads: every digit of it is the portrait's."""
+    """Values copied from a page are a file that `check` reads, with every digit of the portrait."""
     scene = "kirchhoff/whole-motion"
     _, _, block = pages[place_of(scene)].text.partition('id="exact"')
     copied = unescape(re.sub(r"<[^>]+>", "", block.partition("<pre>")[2].partition("</pre>")[0]))

@@ -62,7 +62,7 @@ def test_what_was_stored_is_read_again(folder: Path) -> None:
 
 
 def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
-    """Of those that leave so many the fastest, with its tolerance; none that only asked for them."""
+    """The cheapest setting is the fastest that leaves so many digits; to ask for them is not enough."""
     table = section(text_of(folder), "What so many digits cost")
     _, _, six, nine, twelve = line(table, "SciPy DOP853")
     # The one at 1e-6 leaves five digits, so the one at 1e-9 stands here.
@@ -103,7 +103,7 @@ def test_what_rounding_alone_leaves_stands_beside_it(
 
 
 def without_key(file: Path, key: str) -> None:
-    """As a measurement of earlier versions stored it."""
+    """Return a document as earlier versions stored it, without a key."""
     document = json.loads(file.read_text(encoding="utf-8"))
     for scene in document["scenes"]:
         del scene[key]
@@ -123,7 +123,7 @@ def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
 
 
 def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> None:
-    """What takes no steps leads; behind it the integrators have a front of their own."""
+    """A closed form leads the front; behind it the integrators have a front of their own."""
     told = section(text_of(folder), "The front")
     whole, _, integrators = told.partition("And of the integrators alone:")
     assert "closed-form:ellipj" in whole
@@ -133,7 +133,7 @@ def test_the_front_is_told_with_and_without_the_closed_form(folder: Path) -> Non
 
 
 def test_the_front_is_what_nothing_beats() -> None:
-    """Of equal times the more accurate stays; of equal errors the faster."""
+    """The front keeps the more accurate of equal times, and the faster of equal errors."""
     timing = TIMES_MADE.timings[0]
     rows = [
         TimedPoint(point("taylor", error), replace(timing, ratio=ratio))
@@ -170,7 +170,7 @@ def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
 
 
 def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
-    """With every digit, the failed ones included."""
+    """The sheet has every setting with every digit, the failed ones included."""
     text = (folder / "tables" / "tradeoff.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(io.StringIO(text)))
     assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
@@ -186,12 +186,12 @@ def test_the_page_can_be_made_again_from_the_data(folder: Path) -> None:
 
 
 def test_a_folder_without_a_measurement_has_no_page(tmp_path: Path) -> None:
-    """Nothing is made of nothing."""
+    """A folder without a measurement has no page."""
     assert load(tmp_path) is None
 
 
 def test_a_file_of_something_else_is_told(folder: Path) -> None:
-    """With the file."""
+    """The refusal names the file."""
     (folder / NUMBERS.name).write_text("{}", encoding="utf-8")
     with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
         load(folder)

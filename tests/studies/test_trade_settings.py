@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from builders.scenes import asked_at
 
 import taylor_verify
 from taylor_verify.cli import main
@@ -41,9 +42,8 @@ from taylor_verify.studies.tradeoff.trade_off import trade_off
 F64 = rung("f64")
 
 
-def short(name: str, end: int = 2) -> Scene:
-    times = (Fraction(0), Fraction(1), Fraction(end))
-    return replace(load(name), clock=Clock(Fraction(0), times))
+def short(name: str) -> Scene:
+    return asked_at(name, 0, 1, 2)
 
 
 # Names.
@@ -71,7 +71,7 @@ def test_a_tolerance_of_taylor_has_a_name() -> None:
     ],
 )
 def test_a_name_that_is_wrong_is_told(name: str, told: str) -> None:
-    """What was expected, what came, and where."""
+    """The refusal says what was expected, what came, and where."""
     with pytest.raises(ValueError, match=told):
         solver_named(name)
 
@@ -118,7 +118,7 @@ def test_every_solver_of_the_sweep_is_listed() -> None:
 def test_a_setting_is_read_from_its_name(
     name: str, asked: str, requested: float | None, family: str
 ) -> None:
-    """What a solver is asked for is in its name, but for a command of one's own."""
+    """The setting of a solver is read from its name, but for a command of one's own."""
     found = setting(name, F64)
     assert (found.asked, found.requested, found.family) == (asked, requested, family)
     assert found.solver.name == name
@@ -279,7 +279,7 @@ def scene_file(tmp_path: Path) -> str:
 def test_the_verb_measures_what_it_is_told(
     scene_file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With --solver these settings and taylor's alone, and with --cold each first solve by its parts."""
+    """The verb measures the settings of --solver and taylor's; --cold adds the parts of a first solve."""
     call = ["tradeoff", scene_file, "--rung", "f32", "--repeats", "1", "--cold", "--json"]
     assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
     (trade,) = json.loads(capsys.readouterr().out)["scenes"]

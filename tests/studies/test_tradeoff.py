@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import scene_file
 from hypothesis import example, given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -176,7 +176,7 @@ def test_a_lost_or_failed_run_is_never_on_the_front(scene: Scene) -> None:
 
 
 def test_the_trade_is_the_same_again(scene: Scene) -> None:
-    """With the same clocks, the same seed gives the same document."""
+    """Equal clocks and seeds give equal documents."""
     asked = [setting_of(Scripted(f"s{k}", 10.0**-k, f"1e-{12 - k}")) for k in range(1, 6)]
     first, second = (
         trade_off(scene, asked, 3, seed=5, clock=lambda: 0.0).document() for _ in range(2)
@@ -187,7 +187,7 @@ def test_the_trade_is_the_same_again(scene: Scene) -> None:
 
 
 def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
-    """By rung the floor of the judge, one rounding a sample: finer on the wider rung, and in the text."""
+    """The floor of the judge, one rounding a sample, is told for each rung, finer on the wider one."""
     asked = [
         setting_of(Scripted("coarse", 1.0)),
         replace(setting_of(Scripted("fine", 1.0)), rung=rung("f32")),
@@ -271,7 +271,7 @@ def test_errors_are_the_judges(scene: Scene) -> None:
 
 
 def test_the_attitude_counts() -> None:
-    """Where the attitude is tracked it has an error of its own, and the larger one is the point's."""
+    """A tracked attitude has an error of its own, and the larger one is the point's."""
     found = load("euler/with-attitude")
     short = replace(found, clock=replace(found.clock, instants=found.clock.instants[:5]))
     (p,) = trade_off(short, [setting_of(at_tolerance("1e-4"))], repeats=1).points
@@ -294,7 +294,7 @@ def test_the_recommended_setting_meets_the_target(scene: Scene, target: float) -
 
 
 def test_the_cheapest_that_reaches_it_is_recommended(scene: Scene) -> None:
-    """Of settings that all reach the target the fastest is taken; one too coarse is not, though faster."""
+    """The fastest setting that reaches the target is taken; one too coarse is not, though faster."""
     asked = [
         setting_of(Scripted("coarse", 0.1, "1e-3")),
         setting_of(Scripted("fine", 0.3, "1e-12")),
@@ -367,7 +367,7 @@ def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyP
 
 
 def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:
-    """What no setting reaches is said, with the one that comes nearest."""
+    """A target that no setting reaches is said, with the setting that comes nearest."""
     asked = [setting_of(Scripted("slow", 1.0))]
     with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow.*rounding alone.*is mp\d+"):
         recommended(trade_off(scene, asked, repeats=1), 1e-40)
@@ -384,7 +384,7 @@ def test_a_target_is_a_positive_number(scene: Scene, error: float) -> None:
 
 
 def test_starts_are_near_and_drawn_from_the_seed(scene: Scene) -> None:
-    """The same seed draws the same starts; each component is within one per cent, and zero stays."""
+    """Starts of one seed are equal; each component is within one per cent, and zero stays."""
     flat = replace(
         scene, initial=replace(scene.initial, omega=(Fraction(1), Fraction(0), Fraction(2)))
     )
@@ -416,13 +416,11 @@ def test_no_sound_answer_is_said() -> None:
 
 @pytest.fixture
 def short(tmp_path: Path) -> str:
-    path = tmp_path / "short.toml"
-    path.write_text(THREE_INSTANTS, encoding="utf-8")
-    return str(path)
+    return str(scene_file(tmp_path))
 
 
 def test_the_verb_tells_all_of_it(short: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One document: points with what was asked and achieved, the front, the machine, the setting."""
+    """The document has points with what was asked and achieved, the front, the machine, the setting."""
     call = ["tradeoff", short, "--rung", "f32", "--repeats", "2", "--target", "1e-3", "--json"]
     assert main(call) == 0
     (trade,) = json.loads(capsys.readouterr().out)["scenes"]

@@ -51,7 +51,7 @@ def case(key: str, name: str) -> TrapCase:
 
 
 def on_rung(key: str, name: str, on: str) -> TrapCase:
-    """The same for a rung that not every machine has."""
+    """The case on a rung that not every machine has; skips where it is missing."""
     if missing := Plain().unavailable(rung(on)):
         pytest.skip(missing)
     return case(key, name)
@@ -113,7 +113,7 @@ def test_small_states_lose_digits_and_steps() -> None:
 
 
 def test_tiny_states_are_taken_in_one_step() -> None:
-    """At 1e-16 ten radians are one step, which is called a success and ends outside of the motion."""
+    """Ten radians at 1e-16 are one step, which is called a success and ends outside of the motion."""
     assert {(c.said, c.steps) for c in cases("T2b")} == {("time_limit", 1)}
     # No two states of one body differ by more than twice its largest.
     assert all(error > 2 for error in errors("T2b"))
@@ -142,7 +142,7 @@ def test_error_beside_the_unstable_axis_grows_as_the_distance_shrinks() -> None:
     ("name", "on"), [("d = 1e-20, f128", "f128"), ("d = 1e-80, mp237", "mp237")]
 )
 def test_more_digits_do_not_help_beside_the_unstable_axis(name: str, on: str) -> None:
-    """With moments of its own type a wide rung loses as many digits as d has, the driver none."""
+    """A wide rung with moments of its own type loses as many digits as d has, the driver none."""
     found, u = on_rung("T3", name, on), float(rung(on).unit_roundoff)
     assert found.said == "time_limit"
     assert found.error >= 1e12 * u
@@ -161,7 +161,7 @@ def test_the_gate_of_the_state_alone_sees_what_is_lost_beside_the_unstable_axis(
 
 @pytest.mark.parametrize("key", ["T2a", "T2b"])
 def test_every_gate_sees_a_state_that_is_too_small(key: str) -> None:
-    """From 1e-5 on the state, the energy and the momentum all fail; at size one all pass."""
+    """State, energy and momentum all fail from 1e-5 on; at size one all pass."""
     for found in cases(key):
         expected = "pass" if found.case == "omega of size 1" else "fail"
         assert {gate.verdict for gate in found.gates.values()} == {expected}
@@ -176,7 +176,7 @@ def test_conserved_quantities_certify_no_state() -> None:
 
 
 def test_overflow_is_reported_and_in_other_units_does_not_happen() -> None:
-    """At 1e15 heyoka says that the state is not finite; at 1e14 it is right."""
+    """heyoka says at 1e15 that the state is not finite; at 1e14 it is right."""
     near, *beyond = cases("S1")
     assert (near.said, near.error <= 100 * U) == ("time_limit", True)
     assert {(c.said, c.error) for c in beyond} == {("err_nf_state", None)}
@@ -234,13 +234,13 @@ def test_continuous_output_answers_beyond_its_end() -> None:
 
 
 def test_continuous_output_overwrites_its_last_answer() -> None:
-    """What was kept of the first call is no longer the state at that time."""
+    """The array of the first call is no longer the state at that time."""
     assert errors("T8b")[0] >= 0.01
     assert driver_errors("T8b")[0] <= 100 * U
 
 
 def test_late_end_is_reached_without_a_step() -> None:
-    """At 1e16 adding 0.3 changes no double: the body stands still, at time_limit."""
+    """Adding 0.3 to 1e16 changes no double: the body stands still, at time_limit."""
     (near, late) = cases("S3")
     assert (late.said, late.steps) == ("time_limit", 0)
     assert near.error >= 1000 * U
@@ -274,7 +274,7 @@ def test_one_lane_stops_the_others_which_report_success() -> None:
     ],
 )
 def test_outcome_is_reported_as_published(key: str, said: str) -> None:
-    """What heyoka says today is what the page has it say."""
+    """heyoka reports today what the page quotes."""
     (found,) = cases(key)
     assert found.said.startswith(said)
 
@@ -288,7 +288,7 @@ def test_forgotten_parameters_stop_the_body() -> None:
 
 
 def test_tolerance_of_zero_is_refused_here() -> None:
-    """What heyoka takes for its default, the driver sends back."""
+    """The driver refuses the tolerance that heyoka takes for its default."""
     (found,) = cases("S10")
     assert found.driver.startswith("refused: expected a positive")
 
@@ -304,7 +304,7 @@ def test_stored_code_is_found_without_naming_a_processor() -> None:
 
 
 def test_interruption_leaves_no_handler_and_no_timer() -> None:
-    """What is changed to interrupt a run is put back."""
+    """Handler and timer are put back after an interruption."""
     before = signal.getsignal(signal.SIGALRM)
     interrupted(10.0, 1.0)
     assert signal.getsignal(signal.SIGALRM) is before
@@ -362,7 +362,7 @@ def stored(key: str) -> TrapRow:
 
 
 def test_shown_code_is_python_without_hints() -> None:
-    """What is shown parses, and defines the functions that were run."""
+    """The code on the page parses, and defines the functions that were run."""
     for trap in TRAPS:
         for call in trap.calls:
             (definition,) = ast.parse(shown(call)).body
@@ -388,7 +388,7 @@ def test_keys_are_unique_and_in_order() -> None:
 
 
 def judged(traps: Sequence[TrapRow]) -> dict[tuple[str, str], object]:
-    """Of each case what the driver says and what the gates say of the plain answer."""
+    """Return, of each case, the driver's words and the verdicts of the gates on the plain answer."""
     return {
         (t.key, c.case): (c.driver, {name: gate.verdict for name, gate in c.gates.items()})
         for t in traps
@@ -407,7 +407,7 @@ def test_page_says_that_conservation_does_not_certify_and_that_the_state_does() 
 
 
 def test_nothing_is_said_to_be_proven_by_rows_that_do_not() -> None:
-    """Where the plain answers are as good as the driver's, neither sentence is said."""
+    """Neither sentence is said if the plain answers are as good as the driver's."""
     equal = [
         replace(trap, cases=tuple(replace(c, error=c.driver_error) for c in trap.cases))
         for trap in fresh().traps

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from builders import recordings
 from builders.recordings import OMEGA, QUATERNION, Columns
-from builders.trajectories import columns_at
+from builders.trajectories import columns_at, conjugate
 from ccsds_ndm import mapping, ndm_io
 from ccsds_ndm.models import ndmxml2
 
@@ -34,10 +34,6 @@ def quaternions(columns: Columns) -> tuple[tuple[Fraction, ...], ...]:
     """The decimals that the writers print."""
     rows = zip(*(columns[name] for name in QUATERNION), strict=True)
     return tuple(tuple(Fraction(repr(value)) for value in row) for row in rows)
-
-
-def conjugate(columns: Columns) -> Columns:
-    return {n: [-v for v in vs] if n in QUATERNION[1:] else vs for n, vs in columns.items()}
 
 
 # Version 2.
@@ -67,7 +63,7 @@ def test_the_attitude_passes_and_its_conjugate_does_not(columns: Columns, tmp_pa
 
 
 def test_the_body_may_be_the_first_frame(columns: Columns, tmp_path: Path) -> None:
-    """Where REF_FRAME_A is the body the message holds the conjugate."""
+    """A message whose REF_FRAME_A is the body holds the conjugate."""
     frames = {"ref_frame_a": "SC_BODY", "ref_frame_b": "ICRF"}
     recordings.write_aem(tmp_path / "run.xml", recordings.aem(conjugate(columns), **frames))
     assert read(tmp_path / "run.xml").groups["quaternion"] == quaternions(columns)
@@ -140,7 +136,7 @@ def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> Non
 
 
 def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
-    """With q' = q (0, w) / 2 the message tells w = 2 conj(q) q' / |q|^2, exactly."""
+    """A message with q' = q (0, w) / 2 tells w = 2 conj(q) q' / |q|^2, exactly."""
     state = "2024-061T00:00:00 0 0 0 2 0.5 -0.25 1 0"
     found = read(written(tmp_path, text(state, ATTITUDE_TYPE="QUATERNION/DERIVATIVE")))
     assert found.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
@@ -151,7 +147,7 @@ def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
 def test_version_1_says_order_and_direction(
     order: str, direction: str, columns: Columns, tmp_path: Path
 ) -> None:
-    """In text of version 1, by the library, the keywords say where the scalar is and what is turned."""
+    """Keywords of version 1, written by the library, say where the scalar is and what is turned."""
     told = columns if direction == "A2B" else conjugate(columns)
     message = version_1(told, order, direction)
     ndm_io.NdmIo().to_file(message, mapping.NDMFileFormats.KVN, tmp_path / "run.aem")
@@ -205,7 +201,7 @@ def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Pa
 
 
 def test_a_segment_is_named_by_its_number(tmp_path: Path) -> None:
-    """Of two segments none is taken; each is read by its number, from its own START_TIME."""
+    """Two segments are each read by their number, from their own START_TIME; none is taken unasked."""
     second = text(START_TIME="2024-061T00:00:00.125").split("ORIGINATOR = X\n")[1]
     file = written(tmp_path, text() + second)
     with pytest.raises(Refused, match=r"expected one segment, got 2 @ .*FILE#1 \.\.\. FILE#2"):
@@ -242,7 +238,7 @@ FAULTS: Mapping[str, tuple[str, str]] = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_faults_of_a_message_are_refused(fault: str, tmp_path: Path) -> None:
-    """What the standard does not allow, and what a scene does not have, is refused with its place."""
+    """A fault against the standard, or against the scene, is refused with its place."""
     content, expected = FAULTS[fault]
     with pytest.raises(Refused, match=expected):
         read(written(tmp_path, content))

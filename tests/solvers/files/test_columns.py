@@ -10,7 +10,7 @@ from pathlib import Path
 from time import perf_counter
 
 import pytest
-from builders.trajectories import MATRIX, Columns, exact_columns, write_csv
+from builders.trajectories import MATRIX, Columns, exact_columns, file_judgement, write_csv
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -45,10 +45,7 @@ def refusal(names: str | Sequence[str], wanted: Mapping[str, str] | None = None)
 
 
 def judged(path: Path, columns: Mapping[str, Sequence[object]], **options: object) -> FileJudgement:
-    file = write_csv(path / "mine.csv", columns, str)
-    found = taylor_verify.check(SCENE, file, **options)  # type: ignore[arg-type]
-    assert isinstance(found, FileJudgement)
-    return found
+    return file_judgement(write_csv(path / "mine.csv", columns, str), SCENE, **options)
 
 
 def renamed(columns: Columns, names: Mapping[str, str]) -> dict[str, list[float]]:
@@ -261,7 +258,7 @@ def test_degrees_are_degrees_to_400_bits(form: str) -> None:
 
 
 def test_each_column_has_its_own_unit() -> None:
-    """One column in degrees and two in radians are read so."""
+    """Columns in degrees and in radians of one file are each read in their own unit."""
     file = made(["t", "wx [deg/s]", "wy [rad/s]", "wz"])
     degree = in_brackets("deg/s", "omega")
     assert degree is not None
@@ -424,7 +421,7 @@ def test_what_is_ignored_is_named_once() -> None:
 
 
 def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) -> None:
-    """Nothing is judged that was not understood."""
+    """A file of times alone is refused, and the ignored columns are named."""
     file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "roll": [1.0], "pitch": [1.0]})
     with pytest.raises(
         Refused, match=r"got t alone @ .*ignored: `roll` `pitch`; .*--columns w1=NAME"

@@ -79,7 +79,7 @@ def test_anything_else_is_refused(suffix: str, content: bytes, tmp_path: Path) -
 def test_a_changed_byte_is_refused_or_read(
     name: str, place: float, byte: int, tmp_path: Path
 ) -> None:
-    """With any byte changed a file is read or refused in sentences; nothing else is raised."""
+    """A file with any byte changed is read or refused in sentences; nothing else is raised."""
     file = tmp_path / name
     content = bytearray(written(name, tmp_path))
     content[int(place * len(content))] = byte

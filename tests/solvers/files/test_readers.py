@@ -161,7 +161,7 @@ def test_packed_folders_are_refused(
 
 
 def test_a_topic_is_named_behind_the_file(columns: Columns, tmp_path: Path) -> None:
-    """Of two topics none is taken; each is read by its name, with or without the slash."""
+    """Two topics are each read by their name, with or without the slash; none is taken unasked."""
     file = tmp_path / "run.mcap"
     recordings.write_mcap(file, columns, topics=("/imu", "/left/imu"))
     with pytest.raises(Refused, match=r"expected one topic, got /imu .*/left/imu .*FILE#/imu"):

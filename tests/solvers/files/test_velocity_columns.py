@@ -16,13 +16,14 @@ from builders.trajectories import (
     Columns,
     columns_at,
     exact_columns,
+    file_judgement,
     named,
     rows_of,
     write_csv,
 )
+from builders.verdicts import by_quantity
 from mpmath import mp
 
-import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.readings import rotations
@@ -32,7 +33,6 @@ from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.models.problem import adopt
 from taylor_verify.records.quantities import COMPLETE, INITIAL
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
@@ -68,13 +68,7 @@ def sound(name: str = SCENE) -> Mapping[str, Sequence[float]]:
 def judged(
     path: Path, columns: Mapping[str, Any], scene: str = SCENE, **options: Any
 ) -> FileJudgement:
-    found = taylor_verify.check(scene, write_csv(path / "mine.csv", columns, str), **options)
-    assert isinstance(found, FileJudgement)
-    return found
-
-
-def rows(found: FileJudgement) -> dict[str, Verdict]:
-    return {verdict.quantity: verdict for verdict in found.verdicts}
+    return file_judgement(write_csv(path / "mine.csv", columns, str), scene, **options)
 
 
 def only(columns: Mapping[str, Sequence[float]], *names: str) -> Columns:
@@ -87,10 +81,10 @@ def test_velocities_stand_for_the_impulses(scene: str, tmp_path: Path) -> None:
     """Everything that impulses determine has its row, nothing is missing, and all of it passes."""
     found = judged(tmp_path, sound(scene), scene)
     by_impulses = judged(tmp_path, exact_columns(scene), scene)
-    assert set(rows(found)) == set(rows(by_impulses)) | {"velocity"}
+    assert set(by_quantity(found)) == set(by_quantity(by_impulses)) | {"velocity"}
     assert {v.verdict for v in found.verdicts} == {Status.PASS}
     assert found.conventions == ()
-    assert "its place, because the file has velocities" in rows(found)["impulse"].because
+    assert "its place, because the file has velocities" in by_quantity(found)["impulse"].because
 
 
 def test_impulses_are_made_exactly() -> None:
@@ -129,22 +123,25 @@ def test_names_of_vehicles(tmp_path: Path) -> None:
 def test_either_velocity_alone_is_judged_as_itself(tmp_path: Path) -> None:
     """u1 u2 u3 alone have the row velocity, and the impulses are not judged."""
     found = judged(tmp_path, only(sound(), *VELOCITY))
-    assert set(rows(found)) == {INITIAL, "velocity", COMPLETE}
-    assert rows(found)["velocity"].verdict is Status.PASS
-    assert "linear impulse" in rows(found)[COMPLETE].because
+    assert set(by_quantity(found)) == {INITIAL, "velocity", COMPLETE}
+    assert by_quantity(found)["velocity"].verdict is Status.PASS
+    assert "linear impulse" in by_quantity(found)[COMPLETE].because
     spoiled = only(sound(), *VELOCITY)
     spoiled["u2"][3] *= 1 + 1e-10
-    velocity = rows(judged(tmp_path, spoiled))["velocity"]
+    velocity = by_quantity(judged(tmp_path, spoiled))["velocity"]
     assert (velocity.verdict, velocity.at) == (Status.FAIL, spoiled["t"][3])
     late = {**only(sound(), *VELOCITY), "t": [t + 2**-11 for t in sound()["t"]]}
-    assert rows(judged(tmp_path, late))["velocity"].time_shift == pytest.approx(2**-11, rel=1e-6)
+    assert by_quantity(judged(tmp_path, late))["velocity"].time_shift == pytest.approx(
+        2**-11, rel=1e-6
+    )
 
 
 def test_impulses_of_the_file_come_before_its_velocities(tmp_path: Path) -> None:
     """Wrong velocities beside sound impulses fail their own row alone."""
     columns = {**exact_columns(SCENE), **{n: [2 * v for v in sound()[n]] for n in VELOCITY}}
     found = {
-        quantity: verdict.verdict for quantity, verdict in rows(judged(tmp_path, columns)).items()
+        quantity: verdict.verdict
+        for quantity, verdict in by_quantity(judged(tmp_path, columns)).items()
     }
     assert found.pop("velocity") is Status.FAIL
     assert found.pop(INITIAL) is Status.FAIL
@@ -166,7 +163,7 @@ def in_millimetres(columns: Mapping[str, Sequence[float]]) -> dict[str, Any]:
 @pytest.mark.parametrize("spoil", [swapped, of_the_sign, in_millimetres])
 def test_wrong_velocities_are_caught(spoil: Any, tmp_path: Path) -> None:
     """Two components exchanged, a sign, a unit that is not theirs: impulse and velocity fail."""
-    found = rows(judged(tmp_path, spoil(sound())))
+    found = by_quantity(judged(tmp_path, spoil(sound())))
     for quantity in ("impulse", "velocity"):
         assert found[quantity].verdict is Status.FAIL
     assert found["omega"].verdict is Status.PASS
@@ -179,17 +176,17 @@ def test_velocities_in_space_axes_are_a_convention(tmp_path: Path) -> None:
     columns = {**sound(), **named(VELOCITY, turned)}
     found = judged(tmp_path, columns)
     assert ["u1 u2 u3 are in space axes"] == [finding.words for finding in found.conventions]
-    assert rows(found)["impulse"].verdict is Status.FAIL
+    assert by_quantity(found)["impulse"].verdict is Status.FAIL
     mended = judged(tmp_path, columns, accept_conventions=True)
-    assert rows(mended)["velocity"].max < 1e-14  # type: ignore[operator]
-    assert rows(mended)["impulse"].max < 1e-14  # type: ignore[operator]
+    assert by_quantity(mended)["velocity"].max < 1e-14  # type: ignore[operator]
+    assert by_quantity(mended)["impulse"].max < 1e-14  # type: ignore[operator]
 
 
 def test_a_value_that_is_no_number_is_named_where_it_stands(tmp_path: Path) -> None:
     """NaN in u2 fails all that rests on it, and the row says where it is."""
     columns = {name: list(values) for name, values in sound().items()}
     columns["u2"][2] = float("nan")
-    found = rows(judged(tmp_path, columns))
+    found = by_quantity(judged(tmp_path, columns))
     for quantity in ("impulse", "velocity", "T"):
         assert found[quantity].verdict is Status.FAIL
         assert "u2 is nan in row 3" in found[quantity].because
@@ -237,7 +234,7 @@ def far_from_its_origin(offset: int) -> Scene:
 
 @pytest.mark.slow
 def test_rounding_of_velocities_is_carried_through_the_inertia_matrix() -> None:
-    """Where terms of M V cancel, doubles of V pass by the floor of velocities, and not by that of x, y."""
+    """Doubles of V pass by the floor of velocities, and not by that of x, y, if terms of M V cancel."""
     scene = far_from_its_origin(1000)
     problem = adopt(scene, F64, scene.clock.instants)
     body = scene.body
@@ -274,7 +271,8 @@ def test_a_diagonal_matrix_widens_nothing(tmp_path: Path) -> None:
     """Without coupling a rounding of U is one of x: the bounds are those of impulses."""
     scene = "kirchhoff/ellipsoid-triaxial"
     by_velocities, by_impulses = (
-        rows(judged(tmp_path, columns, scene)) for columns in (sound(scene), exact_columns(scene))
+        by_quantity(judged(tmp_path, columns, scene))
+        for columns in (sound(scene), exact_columns(scene))
     )
     for quantity in ("impulse", "T", "F2", "FG"):
         bounds = [found[quantity].attainable for found in (by_velocities, by_impulses)]
