@@ -21,14 +21,6 @@ from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-_FREE: Final = {
-    "arb": "taylor_verify.exact.euler.theta:enclosed",
-    "mpmath": "taylor_verify.exact.euler.jacobi:closed_form",
-}
-_LOADED: Final = {
-    "arb": "taylor_verify.exact.euler.moments.closed:enclosed",
-    "mpmath": "taylor_verify.exact.euler.moments.closed:closed_form",
-}
 _ONE: Final = tensors.diagonal((Fraction(1),) * 3)
 
 
@@ -38,7 +30,7 @@ class Rigid(Kind[RigidBody, Spin]):
 
     moving = ("omega",)
     momenta = ("momentum",)
-    elements = "taylor_verify.exact.euler.elements:elements"
+    room = "taylor_verify.exact.euler"
 
     @property
     def components(self) -> Mapping[str, tuple[str, ...]]:
@@ -88,9 +80,6 @@ class Rigid(Kind[RigidBody, Spin]):
 
     def manufactured_momentum(self, body: RigidBody) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)
-
-    def closed_form(self, body: RigidBody, route: str) -> str:
-        return (_FREE if body.is_free else _LOADED)[route]
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body = scene.body
