@@ -11,11 +11,12 @@ from typing import Final, final
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, total
-from taylor_verify.exact.invariant import Array, Invariant, norms
+from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy, fourth
 from taylor_verify.exact.parameters import Block, Parameters, entries
+from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
