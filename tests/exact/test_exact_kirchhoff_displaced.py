@@ -8,7 +8,7 @@ import pytest
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.kirchhoff import displaced, turned
+from taylor_verify.exact.kirchhoff import closed, displaced
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
@@ -87,7 +87,7 @@ def test_a_displacement_to_the_wrong_side_is_seen(
     def astray(inner: object, a: Fraction, of: Scene) -> object:
         return displaced.displaced(inner, -a, of)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(turned, "displaced", astray)
+    monkeypatch.setattr(closed, "displaced", astray)
     found = solution(asked, route).motion(TIMES, DIGITS)
     assert distance(found, TaylorSolution(asked).motion(TIMES, DIGITS)) > 0.1
 

@@ -10,7 +10,7 @@ from builders.numbers import apart
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.kirchhoff.planar import closed_form, enclosed
+from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.plane import plane, regime
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution

@@ -1,6 +1,6 @@
 """A triaxial body under a constant moment, in closed form: against the Taylor route and the equations.
 
-Legend as in taylor_verify.exact.euler.moments.washboard.
+Legend as in taylor_verify.exact.euler.moments.washboard.board.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import condition, differences
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.euler.moments import washboard_balls, washboard_chebyshev
-from taylor_verify.exact.euler.moments.turnings import regime, turnings
-from taylor_verify.exact.euler.moments.washboard_balls import Turn
-from taylor_verify.exact.euler.moments.washboard_panels import Panels
-from taylor_verify.exact.euler.moments.washboard_speed import speed
+from taylor_verify.exact.euler.moments.washboard import balls, chebyshev
+from taylor_verify.exact.euler.moments.washboard.balls import Turn
+from taylor_verify.exact.euler.moments.washboard.panels import Panels
+from taylor_verify.exact.euler.moments.washboard.speed import speed
+from taylor_verify.exact.euler.moments.washboard.turnings import regime, turnings
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
@@ -376,7 +376,7 @@ def test_a_turning_point_on_the_wrong_branch_is_caught(monkeypatch: pytest.Monke
     expected = TaylorSolution(scene).motion(times, DIGITS)
     turning = [float(row[0]) for row in expected["omega"]]
     assert min(turning) < 0 < max(turning)
-    monkeypatch.setattr(washboard_balls, "Turn", OneBranch)
+    monkeypatch.setattr(balls, "Turn", OneBranch)
     found = solution(scene, "arb").motion(times, DIGITS)
     assert not gap(found, expected) <= mpf("1e-3")
     after = next(t for t, spin in zip(times, turning, strict=True) if spin < 0)
@@ -386,7 +386,7 @@ def test_a_turning_point_on_the_wrong_branch_is_caught(monkeypatch: pytest.Monke
         assert max(abs(value - kept[0]) for value in kept) <= mpf("1e-40")
 
 
-class LateTurn(washboard_chebyshev.Swing):
+class LateTurn(chebyshev.Swing):
     """Broken on purpose: the start on the wrong branch, after the turn where it is before it."""
 
     def __init__(self, *given: Any) -> None:
@@ -401,7 +401,7 @@ def test_a_start_on_the_wrong_side_of_the_turn_is_caught(monkeypatch: pytest.Mon
     assert isinstance(scene.initial, Spin)
     a, b, c = scene.initial.omega
     back = replace(scene, initial=Spin((a, -b, c), FRAME))
-    monkeypatch.setattr(washboard_chebyshev, "Swing", LateTurn)
+    monkeypatch.setattr(chebyshev, "Swing", LateTurn)
     found = solution(back, "mpmath").motion([Fraction(0)], 20)
     with mp.workdps(30):
         start = np.array([mp.convert(e) for e in (a, -b, c)], dtype=object)

@@ -1,6 +1,6 @@
 """Washboard orbits with many teeth between the start, the turning point and the time asked for.
 
-Legend as in taylor_verify.exact.euler.moments.washboard and washboard_teeth.
+Legend as in taylor_verify.exact.euler.moments.washboard.board and teeth.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from builders.washboards import DIGITS, ROUTES, axial, board, gap
 from flint import arb, ctx, fmpq
 from mpmath import mpf
 
-from taylor_verify.exact.euler.moments import washboard_teeth
-from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, located
-from taylor_verify.exact.euler.moments.washboard_balls import Course, Turn
-from taylor_verify.exact.euler.moments.washboard_speed import speed
-from taylor_verify.exact.euler.moments.washboard_teeth import FarTeeth
+from taylor_verify.exact.euler.moments.washboard import teeth
+from taylor_verify.exact.euler.moments.washboard.balls import Course, Turn
+from taylor_verify.exact.euler.moments.washboard.speed import speed
+from taylor_verify.exact.euler.moments.washboard.teeth import FarTeeth
+from taylor_verify.exact.euler.moments.washboard.turnings import MOST_TEETH, located
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
@@ -124,14 +124,14 @@ def test_a_wrong_term_of_the_sum_over_teeth_is_caught(
     place: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A coefficient that is off by a part in a million: the balls no longer overlap."""
-    sound = washboard_teeth._coefficients
+    sound = teeth._coefficients
 
     def broken(a: int, bits: int) -> list[fmpq]:
         found = sound(a, bits)
         found[place] *= 1 + fmpq(1, 10**6)
         return found
 
-    monkeypatch.setattr(washboard_teeth, "_coefficients", broken)
+    monkeypatch.setattr(teeth, "_coefficients", broken)
     once, each = far_and_near(128)
     assert not once.overlaps(each)
 

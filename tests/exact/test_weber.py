@@ -19,6 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.weber import enclosure
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
@@ -97,7 +98,7 @@ def test_the_sums_in_mpmath_are_the_balls(body: str, start: str) -> None:
 def test_far_times_cost_no_digit() -> None:
     """After 10^12 units of time, and three more: Taylor leads from the one state to the other."""
     scene, far, on = shipped(), Fraction(10**12), Fraction(3)
-    there = enclosure.enclosed(scene).motion([far, far + on], DIGITS)
+    there = closed.enclosed(scene).motion([far, far + on], DIGITS)
     x, y = (
         tuple(exact_value(entry) for entry in there[name][0])
         for name in ("linear_impulse", "angular_impulse")
@@ -201,7 +202,7 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
         vector(1, 2, 3),
     )
     times = [Fraction(-7, 2)]
-    found = enclosure.enclosed(near).motion(times, 30)
+    found = closed.enclosed(near).motion(times, 30)
     truth = TaylorSolution(near).motion(times, 30)
     with mp.workdps(60):
         e = [surd.form(mp.convert, mp.sqrt) for surd in curve_of(near).branches]

@@ -21,5 +21,5 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     Where there is no closed form it says so, and holds only what is exact without one. Raises
     exact.solution.Unsettled where the digits cannot be had.
     """
-    found: Elements = function_at(kind_of(scene.body).elements)(scene, digits)
+    found: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(scene, digits)
     return found

@@ -1,8 +1,4 @@
-"""A conserved quantity of a free motion, and the arithmetic of rows of vectors that it is written in.
-
-Everything works at the ambient precision, on the truth and on a solver's motion alike, whether their
-numbers are mpmath's or MPFR's (scenes.mpfr), and answers in the same.
-"""
+"""A conserved quantity of a free motion."""
 
 from __future__ import annotations
 
@@ -13,8 +9,6 @@ from typing import Any
 import numpy as np
 
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.mpfr import real, sqrt
-from taylor_verify.scenes.tensors import Matrix
 
 Array = np.ndarray[Any, Any]
 
@@ -36,73 +30,3 @@ class Invariant:
     value: Callable[[Motion], Array]
     scale: Callable[[Motion], Any]
     sensitivity: Callable[[Motion], Mapping[str, Array]]
-
-
-# Rows of vectors.
-
-
-def applied(matrix: Matrix, rows: Array) -> Array:
-    """The matrix times every row, its exact entries taken at the ambient precision."""
-    image: Array = rows @ real(matrix, rows).T
-    return image
-
-
-def turned(attitude: Array, rows: Array) -> Array:
-    """R v, row by row: body axes to space axes."""
-    turned: Array = np.matmul(attitude, rows[:, :, None])[:, :, 0]
-    return turned
-
-
-def dot(a: Array, b: Array) -> Array:
-    sums: Array = np.sum(a * b, axis=1)
-    return sums
-
-
-def squares(rows: Array) -> Array:
-    return dot(rows, rows)
-
-
-def cross(a: Array, b: Array) -> Array:
-    j, k = [1, 2, 0], [2, 0, 1]
-    product: Array = a[:, j] * b[:, k] - a[:, k] * b[:, j]
-    return product
-
-
-def cross_matrices(rows: Array) -> Array:
-    """[v]x for every row v, (n, 3, 3): [v]x d = v x d."""
-    found = np.full((len(rows), 3, 3), real([0], rows)[0])
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[:, i, j], found[:, j, i] = -rows[:, k], rows[:, k]
-    return found
-
-
-def norms(rows: Array) -> Array:
-    return sqrt(squares(rows))
-
-
-def spectral_norms(matrices: Array) -> Array:
-    """The largest singular value of every matrix, to float64 accuracy but in the numbers' own range."""
-    largest = [max(abs(entry) for entry in matrix.flat) for matrix in matrices]
-    sizes = np.array([nonzero(size) for size in largest], dtype=object)
-    moderate = (matrices / sizes[:, None, None]).astype(np.float64)
-    singular = np.linalg.norm(moderate, 2, axis=(1, 2))
-    norms: Array = np.array(singular.tolist(), dtype=object) * sizes
-    return norms
-
-
-def ones(rows: Array) -> Array:
-    """One 1 for every row, in the rows' own numbers."""
-    return real([1] * len(rows), rows)
-
-
-def size(rows: Array) -> Any:
-    return max(norms(rows))
-
-
-def largest(values: Array) -> Any:
-    return nonzero(max(abs(value) for value in values))
-
-
-def nonzero(scale: Any) -> Any:
-    """The scale, or 1 where it vanishes: what is measured is then absolute."""
-    return scale if scale != 0 else 0 * scale + 1

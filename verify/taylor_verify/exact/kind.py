@@ -38,8 +38,12 @@ class Kind(ABC, Generic[B, S]):
     """The quantities that z consists of, three components each."""
     momenta: ClassVar[tuple[str, ...]]
     """The blocks of the momentum, three components each."""
-    elements: ClassVar[str]
-    """``module:function`` of (scene, digits): the elements of an orbit."""
+    room: ClassVar[str]
+    """The package of this kind, for what is imported late.
+
+    Its module ``closed`` has the closed forms of a scene: ``enclosed`` in balls, ``closed_form`` in mpmath;
+    each may raise NoClosedForm. Its module ``elements`` has ``elements`` (scene, digits) of the orbit.
+    """
 
     @property
     def components(self) -> Mapping[str, tuple[str, ...]]:
@@ -98,11 +102,7 @@ class Kind(ABC, Generic[B, S]):
         """The momentum of the manufactured motion, if there is one."""
         return body.manufactured
 
-    # Closed forms, and what is conserved.
-
-    @abstractmethod
-    def closed_form(self, body: B, route: str) -> str:
-        """``module:function`` of (scene): the closed form by this route, which may raise NoClosedForm."""
+    # What is conserved.
 
     @abstractmethod
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:

@@ -43,7 +43,7 @@ def enclosed(scene: Scene) -> EnclosedPolynomial:
     return EnclosedPolynomial(scene, _motion(scene))
 
 
-def doubled(scene: Scene) -> DoubledPolynomial:
+def closed_form(scene: Scene) -> DoubledPolynomial:
     """The motion in mpmath, by doubled angles; raises NoClosedForm likewise."""
     return DoubledPolynomial(scene, _motion(scene))
 

@@ -18,6 +18,7 @@ from mpmath import mp
 from taylor_verify.exact import clocks
 from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.units import Units
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.precision import power_of_two
@@ -103,7 +104,7 @@ class _Flow:
         firsts, seconds = [rate], [second]
         if attitude is None:
             return firsts, seconds
-        spin, spun = _cross_matrices(z @ self.spin.T), _cross_matrices(rate @ self.spin.T)
+        spin, spun = cross_matrices(z @ self.spin.T), cross_matrices(rate @ self.spin.T)
         turning = attitude @ spin
         firsts.append(turning)
         seconds.append(turning @ spin + attitude @ spun)
@@ -114,15 +115,6 @@ class _Flow:
                 np.einsum("tij,tj->ti", turning, speed) + np.einsum("tij,tj->ti", attitude, pushed)
             )
         return firsts, seconds
-
-
-def _cross_matrices(vectors: Floats) -> Floats:
-    """[v]x of every row, so that [v]x w = v x w."""
-    x, y, z = vectors.T
-    zero = np.zeros_like(x)
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    matrices: Floats = np.moveaxis(np.array(rows), 2, 0)
-    return matrices
 
 
 @lru_cache(maxsize=16)

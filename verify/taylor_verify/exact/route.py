@@ -19,12 +19,9 @@ from taylor_verify.scenes.scene import Scene
 _FEW_PRECISIONS: Final = 3
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
-CLOSED_ROUTES: Final = ("arb", "mpmath")
-# The closed form of a body with a manufactured motion, of any kind.
-_MANUFACTURED: Final[Mapping[str, str]] = {
-    "arb": "taylor_verify.exact.manufactured:enclosed",
-    "mpmath": "taylor_verify.exact.manufactured:doubled",
-}
+# The functions of a closed form by route: in exact.manufactured, and in ``closed`` of each kind's room.
+_FUNCTIONS: Final[Mapping[str, str]] = {"arb": "enclosed", "mpmath": "closed_form"}
+CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
 
 
 @final
@@ -88,9 +85,8 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:
+    module = f"{kind_of(scene.body).room}.closed"
     if scene.body.manufactured is not None:
-        place = _MANUFACTURED[route]
-    else:
-        place = kind_of(scene.body).closed_form(scene.body, route)
-    found: Solution = function_at(place)(scene)
+        module = "taylor_verify.exact.manufactured"
+    found: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     return found

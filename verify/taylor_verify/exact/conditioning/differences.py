@@ -19,6 +19,7 @@ from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -116,7 +117,7 @@ class Derivatives:
             inverses = [_balls(D).inv() for D in self.momentum]
 
             def carried(k: int, i: int) -> Floats:
-                arm = _cross_matrices(path[[i]] - path[[k]])[0]
+                arm = cross_matrices(path[[i]] - path[[k]])[0]
                 moved = shift[i] - shift[k] + arm @ turn[k]
                 rows = np.concatenate([self.momentum[i], turn[i] - turn[k], moved])
                 whole = np.eye(d + 6)
@@ -193,10 +194,3 @@ def _balls(matrix: Array) -> arb_mat:
 def _floats(matrix: arb_mat) -> Floats:
     """The midpoints; infinite beyond float64."""
     return np.array([[float(entry) for entry in row] for row in matrix.table()])
-
-
-def _cross_matrices(vectors: Array) -> Array:
-    """[v]x of every row."""
-    x, y, z = vectors.T
-    zero = 0 * x
-    return np.moveaxis(np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]), 2, 0)

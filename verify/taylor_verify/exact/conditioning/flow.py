@@ -150,14 +150,6 @@ def applied(matrices: Floats, vectors: Floats) -> Floats:
     return (matrices @ vectors[..., None])[..., 0]
 
 
-def cross_matrix(v: Floats) -> Floats:
-    """[v]x (..., 3, 3) of v (..., 3)."""
-    found = np.zeros((*v.shape, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[..., j, i], found[..., i, j] = v[..., k], -v[..., k]
-    return found
-
-
 def _norm(matrices: Floats) -> Floats:
     found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
     return found

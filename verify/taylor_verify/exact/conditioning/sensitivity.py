@@ -27,6 +27,7 @@ from taylor_verify.exact.conditioning.differences import difference, real
 from taylor_verify.exact.conditioning.inputs import Input, body_input, start_inputs
 from taylor_verify.exact.enclosure.system import posed_exactly
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.rows import cross_matrices, turned
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
@@ -229,8 +230,8 @@ def _by_place(motion: Quantities, working: int) -> Iterator[tuple[Pair, tuple[Ar
             if out == into:
                 values[:, [0, 1, 2], [0, 1, 2]] = mpf(1)
             elif out == "centre":
-                for axis in range(3):
-                    values[:, :, axis] = _cross(_unit_vector(axis), rows.T).T
+                # theta x c = -[c]x theta.
+                values = values - cross_matrices(rows)
                 # Of the centre itself 10^-working is proven.
                 errors += (mpf(10) ** -working * _lengths(rows))[:, None]
             yield (out, into), (values, errors)
@@ -238,10 +239,6 @@ def _by_place(motion: Quantities, working: int) -> Iterator[tuple[Pair, tuple[Ar
 
 def _places(motion: Quantities) -> list[str]:
     return [name for name in ("attitude", "centre") if name in motion]
-
-
-def _unit_vector(axis: int) -> Array:
-    return np.array([mpf(int(i == axis)) for i in range(3)], dtype=object)
 
 
 def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
@@ -254,15 +251,5 @@ def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     found = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
     for name, form in (("attitude", system.forms.spin), ("centre", system.forms.velocity)):
         if name in motion:
-            found[name] = _turned(motion["attitude"], z @ real(form).T)
+            found[name] = turned(motion["attitude"], z @ real(form).T)
     return found
-
-
-def _turned(attitudes: Array, vectors: Array) -> Array:
-    """R v at every time."""
-    return (attitudes @ vectors[:, :, None])[:, :, 0]
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """a x b for components along the first axis."""
-    return np.array([a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))], dtype=object)

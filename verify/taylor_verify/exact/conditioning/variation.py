@@ -23,11 +23,11 @@ from taylor_verify.exact.conditioning.flow import (
     Flow,
     Steps,
     applied,
-    cross_matrix,
     products,
 )
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
@@ -115,7 +115,7 @@ def _steps(flow: Flow, samples: _Samples, times: Floats) -> Floats | None:
     parts = (reached.by_momentum, reached.turn, reached.shift)
     steps[:, :, :d] = np.concatenate(parts, axis=1)
     if len(samples.centre):
-        steps[:, d + 3 :, d : d + 3] = -cross_matrix(np.diff(samples.centre, axis=0))
+        steps[:, d + 3 :, d : d + 3] = -cross_matrices(np.diff(samples.centre, axis=0))
     return steps
 
 
@@ -207,11 +207,11 @@ def _rates(flow: Flow, at: _Arcs) -> _Arcs:
         shift = np.zeros_like(turn)
     else:
         speed = applied(R, at.momentum @ flow.velocity.T)
-        shift = R @ (flow.velocity @ at.by_momentum) - cross_matrix(speed) @ at.turn
+        shift = R @ (flow.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
         clock=at.clock @ flow.swing.turning.T,
         momentum=flow.load(at.clock) + applied(jacobian, at.momentum) / 2,
-        attitude=R @ cross_matrix(at.momentum @ flow.omega.T),
+        attitude=R @ cross_matrices(at.momentum @ flow.omega.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,
         shift=shift,

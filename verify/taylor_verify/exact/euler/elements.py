@@ -17,11 +17,11 @@ from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.orbit import Orbit, Precession, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.scene import Scene
 
 # Up to here the leading law of the flip is off by (1 - 1/L) m'/4 of itself, less than 2 %.
@@ -68,13 +68,12 @@ _LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
 
 def elements(scene: Scene, digits: int) -> Elements:
     """Of a free body every element it has; of a body under a moment a period at most, and words."""
-    assert isinstance(scene.body, RigidBody)
-    assert isinstance(scene.initial, Spin)
-    if scene.body.manufactured is not None:
+    body, start = top(scene)
+    if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
-    if not scene.body.is_free:
-        return _loaded(scene.body, scene.initial.omega, digits)
-    spin = FreeSpin(scene.body.inertia, scene.initial.omega)
+    if not body.is_free:
+        return _loaded(body, start.omega, digits)
+    spin = FreeSpin(body.inertia, start.omega)
     found = settled(lambda _: _numbers(spin), digits)
     story = _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
     return Elements(spin.regime.value, found, (story, _CONSERVED))
@@ -98,10 +97,10 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
 
 def _washboard(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Three different moments; raises NoClosedForm where M is along none of their axes."""
-    from taylor_verify.exact.euler.moments import washboard, washboard_elements
+    from taylor_verify.exact.euler.moments.washboard.board import Washboard
+    from taylor_verify.exact.euler.moments.washboard.elements import elements
 
-    board = washboard.Washboard(body.inertia, body.moment, omega)
-    return washboard_elements.elements(board, digits)
+    return elements(Washboard(body.inertia, body.moment, omega), digits)
 
 
 def _circle(spin: LoadedSpin) -> list[Element]:

@@ -5,17 +5,8 @@ Written from the definitions and independent of the equations of motion.
 
 from __future__ import annotations
 
-from taylor_verify.exact.invariant import (
-    Array,
-    Invariant,
-    applied,
-    dot,
-    largest,
-    norms,
-    ones,
-    squares,
-    turned,
-)
+from taylor_verify.exact.invariant import Array, Invariant
+from taylor_verify.exact.rows import applied, dot, largest, norms, ones, squares, turned
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Motion
 

@@ -13,10 +13,10 @@ from mpmath import mp, mpf
 from taylor_verify.exact.euler.attitude import FrameLaw, frame_law
 from taylor_verify.exact.euler.orbit import Orbit, Precession, converted
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Settled, Solution
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Quaternion, Spin
+from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
 
@@ -36,12 +36,11 @@ def closed_form(scene: Scene) -> Solution:
 
     Raises NoClosedForm for a constant moment.
     """
-    if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
-        raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
-    if not scene.body.is_free:
+    body, start = top(scene)
+    if not body.is_free:
         raise NoClosedForm("a moment acts on the body")
-    attitude = scene.initial.attitude if "attitude" in scene.track else None
-    return FreeRotation(FreeSpin(scene.body.inertia, scene.initial.omega), attitude)
+    attitude = start.attitude if "attitude" in scene.track else None
+    return FreeRotation(FreeSpin(body.inertia, start.omega), attitude)
 
 
 class FreeRotation(Settled):

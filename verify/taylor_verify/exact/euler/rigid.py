@@ -10,9 +10,10 @@ from typing import Final, final
 from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, times, total
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum
-from taylor_verify.exact.invariant import Array, Invariant, applied, norms
+from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.parameters import Block, Parameters, entries
+from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -21,14 +22,6 @@ from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-_FREE: Final = {
-    "arb": "taylor_verify.exact.euler.theta:enclosed",
-    "mpmath": "taylor_verify.exact.euler.jacobi:closed_form",
-}
-_LOADED: Final = {
-    "arb": "taylor_verify.exact.euler.moments.closed:enclosed",
-    "mpmath": "taylor_verify.exact.euler.moments.closed:closed_form",
-}
 _ONE: Final = tensors.diagonal((Fraction(1),) * 3)
 
 
@@ -38,7 +31,7 @@ class Rigid(Kind[RigidBody, Spin]):
 
     moving = ("omega",)
     momenta = ("momentum",)
-    elements = "taylor_verify.exact.euler.elements:elements"
+    room = "taylor_verify.exact.euler"
 
     @property
     def components(self) -> Mapping[str, tuple[str, ...]]:
@@ -88,9 +81,6 @@ class Rigid(Kind[RigidBody, Spin]):
 
     def manufactured_momentum(self, body: RigidBody) -> Manufactured | None:
         return None if body.manufactured is None else body.manufactured.mapped(body.inertia)
-
-    def closed_form(self, body: RigidBody, route: str) -> str:
-        return (_FREE if body.is_free else _LOADED)[route]
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body = scene.body

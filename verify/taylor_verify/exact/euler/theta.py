@@ -17,11 +17,11 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
 from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.quaternion import Quaternion, Rows
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.euler.tumbling import Tumbling
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.scenes import motion, tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
 _STEADY: Final = (Regime.REST, Regime.SPHERICAL, Regime.STEADY)
@@ -35,12 +35,11 @@ def enclosed(scene: Scene) -> FreeRotationBalls:
 
     Raises NoClosedForm for a constant moment.
     """
-    if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
-        raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
-    if not scene.body.is_free:
+    body, start = top(scene)
+    if not body.is_free:
         raise NoClosedForm("a moment acts on the body")
-    free = FreeSpin(scene.body.inertia, scene.initial.omega)
-    return FreeRotationBalls(free, scene.initial.attitude, "attitude" in scene.track)
+    free = FreeSpin(body.inertia, start.omega)
+    return FreeRotationBalls(free, start.attitude, "attitude" in scene.track)
 
 
 class Course(Protocol):

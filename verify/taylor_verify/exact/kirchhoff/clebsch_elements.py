@@ -31,10 +31,10 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.kirchhoff.regime import regime, turning_points
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Orbital
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
@@ -70,9 +70,7 @@ _STORY: Final[Mapping[str, str]] = {
 
 def elements(scene: Scene, digits: int) -> Elements:
     """Of Clebsch's free body every element; of any other solid what is exact without a solution."""
-    body, start = scene.body, scene.initial
-    assert isinstance(body, ImmersedBody)
-    assert isinstance(start, Impulse)
+    body, start = solid(scene)
     if body.manufactured is not None:
         return Elements(REGIME, (), MANUFACTURED)
     if not body.is_free:

@@ -19,6 +19,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled, Solution
 from taylor_verify.scenes import tensors
@@ -35,9 +36,7 @@ def centred(scene: Scene) -> tuple[Scene, Fraction]:
     A body that is there already, one that axis 3 is no axis of symmetry of, and one that loads act
     on keep their origin.
     """
-    body, start = scene.body, scene.initial
-    assert isinstance(body, ImmersedBody)
-    assert isinstance(start, Impulse)
+    body, start = solid(scene)
     beta, r = body.coupling[0][1], body.angular[0][0]
     if not beta or body.axis_of_symmetry != 3 or not body.is_free:
         return scene, Fraction(0)
@@ -64,8 +63,7 @@ def centred(scene: Scene) -> tuple[Scene, Fraction]:
 
 def displaced(inner: Solution, distance: Fraction, scene: Scene) -> Solution:
     """The motion of the scene itself, from that of the scene about the other origin."""
-    start = scene.initial
-    assert isinstance(start, Impulse)
+    _, start = solid(scene)
     if isinstance(inner, Enclosed):
         return DisplacedBalls(inner, distance, start)
     return Displaced(inner, distance, start)

@@ -18,6 +18,7 @@ from taylor_verify.exact.kirchhoff.conserved import conserved
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane, plane, regime
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -66,9 +67,7 @@ _STORY: Final[Mapping[str, str]] = {
 
 def elements_of(scene: Scene, digits: int) -> Elements:
     """The elements of a free body without an axis of symmetry."""
-    body, start = scene.body, scene.initial
-    assert isinstance(body, ImmersedBody)
-    assert isinstance(start, Impulse)
+    body, start = solid(scene)
     found = plane(scene)
     alone = replace(scene, track=frozenset())
     kind, weber = NO_CLOSED_FORM if found is None else regime(found), _of_genus_two(alone)

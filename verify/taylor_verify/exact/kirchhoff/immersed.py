@@ -11,11 +11,12 @@ from typing import Final, final
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, total
-from taylor_verify.exact.invariant import Array, Invariant, norms
+from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy, fourth
 from taylor_verify.exact.parameters import Block, Parameters, entries
+from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
@@ -23,10 +24,6 @@ from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
-_CLOSED: Final = {
-    "arb": "taylor_verify.exact.kirchhoff.weber.enclosure:enclosed",
-    "mpmath": "taylor_verify.exact.kirchhoff.weber.sums:closed_form",
-}
 # x and y as linear forms of (x, y).
 _X: Final = tuple(tuple(Fraction(int(i == k)) for k in range(6)) for i in range(3))
 _Y: Final = tuple(tuple(Fraction(int(i + 3 == k)) for k in range(6)) for i in range(3))
@@ -38,7 +35,7 @@ class Immersed(Kind[ImmersedBody, Impulse]):
 
     moving = ("linear_impulse", "angular_impulse")
     momenta = ("linear_impulse", "angular_impulse")
-    elements = "taylor_verify.exact.kirchhoff.elements:elements"
+    room = "taylor_verify.exact.kirchhoff"
 
     def state(self, initial: Impulse) -> Vector:
         return initial.linear + initial.angular
@@ -85,9 +82,6 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         moment = linear + velocity + time
         angular = largest(exponent(y), later(exponent(couple), time), moment, default=0)
         return Units((linear, angular), velocity + time, time)
-
-    def closed_form(self, body: ImmersedBody, route: str) -> str:
-        return _CLOSED[route]
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body = scene.body

@@ -11,9 +11,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.invariant import (
-    Array,
-    Invariant,
+from taylor_verify.exact.invariant import Array, Invariant
+from taylor_verify.exact.kirchhoff.integrable import Fourth
+from taylor_verify.exact.rows import (
     applied,
     cross,
     cross_matrices,
@@ -27,7 +27,6 @@ from taylor_verify.exact.invariant import (
     squares,
     turned,
 )
-from taylor_verify.exact.kirchhoff.integrable import Fourth
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 

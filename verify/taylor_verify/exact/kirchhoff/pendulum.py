@@ -23,10 +23,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.kirchhoff.plane import Plane
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.zeta import SquaredSine
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled
-from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
 _GUARD_DIGITS: Final = 12
@@ -49,9 +49,9 @@ class Pendulum(Settled):
     route = "mpmath"
 
     def __init__(self, kind: str, found: Plane, scene: Scene) -> None:
-        assert isinstance(scene.initial, Impulse)
         self.regime = kind
-        self._plane, self._start, self._track = found, scene.initial, scene.track
+        self._plane, self._track = found, scene.track
+        _, self._start = solid(scene)
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         longest = max((abs(t) for t in elapsed), default=Fraction(0))

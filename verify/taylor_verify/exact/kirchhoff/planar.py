@@ -1,7 +1,7 @@
-"""A body without symmetry that moves in one of its planes: its closed form, by two routes.
+"""A body without symmetry that moves in one of its planes as a body of revolution does.
 
-They share no formula: in balls it is the motion of a body of revolution that moves alike, by sigma
-functions (weierstrass.py); in mpmath a pendulum, by Jacobi's (pendulum.py).
+That is the route in balls, by sigma functions (weierstrass.py). The route in mpmath shares no formula with
+it: there the motion is a pendulum's, by Jacobi's functions (pendulum.py).
 """
 
 from __future__ import annotations
@@ -13,9 +13,7 @@ from typing import final
 
 from mpmath import mpf
 
-from taylor_verify.exact.kirchhoff import turned
-from taylor_verify.exact.kirchhoff.pendulum import Pendulum
-from taylor_verify.exact.kirchhoff.plane import Plane, plane, regime
+from taylor_verify.exact.kirchhoff.plane import Plane, regime
 from taylor_verify.exact.solution import Quantities, Solution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -23,28 +21,11 @@ from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
 
-def enclosed(scene: Scene) -> Solution:
-    """A closed form in balls of a scene without loads: of Clebsch's body, or of a motion in a plane.
-
-    In its plane a body moves as that body of revolution does whose T has the same p_i, p_j and r,
-    with axis a. Raises NoClosedForm, with the reason, for every other scene.
-    """
-    found = plane(scene)
-    if found is None:
-        return turned.enclosed(scene)
-    return LikeRevolution(found, turned.enclosed(of_revolution(scene, found)))
-
-
-def closed_form(scene: Scene) -> Solution:
-    """The same in mpmath, in a plane by the pendulum's formulas."""
-    found = plane(scene)
-    if found is None:
-        return turned.closed_form(scene)
-    return Pendulum(regime(found), found, scene)
-
-
 def of_revolution(scene: Scene, found: Plane) -> Scene:
-    """The scene with the body of revolution about the axis a that moves alike."""
+    """The scene with the body of revolution about the axis a that moves alike in the plane.
+
+    Its T has the same p_i, p_j and r.
+    """
     along, across = found.p
     p = tuple(along if n == found.a else across for n in range(3))
     body = ImmersedBody(

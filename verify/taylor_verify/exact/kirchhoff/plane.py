@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -69,9 +70,7 @@ def plane(scene: Scene) -> Plane | None:
 
     Decided in rationals: nothing of the start points out of the plane, and nothing of T leads out.
     """
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        return None
+    body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None:
         return None
     for k in range(3):

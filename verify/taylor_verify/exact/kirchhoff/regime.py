@@ -14,8 +14,8 @@ from taylor_verify.exact.kirchhoff.quartic import (
     repeated_root,
     value,
 )
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
-from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
@@ -28,11 +28,7 @@ def nutation_of(scene: Scene) -> tuple[Nutation, Impulse]:
 
     Raises NoClosedForm, with the reason, for every other scene.
     """
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        raise TypeError(
-            f"expected a scene of the model kirchhoff, got {scene.model} @ {scene.name}"
-        )
+    body, start = solid(scene)
     if not body.is_free:
         raise NoClosedForm("a force or a couple acts on the body")
     if body.clebsch is None:

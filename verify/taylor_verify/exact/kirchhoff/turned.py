@@ -7,14 +7,14 @@ their form; space axes stay, and of the attitude R' = R Q the columns change the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import final
 
 import numpy as np
 
-from taylor_verify.exact.kirchhoff.displaced import centred, displaced
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.solution import Quantities, Solution
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion, Quaternion
@@ -24,34 +24,13 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 _BODY_AXES = ("linear_impulse", "angular_impulse", "attitude")
 
 
-def enclosed(scene: Scene) -> Solution:
-    """The closed form in balls of a solid of revolution about any body axis, without loads.
-
-    Clebsch's energy, that is, about some point of the axis.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    from taylor_verify.exact.kirchhoff.weierstrass import enclosed
-
-    return _solved(scene, enclosed)
-
-
-def closed_form(scene: Scene) -> Solution:
-    """The same by Jacobi's functions in mpmath."""
-    from taylor_verify.exact.kirchhoff.jacobi import closed_form
-
-    return _solved(scene, closed_form)
-
-
 def upright(scene: Scene) -> tuple[Scene, int]:
     """The scene in axes of which the third is the axis of symmetry, and that axis as it was.
 
     A body without one keeps its axes, as does one with a choice that includes the third, and one
     that loads act on.
     """
-    body, start = scene.body, scene.initial
-    assert isinstance(body, ImmersedBody)
-    assert isinstance(start, Impulse)
+    body, start = solid(scene)
     axis = body.axis_of_symmetry or 3
     if axis == 3 or not body.is_free:
         return scene, 3
@@ -96,15 +75,6 @@ class Turned(Solution):
             name: np.take(rows, self._places, axis=-1) if name in _BODY_AXES else rows
             for name, rows in quantities.items()
         }
-
-
-def _solved(scene: Scene, solve: Callable[[Scene], Solution]) -> Solution:
-    named_anew, axis = upright(scene)
-    moved, distance = centred(named_anew)
-    found = solve(moved)
-    if distance:
-        found = displaced(found, distance, named_anew)
-    return found if axis == 3 else Turned(found, axis)
 
 
 def _order(axis: int) -> tuple[int, int, int]:

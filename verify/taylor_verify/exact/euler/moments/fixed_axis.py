@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
 from taylor_verify.exact.euler import quaternion
-from taylor_verify.exact.euler.moments.washboard import Washboard, WashboardRegime
+from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled

@@ -27,10 +27,9 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.scenes import motion, tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -210,10 +209,9 @@ def loaded(scene: Scene) -> tuple[LoadedSpin, motion.Quaternion | None]:
 
     Raises NoClosedForm where anything that is tracked has none.
     """
-    if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
-        raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
-    spin = LoadedSpin(scene.body.inertia, scene.body.moment, scene.initial.omega)
+    body, start = top(scene)
+    spin = LoadedSpin(body.inertia, body.moment, start.omega)
     if "attitude" not in scene.track:
         return spin, None
     _ = spin.line  # decided here, and not when the first sample is asked for
-    return spin, scene.initial.attitude
+    return spin, start.attitude

@@ -29,6 +29,7 @@ from functools import cached_property, cmp_to_key
 from typing import Final
 
 from taylor_verify.exact.kirchhoff.plane import plane
+from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.scenes import tensors
@@ -168,9 +169,7 @@ def curve(scene: Scene) -> Curve | None:
     A motion in a plane of the body is left to the pendulum's formulas. Raises NoClosedForm, with the
     reason, for what is of the family and has no theta functions of genus two.
     """
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        return None
+    body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
         return None
     if not belongs(body) or plane(scene) is not None:

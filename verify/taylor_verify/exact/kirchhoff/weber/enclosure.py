@@ -23,24 +23,13 @@ from flint import acb, acb_mat, arb, ctx
 from mpmath import mpf
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls, midpoint, sign
-from taylor_verify.exact.kirchhoff import planar
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches
-from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve, curve
+from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
-from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.scenes.scene import Scene
+from taylor_verify.exact.solution import Unsettled
 
 _CHARACTERISTICS: Final = 16
 _DOUBLINGS: Final = 8
-
-
-def enclosed(scene: Scene) -> Solution:
-    """A closed form in balls of a solid in a fluid without loads: Weber's motion, or planar's answer.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    found = curve(scene)
-    return planar.enclosed(scene) if found is None else WeberBalls(found)
 
 
 @final

@@ -20,14 +20,12 @@ from typing import Final, final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.kirchhoff import planar
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches, of_pair
-from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve, curve
+from taylor_verify.exact.kirchhoff.weber.curve import CYCLIC, REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.quadrature import branch_points, narrowness, real_jacobian
 from taylor_verify.exact.kirchhoff.weber.riemann import Thetas
-from taylor_verify.exact.solution import Quantities, Settled, Solution
+from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes.precision import exact_value
-from taylor_verify.scenes.scene import Scene
 
 _GUARD_DIGITS: Final = 12
 # Enough for a sign of what is not small, and for the size of a rate.
@@ -37,15 +35,6 @@ _ORIGIN: Final = 0
 _PLACES: Final = tuple(
     (Fraction(m, 16), Fraction(n, 16)) for m in range(1, 16, 5) for n in range(1, 16, 5)
 )
-
-
-def closed_form(scene: Scene) -> Solution:
-    """A closed form in mpmath of a solid in a fluid without loads: Weber's motion, or planar's answer.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    found = curve(scene)
-    return planar.closed_form(scene) if found is None else WeberSums(found)
 
 
 @final

@@ -1,6 +1,6 @@
 """The time over any number of teeth of the washboard as one integral over one tooth, in balls.
 
-Legend as in washboard, kappa < 0. Teeth have the width pi/Omega, and from each to the next F grows by
+Legend as in board, kappa < 0. Teeth have the width pi/Omega, and from each to the next F grows by
 d = slope pi/Omega. Hurwitz' zeta function has zeta(1/2, a) - zeta(1/2, a + 1) = a^(-1/2), so that
 
     g(sigma) = d^(-1/2) zeta(1/2, F(sigma)/d),    g(sigma) - g(sigma + pi/Omega) = F(sigma)^(-1/2) = 1/nu,
@@ -26,7 +26,7 @@ from typing import Final, final
 from flint import acb, acb_poly, arb, ctx, fmpq
 
 from taylor_verify.exact.balls import Undecidable
-from taylor_verify.exact.euler.moments.washboard_speed import Swinging
+from taylor_verify.exact.euler.moments.washboard.speed import Swinging
 
 # The least term of the sum is about e^(-2 pi a), 9 bits for each 1 of a: at 6 bits it is not needed.
 _BITS_PER_TOOTH: Final = 6

@@ -1,4 +1,4 @@
-"""The elements of a triaxial body under a moment. Legend as in washboard."""
+"""The elements of a triaxial body under a moment. Legend as in board."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Final
 from mpmath import mp
 
 from taylor_verify.exact.element import Element, Elements, settled
-from taylor_verify.exact.euler.moments.turnings import located, regime
-from taylor_verify.exact.euler.moments.washboard import Washboard, WashboardRegime
-from taylor_verify.exact.euler.moments.washboard_chebyshev import Swing, course
+from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
+from taylor_verify.exact.euler.moments.washboard.chebyshev import Swing, course
+from taylor_verify.exact.euler.moments.washboard.turnings import located, regime
 
 _ALONG: Final = "Three different moments of inertia and a constant moment along a principal axis: "
 _WORK: Final = "Not conserved: T changes by the work of the moment, H by its impulse."

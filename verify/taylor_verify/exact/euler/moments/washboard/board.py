@@ -32,9 +32,6 @@ from functools import cached_property
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Matrix, Vector
 
 
@@ -164,17 +161,3 @@ class Washboard:
         """a.I b/(J |M|^2)."""
         product = tensors.dot(a, tensors.apply(self.inertia, b))
         return product / (self.axial_moment * self.moment_squared)
-
-
-def is_triaxial(scene: Scene) -> bool:
-    """Whether the scene is of a rigid body with three different moments, decided in rationals."""
-    if not (isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin)):
-        raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
-    return FreeSpin(scene.body.inertia, scene.initial.omega).discriminant != 0
-
-
-def washboard(scene: Scene) -> Washboard:
-    """The exact data of a triaxial body under a moment; raises NoClosedForm where that has none."""
-    assert isinstance(scene.body, RigidBody)
-    assert isinstance(scene.initial, Spin)
-    return Washboard(scene.body.inertia, scene.body.moment, scene.initial.omega)

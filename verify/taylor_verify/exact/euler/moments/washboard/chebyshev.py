@@ -1,6 +1,6 @@
 """The bead on the washboard in mpmath: the time as Chebyshev series in an angle, and its inverse.
 
-Legend as in washboard; e_1 and e_2 are the lower and the upper end, and G(e, w) = (F(e + w) - F(e))/w. It
+Legend as in board; e_1 and e_2 are the lower and the upper end, and G(e, w) = (F(e + w) - F(e))/w. It
 shares with the balls which ends there are, and no integral, no variable and no formula for F. In a swing
 put sigma = e_1 + 2h sin^2(psi/2), 2h = e_2 - e_1. Then psi grows for ever, and with what is left of F,
 
@@ -31,10 +31,10 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.euler.moments.turnings import Turnings, located, regime
-from taylor_verify.exact.euler.moments.washboard import Washboard
-from taylor_verify.exact.euler.moments.washboard_panels import Panels
-from taylor_verify.exact.euler.moments.washboard_zeta import ZetaTeeth
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
+from taylor_verify.exact.euler.moments.washboard.panels import Panels
+from taylor_verify.exact.euler.moments.washboard.turnings import Turnings, located, regime
+from taylor_verify.exact.euler.moments.washboard.zeta import ZetaTeeth
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes.precision import exact_value, floor_log2

@@ -1,6 +1,6 @@
 """The run over any number of teeth of the washboard in mpmath, by Hurwitz' zeta function.
 
-Legend as in washboard, kappa < 0. Teeth have the width pi/Omega, and from each to the next F grows by
+Legend as in board, kappa < 0. Teeth have the width pi/Omega, and from each to the next F grows by
 d = slope pi/Omega. With a = F/d on the first tooth, n teeth take the time
 
     T(n) = d^(-1/2) int sum_(k < n) (a + k)^(-1/2) dsigma = Z(0) - Z(n),
@@ -18,8 +18,8 @@ from typing import Final, final
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, TOO_MANY_TEETH
-from taylor_verify.exact.euler.moments.washboard_panels import Panels
+from taylor_verify.exact.euler.moments.washboard.panels import Panels
+from taylor_verify.exact.euler.moments.washboard.turnings import MOST_TEETH, TOO_MANY_TEETH
 from taylor_verify.exact.solution import Unsettled
 
 _MOST_STEPS: Final = 60

@@ -1,6 +1,6 @@
 """The squared speed F of the bead on the washboard, and the v that it carries along, in balls.
 
-Legend as in washboard, x = 2 Omega sigma. Where kappa < 0 (v swings),
+Legend as in board, x = 2 Omega sigma. Where kappa < 0 (v swings),
 
     F = nu0^2 + slope sigma - P (cos x - 1) - Q sin x/(2 Omega),
     (F(e + z) - F(e))/z = slope + s ((F'(e) - slope) cos(Omega z) + F''(e) z s/2),
@@ -27,7 +27,7 @@ from typing import Final, TypeVar, final
 from flint import acb, arb, ctx
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.euler.moments.washboard import Washboard
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
 
 Quotient = Callable[[acb], acb]
 Number = TypeVar("Number", arb, acb)

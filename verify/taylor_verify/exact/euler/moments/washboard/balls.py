@@ -1,7 +1,7 @@
 """The bead on the washboard in balls: the time as a certified integral, and its inverse.
 
-Legend as in washboard and turnings. Near an end e of the interval, side = +1 at the lower and -1 at the
-upper one, put sigma = e + side y^2. Then F = y^2 g with an entire g, the quotient of washboard_speed times
+Legend as in board and turnings. Near an end e of the interval, side = +1 at the lower and -1 at the
+upper one, put sigma = e + side y^2. Then F = y^2 g with an entire g, the quotient of speed times
 side: g(0) = |F'(e)|, and g > 0 up to the other end. So
 
     t = int_0^y 2 dy/g^(1/2),    y' = g^(1/2)/2,    nu = side y g^(1/2),
@@ -22,10 +22,15 @@ from typing import Final, final
 from flint import acb, arb, ctx
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
-from taylor_verify.exact.euler.moments.turnings import MOST_TEETH, TOO_MANY_TEETH, regime, turnings
-from taylor_verify.exact.euler.moments.washboard import Washboard
-from taylor_verify.exact.euler.moments.washboard_speed import Speed, Swinging, speed
-from taylor_verify.exact.euler.moments.washboard_teeth import FarTeeth
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
+from taylor_verify.exact.euler.moments.washboard.speed import Speed, Swinging, speed
+from taylor_verify.exact.euler.moments.washboard.teeth import FarTeeth
+from taylor_verify.exact.euler.moments.washboard.turnings import (
+    MOST_TEETH,
+    TOO_MANY_TEETH,
+    regime,
+    turnings,
+)
 from taylor_verify.exact.solution import Unsettled
 
 _PRECISION_STEP: Final = 32

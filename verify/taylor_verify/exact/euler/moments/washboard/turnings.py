@@ -1,6 +1,6 @@
 """Where the bead on the washboard turns back, in balls: what both routes know of it beforehand.
 
-Legend as in washboard. nu^2 = F(sigma) >= 0 confines sigma to the component about 0 of where F is not
+Legend as in board. nu^2 = F(sigma) >= 0 confines sigma to the component about 0 of where F is not
 negative. There is always a ``lower`` end. Where there is an ``upper`` one the motion is a swing.
 
 kappa > 0: F is concave, so that each side of 0 has one root at most; the upper one is missing where the
@@ -19,8 +19,8 @@ from typing import Final
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import Undecidable
-from taylor_verify.exact.euler.moments.washboard import Washboard, WashboardRegime
-from taylor_verify.exact.euler.moments.washboard_speed import Growing, Speed, Swinging, speed
+from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
+from taylor_verify.exact.euler.moments.washboard.speed import Growing, Speed, Swinging, speed
 from taylor_verify.exact.solution import NoClosedForm
 
 # Each factor of ten takes a digit of the place on a tooth, and what is lost is computed in addition.
