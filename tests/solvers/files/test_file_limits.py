@@ -31,7 +31,7 @@ MOST_MEGABYTES = 300
 READ = """
 import sys
 from taylor_verify.scenes.faults import Refused
-from taylor_verify.solvers.file import read
+from taylor_verify.solvers.files.file import read
 try:
     read(sys.argv[1])
 except Refused as refused:

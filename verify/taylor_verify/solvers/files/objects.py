@@ -47,7 +47,7 @@ def trajectory(held: Any, scene: Scene, columns: Request = ()) -> TrajectoryFile
 
     Returns
     -------
-    solvers.file.TrajectoryFile
+    solvers.files.file.TrajectoryFile
         The trajectory. Its name is the type of the object.
 
     Raises
