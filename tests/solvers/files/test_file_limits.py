@@ -30,7 +30,7 @@ MOST_MEGABYTES = 300
 
 READ = """
 import sys
-from taylor_verify.scenes.faults import Refused
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.files.file import read
 try:
     read(sys.argv[1])
