@@ -19,7 +19,7 @@ from builders.scenes import THREE_INSTANTS
 from taylor_verify.models.problem import pose
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.process import process, supervisor
+from taylor_verify.solvers.process import conversation, process, supervisor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="orphans are adopted on Linux")
@@ -166,7 +166,7 @@ def test_a_program_that_kills_its_supervisor_is_ended_and_told(program: Path) ->
     kills = f"import os\nopen({str(program) + '.pids'!r}, 'w').write(str(os.getpid()))\n"
     found = solve(program, f"{kills}import time; os.kill(os.getppid(), 9)\n{HANG}")
     assert found.outcome is Outcome.CRASHED
-    assert process._UNKNOWN in found.detail
+    assert conversation._UNKNOWN in found.detail
     (pid,) = numbers(Path(f"{program}.pids"))
     deadline = time.monotonic() + 30
     while is_alive(pid) and time.monotonic() < deadline:
@@ -181,7 +181,7 @@ def supervised_by(folder: Path, changes: str, monkeypatch: pytest.MonkeyPatch) -
     main = 'if __name__ == "__main__":'
     assert main in source
     file.write_text(source.replace(main, f"{changes}\n\n{main}"))
-    monkeypatch.setattr(process, "_SUPERVISOR", file)
+    monkeypatch.setattr(conversation, "_SUPERVISOR", file)
 
 
 @pytest.mark.parametrize(("ending", "outcome"), ENDINGS[:2], ids=["answers", "hangs"])
@@ -196,7 +196,7 @@ def test_a_system_that_cannot_says_so(
     supervised_by(program.parent, "sys.platform = 'other'", monkeypatch)
     found = solve(program, HIDES + ending, limit=5 if ending == HANG else 60)
     assert found.outcome is outcome
-    assert process._UNKNOWN in found.detail
+    assert conversation._UNKNOWN in found.detail
     assert all(map(is_alive, numbers(hidden)))
 
 

@@ -6,7 +6,7 @@ u1 u2 u3          velocity of the body's        c1 c2 c3         centre, space a
                   origin, body axes
 x1 x2 x3 y1 y2 y3 impulses, body axes
 
-Usual other names and units are taken and said (solvers.files.columns).
+Usual other names and units are taken and said (the folder columns).
 
 Decimals, ``a/b`` and hexadecimal floats become rationals; binary numbers are taken as they are. None
 of them passes through a double on its way.
@@ -70,7 +70,7 @@ class TrajectoryFile:
     """What a file holds: strictly monotonic times and whole groups of columns, all of one length.
 
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
-    (solvers.files.rows); ``digits`` is the largest number of significant decimals that any value is written
+    (rows.py); ``digits`` is the largest number of significant decimals that any value is written
     with, None where one is binary or a fraction. ``notes`` say how the
     format was read, which columns were taken for which, and which were ignored.
     ``step`` is the integrator's step, where the file states it.
@@ -112,7 +112,7 @@ class TrajectoryFile:
 
 
 def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
-    """Return the trajectory in a file of any format of solvers.files.formats.reading, or in FILE#PART.
+    """Return the trajectory in a file of any format of formats/reading.py, or in FILE#PART.
 
     Columns: ``t``; ``w1 w2 w3``, ``u1 u2 u3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3``
     (scalar first) or ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Usual other names are

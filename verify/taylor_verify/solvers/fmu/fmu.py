@@ -1,8 +1,8 @@
 """A simulator in an FMU, as Modelica tools and Simulink export it: `fmu:PATH.fmu?step=NUMBER&KEY=NAMES`.
 
-It is stepped by fmpy in a process of its own (fmu_runner.py), which speaks the protocol of `process:`; so
+It is stepped by fmpy in a process of its own (runner.py), which speaks the protocol of `process:`; so
 a crash, an endless step and a time limit end as they do there. What of the scene is set in the FMU and
-what is read of it goes by names: those in the table of fmu_runner.py, or those given here.
+what is read of it goes by names: those in the table of runner.py, or those given here.
 
     step=0.01              the longest communication step; by default that of the FMU
     omega=w[1],w[2],w[3]   the FMU's variables of a quantity; one name of a vector stands for all
@@ -46,7 +46,7 @@ _COMMA: Final = re.compile(r",(?![^\[]*\])")
 @final
 @dataclass(frozen=True)
 class Fmu(Solver):
-    """The FMU in a file; ``settings`` is the JSON that fmu_runner.py is started with."""
+    """The FMU in a file; ``settings`` is the JSON that runner.py is started with."""
 
     name: str
     file: Path

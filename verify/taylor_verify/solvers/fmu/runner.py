@@ -1,4 +1,4 @@
-"""An FMU as a program that speaks the protocol: `python fmu_runner.py FMU FOLDER SETTINGS`.
+"""An FMU as a program that speaks the protocol: `python runner.py FMU FOLDER SETTINGS`.
 
 The FMU, for co-simulation, is unpacked into FOLDER. SETTINGS is JSON: `step`, the longest communication
 step or null for that of the FMU; `names`, lists of variables of the FMU in place of those in the table;
@@ -13,6 +13,8 @@ array of the FMU stands for its entries. An index counts from 1, that of a quate
                          attitude_start q0_start ...         centre_start c1_start ...
     read at each time    omega w1 w2 w3            linear_impulse x1 x2 x3         angular_impulse y1 y2 y3
                          attitude q0 q1 q2 q3      centre c1 c2 c3
+
+fmpy's own `simulate_fmu` samples at one interval alone, and a scene has its samples anywhere.
 
 Of what says the same, inertia and inverse_inertia, omega_start and angular_momentum_start, one is enough.
 What is zero, or no rotation, may be missing.

@@ -6,7 +6,8 @@ to another machine could run instructions that the processor does not have.
 
 Here an integrator is a file: the SHA-256 of the rest, then heyoka's own serialisation of the
 integrator, machine code included. A file is whole or absent, since it is moved into its place, so any
-number of processes may share a folder. A file is read only if nobody but its reader could write it.
+number of processes may share a folder. A file is read only if nobody but its reader could write it:
+diskcache and joblib load what anybody has put there.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Seconds between epochs in ISO 8601 text, exactly, with the leap seconds of UTC.
 
-Two forms are read: 2024-01-31T12:00:00.5 and 2024-031T12:00:00.5, with or without a Z behind.
+Two forms are read: 2024-01-31T12:00:00.5 and 2024-031T12:00:00.5, with or without a Z behind. datetime
+rounds to microseconds and knows no second 60, and astropy rounds to a pair of doubles.
 """
 
 from __future__ import annotations
