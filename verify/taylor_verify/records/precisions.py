@@ -16,8 +16,8 @@ class Format:
     """A binary number format of hardware or of compilers.
 
     It has ``bits`` of significand, and exponents from ``emin`` to ``emax`` as IEEE 754 counts them.
-    ``numpy`` is the name of NumPy's type, empty where NumPy has none. Pictures draw it in ``colour``, on a
-    dark page in ``dark``, with a line of ``width`` and markers of ``size`` points.
+    ``numpy`` is the name of NumPy's type, empty where NumPy has none. Pictures draw it in ``colour``, with
+    a line of ``width`` and markers of ``size`` points.
     """
 
     name: str
@@ -26,7 +26,6 @@ class Format:
     emax: int
     numpy: str
     colour: str
-    dark: str
     marker: str
     width: float
     size: float
@@ -37,10 +36,10 @@ class Format:
 FORMATS: Final[Mapping[str, Format]] = {
     each.name: each
     for each in (
-        Format("f32", 24, -126, 127, "float32", "#3F9BD1", "#3F7FB0", "o", 0.9, 3.0),
-        Format("f64", 53, -1022, 1023, "float64", "#0072B2", "#58A6E0", "s", 1.5, 4.2),
-        Format("f80", 64, -16382, 16383, "longdouble", "#5A2A9A", "#A98BE8", "^", 2.1, 5.4),
-        Format("f128", 113, -16382, 16383, "", "#1A1040", "#D9C8FF", "D", 2.7, 5.6),
+        Format("f32", 24, -126, 127, "float32", "#3F9BD1", "o", 0.9, 3.0),
+        Format("f64", 53, -1022, 1023, "float64", "#0072B2", "s", 1.5, 4.2),
+        Format("f80", 64, -16382, 16383, "longdouble", "#5A2A9A", "^", 2.1, 5.4),
+        Format("f128", 113, -16382, 16383, "", "#1A1040", "D", 2.7, 5.6),
     )
 }
 # The precisions that the standard set runs on.
