@@ -147,7 +147,7 @@ def _backward_balls(patch: Patch) -> None:
 
 def _backward_floats(patch: Patch) -> None:
     """The same in mpmath."""
-    phase, turn = euler_orbit.Orbit._phase_of, attitude._turn
+    phase, turn = euler_orbit.Orbit._phase_of, attitude.turn
     precession = euler_orbit.Precession.__init__
 
     def precessing(self: euler_orbit.Precession, spin: FreeSpin) -> None:
@@ -156,7 +156,7 @@ def _backward_floats(patch: Patch) -> None:
 
     patch.setattr(euler_orbit.Orbit, "_phase_of", lambda *a: -phase(*a))
     patch.setattr(euler_orbit.Precession, "__init__", precessing)
-    patch.setattr(attitude, "_turn", lambda axis, angle: turn(axis, -angle))
+    patch.setattr(attitude, "turn", lambda axis, angle: turn(axis, -angle))
 
 
 @both_routes
@@ -220,7 +220,7 @@ def _transposed(patch: Patch) -> None:
     """Space to body for body to space; in a fluid test_exact_kirchhoff_attitude has its own."""
     right = attitude._TriaxialFrame.at
     patch.setattr(
-        attitude._TriaxialFrame, "at", lambda self, t: attitude._transposed(right(self, t))
+        attitude._TriaxialFrame, "at", lambda self, t: attitude.transposed(right(self, t))
     )
 
 

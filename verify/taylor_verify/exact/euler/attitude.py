@@ -13,40 +13,28 @@ B(t) the rotation that takes h to axis 3 and c into the plane of axes 2 and 3,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.euler.orbit import Orbit, Precession, converted
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
+from taylor_verify.exact.frames import Frame, product, start_frame, transposed, turn
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 
-Frame = list[list[mpf]]  # rows of a 3x3 matrix
 FrameLaw = Callable[[mpf], Frame]  # time since the start -> R
 
 
 def frame_law(spin: FreeSpin, attitude: Quaternion) -> FrameLaw:
     """R as a function of time, at the ambient precision; it holds only at that precision."""
-    start = rotation(attitude)
+    start = start_frame(attitude)
     if spin.regime in (Regime.REST, Regime.SPHERICAL, Regime.STEADY):
         omega = converted(spin.omega)
-        return lambda t: _product(start, _turn(omega, mp.norm(omega) * t))
+        return lambda t: product(start, turn(omega, mp.norm(omega) * t))
     if spin.regime is Regime.AXISYMMETRIC:
         return _precession_law(spin, start)
     return _TriaxialFrame(spin, start).at
-
-
-def rotation(quaternion: Quaternion) -> Frame:
-    """The rotation of a quaternion of any length but zero, rational before it is rounded."""
-    w, x, y, z = quaternion
-    n = tensors.dot(quaternion, quaternion)
-    rows = (
-        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
-    )
-    return [[mp.convert(entry / n) for entry in row] for row in rows]
 
 
 def _precession_law(spin: FreeSpin, start: Frame) -> FrameLaw:
@@ -56,8 +44,8 @@ def _precession_law(spin: FreeSpin, start: Frame) -> FrameLaw:
     rate = mp.sqrt(mp.convert(spin.momentum_squared)) / mp.convert(spin.double_moment)
 
     def at(t: mpf) -> Frame:
-        about_momentum = _product(start, _turn(momentum, rate * t))
-        return _product(about_momentum, _turn(precession.axis, -precession.rate * t))
+        about_momentum = product(start, turn(momentum, rate * t))
+        return product(about_momentum, turn(precession.axis, -precession.rate * t))
 
     return at
 
@@ -77,15 +65,15 @@ class _TriaxialFrame:
         if not orbit.on_separatrix:
             self._complete = mp.elliprj(0, orbit.m_prime, 1, 1 + self._nu) / 3
         self._at_start = self._integral(mpf(0))
-        to_space = _product(start, _transposed(self._axes))
-        self._to_space = _product(to_space, _transposed(self._tilt(mpf(0))))
+        to_space = product(start, transposed(self._axes))
+        self._to_space = product(to_space, transposed(self._tilt(mpf(0))))
 
     def at(self, t: mpf) -> Frame:
         psi = self._steady * t + self._bend * (self._integral(t) - self._at_start)
         cos, sin = mp.cos_sin(psi)
-        turn = [[cos, -sin, mpf(0)], [sin, cos, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
-        body = _product(self._tilt(t), self._axes)
-        return _product(_product(self._to_space, turn), body)
+        about_momentum = [[cos, -sin, mpf(0)], [sin, cos, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
+        body = product(self._tilt(t), self._axes)
+        return product(product(self._to_space, about_momentum), body)
 
     def _integral(self, t: mpf) -> mpf:
         """int_0^u sn^2/(1 + nu sn^2) du at u = lam t + u_0, by Carlson's R_J (DLMF 19.25.14)."""
@@ -108,27 +96,3 @@ class _TriaxialFrame:
         rho = mp.hypot(h_a, h_b)
         cos, sin = h_a / rho, h_b / rho
         return [[-sin, cos, mpf(0)], [-h_c * cos, -h_c * sin, rho], [h_a, h_b, h_c]]
-
-
-def _turn(axis: Sequence[mpf], angle: mpf) -> Frame:
-    """The rotation about an axis of any length (Rodrigues); the identity for a zero axis."""
-    length = mp.norm(axis)
-    if length == 0:
-        return [[mpf(int(i == j)) for j in range(3)] for i in range(3)]
-    x, y, z = (component / length for component in axis)
-    cos, sin = mp.cos_sin(angle)
-    rest = 2 * mp.sin(angle / 2) ** 2  # 1 - cos without cancellation
-    return [
-        [cos + rest * x * x, rest * x * y - sin * z, rest * x * z + sin * y],
-        [rest * x * y + sin * z, cos + rest * y * y, rest * y * z - sin * x],
-        [rest * x * z - sin * y, rest * y * z + sin * x, cos + rest * z * z],
-    ]
-
-
-def _product(p: Frame, q: Frame) -> Frame:
-    columns = _transposed(q)
-    return [[mp.fdot(row, column) for column in columns] for row in p]
-
-
-def _transposed(frame: Frame) -> Frame:
-    return [list(row) for row in zip(*frame, strict=True)]

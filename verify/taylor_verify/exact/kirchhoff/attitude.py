@@ -16,12 +16,11 @@ A modulus changes its sign where it vanishes; so both are smooth wherever the ax
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mpmath import mp, mpc, mpf
 
-Frame = list[list[mpf]]  # rows of a 3x3 matrix
+from taylor_verify.exact.frames import Frame
 
 
 @dataclass(frozen=True)
@@ -48,31 +47,3 @@ class CayleyKlein:
         """X + i Y of the vector (v1, v2, v3), where transverse is v1 + i v2 and along v3."""
         a, b = self.a, self.b
         return a**2 * transverse - b**2 * mp.conj(transverse) - 2 * a * b * along
-
-
-def rotation(axis: Sequence[mpf], rate: mpf, t: mpf) -> Frame:
-    """The rotation about ``axis``, a vector of length ``rate``, in the time t (Rodrigues)."""
-    if rate == 0:
-        return [[mpf(int(i == j)) for j in range(3)] for i in range(3)]
-    n = [component / rate for component in axis]
-    cos, sin = mp.cos_sin(rate * t)
-    rest = 2 * mp.sin(rate * t / 2) ** 2  # 1 - cos without cancellation
-    rows = [[rest * n[i] * n[j] + (cos if i == j else 0) for j in range(3)] for i in range(3)]
-    for i in range(3):
-        rows[i - 2][i - 1] -= sin * n[i]
-        rows[i - 1][i - 2] += sin * n[i]
-    return rows
-
-
-def product(p: Frame, q: Frame) -> Frame:
-    columns = transposed(q)
-    return [applied(columns, row) for row in p]
-
-
-def applied(frame: Frame, vector: Sequence[mpf]) -> list[mpf]:
-    """The matrix times the vector."""
-    return [mp.fdot(row, vector) for row in frame]
-
-
-def transposed(frame: Frame) -> Frame:
-    return [list(column) for column in zip(*frame, strict=True)]

@@ -21,11 +21,11 @@ from typing import final
 
 from mpmath import mp, mpc, mpf
 
-from taylor_verify.exact.kirchhoff.attitude import CayleyKlein, Frame, applied, product, transposed
+from taylor_verify.exact.frames import Frame, applied, product, start_frame, transposed
+from taylor_verify.exact.kirchhoff.attitude import CayleyKlein
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.wave import Place, Swing, Wave
 from taylor_verify.exact.kirchhoff.zeta import SquaredSine
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
 
@@ -70,7 +70,7 @@ class SpaceAxes:
 
     def __init__(self, start: Impulse, turned: CayleyKlein, moment: mpc) -> None:
         """``turned`` and ``moment``, y_X + i y_Y, are those of the start in the orbit's axes."""
-        to_space = [[mp.convert(c) for c in row] for row in rotation_matrix(start.attitude)]
+        to_space = start_frame(start.attitude)
         self._axes = product(to_space, transposed(turned.frame()))
         self._centre = [mp.convert(c) for c in start.centre]
         self._F = mp.sqrt(mp.convert(tensors.dot(start.linear, start.linear)))

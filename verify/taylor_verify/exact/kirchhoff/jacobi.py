@@ -10,13 +10,12 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.kirchhoff.attitude import Frame, applied, product, rotation
+from taylor_verify.exact.frames import Frame, applied, product, start_frame, turn
 from taylor_verify.exact.kirchhoff.centre import SpaceAxes
 from taylor_verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from taylor_verify.exact.kirchhoff.orbit import Axial, Orbit, transverse
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled, Solution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
@@ -87,12 +86,12 @@ class Screw(Settled):
         """The attitude, and the centre if it is tracked, at the ambient precision."""
         nu = [mp.convert(rate) for rate in self._nu]
         rate = mp.sqrt(mp.convert(tensors.dot(self._nu, self._nu)))
-        first = [[mp.convert(c) for c in row] for row in rotation_matrix(self._start.attitude)]
+        first = start_frame(self._start.attitude)
         frames: list[Frame] = []
         centres: list[list[mpf]] = []
         for t in elapsed:
-            about_impulse = product(first, rotation(nu, rate, mp.convert(t)))
-            about_axis = rotation(_AXIS, mpf(1), -mp.convert(self._turn_rate * t))
+            about_impulse = product(first, turn(nu, rate * mp.convert(t)))
+            about_axis = turn(_AXIS, -mp.convert(self._turn_rate * t))
             frames.append(product(about_impulse, about_axis))
             moved = applied(first, self._moved(t, rate))
             centres.append(

@@ -22,10 +22,10 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen
+from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.zeta import SquaredSine
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes.scene import Scene
 
@@ -77,9 +77,7 @@ class Pendulum(Settled):
         found = {"linear_impulse": x, "angular_impulse": y}
         if self._track:
             frames = [self._frame(row) for row in rows]
-            first = np.array(
-                [[mp.convert(c) for c in row] for row in rotation_matrix(self._start.attitude)]
-            )
+            first = np.array(start_frame(self._start.attitude))
             found["attitude"] = np.array([first @ frame for frame in frames]).reshape(-1, 3, 3)
             if "centre" in self._track:
                 moved = [self._moved(row, t) for row, t in zip(rows, elapsed, strict=True)]

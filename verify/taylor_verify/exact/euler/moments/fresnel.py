@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from mpmath import mp, mpc, mpf
 
-from taylor_verify.exact.euler.attitude import Frame, rotation
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime, loaded
 from taylor_verify.exact.euler.moments.weber import WeberTurn
 from taylor_verify.exact.euler.orbit import converted, cross
+from taylor_verify.exact.frames import Frame, start_frame
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes import motion, tensors
 from taylor_verify.scenes.precision import floor_log2
@@ -139,7 +139,7 @@ class _FrameCourse:
 
     def __init__(self, spin: LoadedSpin, attitude: motion.Quaternion) -> None:
         self._spin = spin
-        self._start = mp.matrix(rotation(attitude))
+        self._start = mp.matrix(start_frame(attitude))
         self._turn = WeberTurn(spin.line)
         self._length = mp.sqrt(mp.convert(spin.axis_squared))
         self._axis = [entry / self._length for entry in converted(spin.axis)]
