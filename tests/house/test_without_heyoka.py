@@ -60,7 +60,7 @@ for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f
     "a trade-off": f"""
 from taylor_verify import tradeoff
 from taylor_verify.scenes.precision import rung
-from taylor_verify.trade.setting import setting
+from taylor_verify.studies.tradeoff.setting import setting
 names = ["taylor", "geometric:splitting?step=1/4"]
 found = tradeoff("euler/spherical", [setting(n, rung("f64")) for n in names], repeats=1)
 absent, present = found.document()["points"]
