@@ -114,6 +114,14 @@ class Field:
     def vector(self, letter: str) -> list[Element]:
         return [self[f"{letter}{k}"] for k in (1, 2, 3)]
 
+    def symmetric(self, letter: str) -> list[list[Element]]:
+        """The matrix of six names: letter, row and column, the lesser index first."""
+        return [[self[f"{letter}{min(j, k)}{max(j, k)}"] for k in (1, 2, 3)] for j in (1, 2, 3)]
+
+    def matrix(self, letter: str) -> list[list[Element]]:
+        """The matrix of nine names."""
+        return [[self[f"{letter}{j}{k}"] for k in (1, 2, 3)] for j in (1, 2, 3)]
+
     def element(self, value: Any) -> Element:
         if isinstance(value, Element):
             return value
@@ -287,6 +295,11 @@ def apply(matrix: Sequence[Sequence[Any]], v: Sequence[Any]) -> list[Any]:
 
 def transposed(matrix: Sequence[Sequence[Any]]) -> list[list[Any]]:
     return [list(column) for column in zip(*matrix, strict=True)]
+
+
+def named(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
+    """The components of a vector by their names."""
+    return {f"{letter}{k}": entry for k, entry in enumerate(vector, start=1)}
 
 
 def rotation(e: Sequence[Any]) -> list[list[Any]]:

@@ -24,6 +24,7 @@ from taylor_verify.claims.field import (
     apply,
     cross,
     minus,
+    named,
     plus,
     quaternion_rates,
     rotation,
@@ -98,19 +99,12 @@ class RigidMotion:
         names += [f"I{j}{k}" for j in "123" for k in "123" if full or j <= k]
         self.field = field = Field({**QUATERNION, **values(names)}, {"e0": unit_root})
         self.w, self.dw, self.M = (field.vector(v) for v in ("w", "dw", "M"))
-        self.I = [
-            [field[f"I{j}{k}" if full or j <= k else f"I{k}{j}"] for k in (1, 2, 3)]
-            for j in (1, 2, 3)
-        ]
+        self.I = field.matrix("I") if full else field.symmetric("I")
         self.l = rotation([field[f"e{k}"] for k in range(4)])
         # A particle of the body at s, in space axes, moves with it.
         self.s = field.vector("s")
         swept = cross(apply(self.l, self.w), self.s)
-        field.turn(
-            quaternion_rates(field, self.w)
-            | {f"w{k + 1}": self.dw[k] for k in INDICES}
-            | {f"s{k + 1}": swept[k] for k in INDICES}
-        )
+        field.turn(quaternion_rates(field, self.w) | named("w", self.dw) | named("s", swept))
 
     def rates(self, tensor: Tensor) -> Tensor:
         return {key: self.field.rate(self.field.element(entry)) for key, entry in tensor.items()}

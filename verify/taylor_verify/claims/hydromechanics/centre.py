@@ -21,6 +21,7 @@ from taylor_verify.claims.field import (
     cross,
     dot,
     identity,
+    named,
     plus,
     quaternion_rates,
     rotation,
@@ -50,11 +51,7 @@ class Led:
         self.Omega = [q * x1 + r * y1, q * x2 + r * y2, qq * x3 + rr * y3]
         dy = plus(cross(self.y, self.Omega), cross(self.x, self.U))
         velocity = apply(self.R, self.U)
-        field.turn(
-            quaternion_rates(field, self.Omega)
-            | {f"y{k + 1}": dy[k] for k in range(3)}
-            | {f"c{k + 1}": velocity[k] for k in range(3)}
-        )
+        field.turn(quaternion_rates(field, self.Omega) | named("y", dy) | named("c", velocity))
         self.Ry = apply(self.R, self.y)
         self.G = dot(self.x, self.y) / self.F
         self.moment = plus(self.Ry, cross(self.c, [0 * self.F, 0 * self.F, self.F]))

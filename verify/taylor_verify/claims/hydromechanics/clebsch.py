@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.claims.claim import Claim, Verdict
-from taylor_verify.claims.field import Element, Field, Point, cross, dot, identity, plus
+from taylor_verify.claims.field import Element, Field, Point, cross, dot, identity, named, plus
 
 COEFFICIENTS: Final = ("p", "pp", "q", "qq", "r", "rr")
 _HALF: Final = Fraction(1, 2)
@@ -59,8 +59,7 @@ class ClebschBody:
         self.root = self.x[0] * self.y[1] - self.x[1] * self.y[0]
         dx = cross(self.x, self.Omega)
         dy = plus(cross(self.y, self.Omega), cross(self.x, self.U))
-        rates = {f"x{k + 1}": dx[k] for k in range(3)} | {f"y{k + 1}": dy[k] for k in range(3)}
-        field.turn(rates)
+        field.turn(named("x", dx) | named("y", dy))
         self.xi = self.x[0] + self.i * self.x[1]
         self.eta = self.y[0] + self.i * self.y[1]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cache
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.claims.field import (
     QUATERNION,
@@ -19,6 +19,7 @@ from taylor_verify.claims.field import (
     apply,
     cross,
     dot,
+    named,
     plus,
     quaternion_rates,
     rotation,
@@ -46,7 +47,7 @@ class Solid:
         self.x, self.y, self.c, self.n = map(field.vector, ("x", "y", "c", "n"))
         nothing = [field.element(0)] * 3
         self.X, self.L = map(field.vector, ("X", "L")) if loaded else (nothing, nothing)
-        A, B, C = self._symmetric("A"), self._full("B"), self._symmetric("C")
+        A, B, C = field.symmetric("A"), field.matrix("B"), field.symmetric("C")
         self.U = plus(apply(A, self.x), apply(B, self.y))
         self.Omega = plus(apply(transposed(B), self.x), apply(C, self.y))
         self.coupling, self.angular = B, C
@@ -60,25 +61,13 @@ class Solid:
             self.dx, self.dy = field.vector("dx"), field.vector("dy")
         field.turn(
             quaternion_rates(field, self.Omega)
-            | _named("x", self.dx)
-            | _named("y", self.dy)
-            | _named("c", apply(self.R, self.U))
+            | named("x", self.dx)
+            | named("y", self.dy)
+            | named("c", apply(self.R, self.U))
         )
 
     def rates(self, vector: list[Element]) -> list[Element]:
         return self.field.rates(vector)
-
-    def _symmetric(self, letter: str) -> list[list[Element]]:
-        return [
-            [self.field[f"{letter}{min(j, k)}{max(j, k)}"] for k in (1, 2, 3)] for j in (1, 2, 3)
-        ]
-
-    def _full(self, letter: str) -> list[list[Element]]:
-        return [[self.field[f"{letter}{j}{k}"] for k in (1, 2, 3)] for j in (1, 2, 3)]
-
-
-def _named(letter: str, vector: list[Any]) -> dict[str, Element]:
-    return {f"{letter}{k}": entry for k, entry in enumerate(vector, start=1)}
 
 
 @cache
