@@ -28,12 +28,12 @@ test: lint  ## Check style and types, then run all but the slow tests
 test-all: lint  ## The same with the slow tests
 	@$(BIN)/python -m pytest -n 2
 
-docs: $(INSTALLED)  ## Build the pages of docs into docs/_build/html; a warning is an error
+docs: $(INSTALLED)  ## Build the pages of docs alone into docs/_build/html; a warning is an error
 	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo 'docs/_build/html/index.html'
 
 # The first time in a clone this makes the data that the repository leaves out, and says so.
-site: $(INSTALLED)  ## Make static pages of what is published, into reports/site
+site: $(INSTALLED)  ## Make one site of docs and of all that is published, into reports/site
 	@$(BIN)/taylor-verify publish --missing > /dev/null
 	@$(BIN)/taylor-verify publish --site reports/site > /dev/null
 	@echo 'reports/site/index.html'

@@ -15,7 +15,7 @@ from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
 from taylor_verify.studies.site.drawing import drawn, pictures_of
 from taylor_verify.studies.site.extension import SCENES
-from taylor_verify.studies.site.scene_page import ScenePage, made_with, shown
+from taylor_verify.studies.site.scene_page import ScenePage, drawing_of, made_with, shown
 from taylor_verify.studies.site.source import Report
 from taylor_verify.studies.site.stage import FRONT, REPORTS, Stage, docs_beside
 
@@ -45,7 +45,9 @@ def staged(folder: Path) -> Stage:
         scene: pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
         for scene in report.scenes
     }
-    drawings = drawn([picture for found in pictures.values() for picture in found])
+    drawings = drawn(
+        [one for found in pictures.values() for one in found if not report.has(drawing_of(one))]
+    )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     stage.add_pages(
         {
@@ -67,7 +69,7 @@ def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
     return _FRONT.format(
         counts=_counts(report.runs),
         by_rung=next((b for b in summary_page.split("\n\n") if b.startswith("| rung")), ""),
-        picture="\n\n".join(shown(picture, f"{SCENES}/") for picture in pictures),
+        picture="\n\n".join(shown(report, picture, REPORTS) for picture in pictures),
         blind=_blind(report),
         made_with=made_with(report),
         pages="\n".join(sorted({p.removesuffix(".md") for p in pages}, key=_reading_order)),

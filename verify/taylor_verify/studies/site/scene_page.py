@@ -24,6 +24,7 @@ from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS, GATE_FACTOR
 from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.studies import figures
 from taylor_verify.studies.site.motion import motions_of
 from taylor_verify.studies.site.source import Document, Report
 from taylor_verify.studies.tradeoff.stored import TimedPoint, Trade
@@ -83,7 +84,7 @@ class ScenePage:
 
     def _drawings(self) -> Iterator[str]:
         for picture in self.pictures:
-            yield shown(picture)
+            yield shown(self.report, picture, "..")
             if picture.stem.endswith("-errors"):
                 yield (
                     f"A gate allows {GATE_FACTOR} times what perfect rounding of every step would leave "
@@ -110,9 +111,16 @@ class ScenePage:
         )
 
 
-def shown(picture: Picture, folder: str = "") -> str:
-    """A picture of ``folder`` with what it shows in words."""
-    return f"![{prose(picture.alt)}]({folder}{picture.stem}.svg)"
+def drawing_of(picture: Picture) -> str:
+    """The place in the report where a picture may have been published already."""
+    return f"{figures.FOLDER}/{picture.stem}.svg"
+
+
+def shown(report: Report, picture: Picture, top: str) -> str:
+    """A picture with what it shows in words; ``top`` is the way to the report's folder."""
+    drawing = drawing_of(picture)
+    place = drawing if report.has(drawing) else f"scenes/{picture.stem}.svg"
+    return f"![{prose(picture.alt)}]({top}/{place})"
 
 
 def made_with(report: Report) -> str:

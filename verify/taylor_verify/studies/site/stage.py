@@ -106,6 +106,8 @@ class Stage:
         for page in (self._stand_ins.get(place, place), f"{place}/README.md"):
             if page in self._places:
                 return page
+        if place in self.files:
+            return _as_linked(place)
         file = self._origin(place)
         if file is None or not file.is_file():
             return None
@@ -113,13 +115,18 @@ class Stage:
             place += PACKED
         if place not in self.files:
             self.files[place] = _content(file, place.endswith(PACKED))
-        return f"path:{place}" if place.endswith(".md") else place
+        return _as_linked(place)
 
     def _origin(self, place: str) -> Path | None:
         """Where a file is stored; None outside the report and the checkout around it."""
         if place.startswith(f"{REPORTS}/"):
             return self.folder / place.removeprefix(f"{REPORTS}/")
         return None if self.docs is None or place.startswith("..") else self.docs.parent / place
+
+
+def _as_linked(place: str) -> str:
+    """Markdown that is no page is a file to Sphinx only if the link says so."""
+    return f"path:{place}" if place.endswith(".md") else place
 
 
 def _content(file: Path, is_packed: bool) -> str | bytes:
