@@ -54,9 +54,9 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
 	@$(BIN)/taylor-verify publish --paper > /dev/null
 
-# A report to heyoka's authors, beside its minimal scripts; no part of the package.
-traps: $(INSTALLED)  ## Measure the table of heyoka's traps anew (reports/upstream/traps)
-	@cd reports/upstream && $(CURDIR)/$(BIN)/python -m traps
+# A report to heyoka's authors, from the calls of its minimal scripts; no part of the package.
+traps: $(INSTALLED)  ## Measure the table of heyoka's traps anew (tests/traps)
+	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tests:reports/upstream $(BIN)/python -m traps
 
 release-data: $(INSTALLED)  ## Pack everything published, what is not committed included, into dist
 	@$(BIN)/taylor-verify publish --missing > /dev/null

@@ -74,7 +74,13 @@ LOCAL = ("local/", "site/", ".")
 def committed() -> tuple[str, ...]:
     """Every published file but those that the repository does not hold, by its path."""
     paths = (file.relative_to(REPORTS).as_posix() for file in REPORTS.rglob("*") if file.is_file())
-    return tuple(sorted(path for path in paths if not path.startswith(LOCAL) and not is_bulk(path)))
+    return tuple(
+        sorted(
+            path
+            for path in paths
+            if not (path.startswith(LOCAL) or "__pycache__/" in path or is_bulk(path))
+        )
+    )
 
 
 def is_bulk(path: str) -> bool:

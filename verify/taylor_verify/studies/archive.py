@@ -31,12 +31,13 @@ def pack(folder: Path, target: Path, name: str) -> list[Path]:
 
 
 def _paths(folder: Path) -> list[str]:
-    """Every file by its path below the folder; no hidden one and none that is local."""
+    """Every file by its path below the folder; no hidden one, none that is local, no compiled Python."""
     paths = [file.relative_to(folder) for file in folder.rglob("*") if file.is_file()]
     return sorted(
         path.as_posix()
         for path in paths
-        if path.parts[0] not in _LOCAL and not any(part.startswith(".") for part in path.parts)
+        if path.parts[0] not in _LOCAL
+        and not any(part.startswith((".", "__pycache__")) for part in path.parts)
     )
 
 

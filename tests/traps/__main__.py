@@ -8,7 +8,7 @@ from pathlib import Path
 from traps import page
 from traps.table import study
 
-REPORTS = Path(__file__).resolve().parents[2]
+REPORTS = Path(__file__).resolve().parents[2] / "reports"
 
 
 def say(title: str) -> None:
