@@ -7,7 +7,8 @@ affair.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from math import floor, inf, log10
+from typing import Final
 
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import (
@@ -15,11 +16,10 @@ from taylor_verify.records.quantities import (
     CONSERVED_QUANTITIES,
     GATE_FACTOR,
     INITIAL,
+    is_conserved,
 )
+from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
-
-if TYPE_CHECKING:
-    from taylor_verify.records.verdict import Verdict
 
 # Powers of time that have a name: a random walk, a steady error, and their integrals.
 _POWERS: Final = {0.5: "t^1/2", 1.0: "t", 1.5: "t^3/2", 2.0: "t^2", 3.0: "t^3"}
@@ -33,7 +33,65 @@ _STORED: Final = {
 }
 
 
-def sentence(verdict: Verdict) -> str:
+class Row:
+    """The values of a verdict that its sentence is made of; `Verdict` has them and says what they mean."""
+
+    rung: str
+    quantity: str
+    verdict: Status
+    outcome: str
+    max: float | None
+    at: float | None
+    unit: str
+    tolerance: float | None
+    reason: Reason
+    attainable: float | None
+    time_shift: float | None
+    shift: str | None
+    trend: float | None
+    remains: float | None
+    roundoff: float | None
+    exponent: float | None
+    change: float | None
+    since: float | None
+    until: float | None
+    error_kind: ErrorKind | None
+
+    @property
+    def sentence(self) -> str:
+        """The digits that are right, the kind of error that is left, and since when, in one line."""
+        return _sentence(self)
+
+    @property
+    def digits(self) -> int | None:
+        """The decimal digits that are right at every sample, at most those that the rung has.
+
+        None where nothing was compared, where the truth is too wide to tell, and where an error is no
+        finite number. A radian counts as a whole.
+        """
+        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
+            return None
+        has = _digits_below(self.roundoff) if self.roundoff else None
+        right = _digits_below(self.max) if self.max else has
+        return right if right is None or has is None else min(right, has)
+
+    @property
+    def is_conserved(self) -> bool:
+        """True for the row of a conserved quantity."""
+        return is_conserved(self.quantity)
+
+    @property
+    def is_compared(self) -> bool:
+        """True if a comparison was made: a run that never came to one has no time of an error."""
+        return self.at is not None
+
+
+def _digits_below(size: float) -> int:
+    """Return the number of zeros behind the point of a positive size, or 0."""
+    return max(floor(-log10(size)), 0)
+
+
+def _sentence(verdict: Row) -> str:
     """Return one line that begins with the quantity and can stand alone."""
     conclusion = verdict.reason.conclusion
     if verdict.quantity in (INITIAL, COMPLETE) and verdict.error_kind not in _STORED:
@@ -49,7 +107,7 @@ def sentence(verdict: Verdict) -> str:
     return f"{verdict.quantity}: {'; '.join(filter(None, parts))}"
 
 
-def _digits(verdict: Verdict) -> str:
+def _digits(verdict: Row) -> str:
     digits = verdict.digits
     if digits is None or verdict.max is None:
         return f"not a finite number{_since(verdict)}"
@@ -65,7 +123,7 @@ def _digits(verdict: Verdict) -> str:
     return f"{count} {verb}{end} (largest error {size})"
 
 
-def _left(verdict: Verdict) -> Iterator[str]:
+def _left(verdict: Row) -> Iterator[str]:
     """Return what the error that is left is made of; empty where nothing is known of it."""
     kind = verdict.error_kind
     if verdict.max == 0 or verdict.verdict is Status.VACUOUS:
@@ -89,7 +147,7 @@ def _left(verdict: Verdict) -> Iterator[str]:
         yield from _course(verdict)
 
 
-def _course(verdict: Verdict) -> Iterator[str]:
+def _course(verdict: Row) -> Iterator[str]:
     """Return the course of the error in time."""
     if verdict.error_kind is ErrorKind.OFFSET:
         yield "the error has one size at all samples, the first one included"
@@ -99,7 +157,7 @@ def _course(verdict: Verdict) -> Iterator[str]:
         yield _growth(verdict, verdict.exponent)
 
 
-def _growth(verdict: Verdict, exponent: float) -> str:
+def _growth(verdict: Row, exponent: float) -> str:
     nearest = min(_POWERS, key=lambda power: abs(power - exponent))
     if abs(nearest - exponent) > _NEAR:
         return "it grows with time"
@@ -108,7 +166,7 @@ def _growth(verdict: Verdict, exponent: float) -> str:
     return f"it grows as {_POWERS[nearest]}"
 
 
-def _tendency(verdict: Verdict) -> str:
+def _tendency(verdict: Row) -> str:
     change, size = verdict.change, verdict.max
     if change is None or size is None or not abs(change) >= _STEADY * size:
         return ""
@@ -118,7 +176,7 @@ def _tendency(verdict: Verdict) -> str:
     return ": a steady loss" if change < 0 else ": a steady gain"
 
 
-def _bound(verdict: Verdict) -> str:
+def _bound(verdict: Row) -> str:
     """Return the bound in words, and since when the error is above it."""
     tolerance = verdict.tolerance
     if tolerance is not None:
@@ -132,11 +190,11 @@ def _bound(verdict: Verdict) -> str:
     return f"within {limit}" if tolerance is not None and verdict.verdict is Status.PASS else ""
 
 
-def _since(verdict: Verdict) -> str:
+def _since(verdict: Row) -> str:
     return "" if verdict.since is None else f" since t = {verdict.since:g}"
 
 
-def _allowed_by_arithmetic(verdict: Verdict) -> str:
+def _allowed_by_arithmetic(verdict: Row) -> str:
     if verdict.attainable is None or verdict.error_kind is ErrorKind.ROUNDOFF:
         return ""
     return f" (roundoff of {verdict.rung} alone would need {GATE_FACTOR * verdict.attainable:.2g})"
@@ -152,12 +210,12 @@ def _pace(trend: float | None) -> str:
     return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} of the time"
 
 
-def _worst_shift(verdict: Verdict) -> str:
+def _worst_shift(verdict: Row) -> str:
     shift = verdict.reason.shift
     return "" if shift is None or shift.at is None else f", {_late(shift.late)} at t = {shift.at:g}"
 
 
-def _remains(verdict: Verdict) -> str:
+def _remains(verdict: Row) -> str:
     if verdict.remains is None:
         return ""
     shift = verdict.reason.shift

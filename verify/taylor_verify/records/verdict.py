@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
-from math import floor, inf, log10
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -12,16 +11,16 @@ from msgspec import Meta
 
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import Count, Size, converted, finite, plain, read
-from taylor_verify.records.quantities import COMPLETE, is_conserved
+from taylor_verify.records.quantities import COMPLETE
 from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
-from taylor_verify.records.sentence import sentence
+from taylor_verify.records.sentence import Row
 from taylor_verify.records.status import Status
 
 Study = TypeVar("Study")
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(Row):
     """One compared quantity of one run.
 
     A number that does not exist, or is not finite, is None. ``bound`` and ``attainable`` hold at the time
@@ -133,37 +132,9 @@ class Verdict:
         return str(self.reason)
 
     @property
-    def digits(self) -> int | None:
-        """The decimal digits that are right at every sample, at most those that the rung has.
-
-        None where nothing was compared, where the truth is too wide to tell, and where an error is no
-        finite number. A radian counts as a whole.
-        """
-        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
-            return None
-        has = _digits_below(self.roundoff) if self.roundoff else None
-        right = _digits_below(self.max) if self.max else has
-        return right if right is None or has is None else min(right, has)
-
-    @property
-    def sentence(self) -> str:
-        """The digits that are right, the kind of error that is left, and since when, in one line."""
-        return sentence(self)
-
-    @property
-    def is_conserved(self) -> bool:
-        """True for the row of a conserved quantity."""
-        return is_conserved(self.quantity)
-
-    @property
     def is_waived(self) -> bool:
         """True for the row of what an answer lacks, where the caller asked for a part alone."""
         return self.quantity == COMPLETE and self.verdict is Status.VACUOUS
-
-    @property
-    def is_compared(self) -> bool:
-        """True if a comparison was made: a run that never came to one has no time of an error."""
-        return self.at is not None
 
     def row(self) -> dict[str, Any]:
         """Return the row as JSON holds it: no NaN, no infinity, its reason also in one line.
@@ -178,11 +149,6 @@ class Verdict:
             else:
                 found[name] = finite(value)
         return {**found, "digits": self.digits, "sentence": self.sentence}
-
-
-def _digits_below(size: float) -> int:
-    """Return the number of zeros behind the point of a positive size, or 0."""
-    return max(floor(-log10(size)), 0)
 
 
 def read_row(row: Mapping[str, Any]) -> Verdict:

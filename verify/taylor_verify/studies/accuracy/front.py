@@ -16,7 +16,7 @@ from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
-    from taylor_verify.studies.contents import Page
+    from taylor_verify.publish.entry import Page
 
 _WHAT = (
     "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "

@@ -30,7 +30,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
 if TYPE_CHECKING:
-    from taylor_verify.studies.contents import Page
+    from taylor_verify.publish.entry import Page
 
 _MEANINGS = {
     Status.PASS: "the error of every sample is within its bound",
