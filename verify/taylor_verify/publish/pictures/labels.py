@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from taylor_verify.publish.pictures.named import Named, Spot
 from taylor_verify.publish.pictures.palette import PAPER, for_text
 from taylor_verify.publish.pictures.style import SMALL
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
 
 Numbers = NDArray[np.float64]
-Spot = tuple[float, float]
 
 # To the inch.
 POINTS: Final = 72
@@ -56,15 +56,6 @@ _NOT_AN_END: Final = 0.6
 _PER_POINT_AWAY: Final = 0.06
 _FORBIDDEN: Final = 1e4
 _SWEEPS: Final = 4
-
-
-@dataclass(frozen=True)
-class Named:
-    """A line with its name: its pieces are joined points, in the axes' own units."""
-
-    name: str
-    colour: str
-    pieces: Sequence[Sequence[Spot]]
 
 
 @dataclass(frozen=True)

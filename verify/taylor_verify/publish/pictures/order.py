@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.labels import Named, write_names
 from taylor_verify.publish.pictures.log_axes import number_axes, widened
+from taylor_verify.publish.pictures.named import Named
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import sheet
@@ -69,6 +69,8 @@ def _panels(orders: Sequence[Order]) -> list[tuple[str, list[Order]]]:
 
 
 def _draw(axes: Axes, orders: Sequence[Order]) -> None:
+    from taylor_verify.publish.pictures.labels import write_names
+
     errors = [_errors(order) for order in orders]
     floors = [_floors(order) for order in orders]
     everything = [point for points in (*errors, *floors) for point in points]

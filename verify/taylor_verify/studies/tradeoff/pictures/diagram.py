@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.labels import Named, write_names
 from taylor_verify.publish.pictures.log_axes import Limits, number_axes, widened
+from taylor_verify.publish.pictures.named import Named
 from taylor_verify.publish.pictures.palette import INK, PAPER, QUIET, for_text
 from taylor_verify.publish.pictures.sheet import (
     STRIP,
@@ -65,6 +65,8 @@ class Diagram:
 
 def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
     """The whole figure: the panels row by row, the meaning of the marks below."""
+    from taylor_verify.publish.pictures.labels import write_names
+
     strips = [_strip_rows(panel, diagram.x) for panel in panels]
     drawn = [one for panel in panels for one in panel.drawn]
     front = front_of((row for one in drawn for row in one.rows), diagram.x, diagram.y)

@@ -7,7 +7,6 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.publish.pictures.labels import write_names
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.sheet import Entry, sheet
@@ -59,6 +58,8 @@ def _typical(series: Sequence[Series]) -> str:
 
 def _figure(panels: Sequence[Panel]) -> Figure:
     from matplotlib.ticker import MaxNLocator
+
+    from taylor_verify.publish.pictures.labels import write_names
 
     figure, places = sheet(len(panels), _LEGEND)
     for panel, axes in zip(panels, places, strict=True):

@@ -10,8 +10,8 @@ from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.publish.pictures.labels import Named, write_names
 from taylor_verify.publish.pictures.log_axes import widened
+from taylor_verify.publish.pictures.named import Named
 from taylor_verify.publish.pictures.palette import QUIET
 from taylor_verify.publish.pictures.picture import Picture
 from taylor_verify.publish.pictures.ratio import Ratio, check
@@ -64,6 +64,8 @@ def _lines(found: Sequence[Ratio]) -> dict[str, list[Ratio]]:
 
 
 def _figure(lines: Mapping[str, Sequence[Ratio]]) -> Figure:
+    from taylor_verify.publish.pictures.labels import write_names
+
     figure = blank(_HEIGHT)
     axes = add_axes(figure, _FRAME)
     looks = {label: look_of_line(i) for i, label in enumerate(lines)}
