@@ -8,7 +8,7 @@ from mpmath import mp, mpf
 
 from builders.numbers import apart
 from builders.scenes import vector
-from taylor_verify.exact.euler.moments.washboard import Washboard
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin

@@ -64,7 +64,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
     found = json.loads(capsys.readouterr().out)
     assert found == {
         "scenes": list(library.names()),
-        "extremes": list(library.names("extremes")),
+        "extremes": list(library.names(library.EXTREMES, library.WORST)),
         "solvers": list(registry.solver_names()),
         "rungs": list(LADDER),
         "guide": dict(GUIDE),

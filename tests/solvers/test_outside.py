@@ -19,11 +19,13 @@ from builders.scenes import THREE_INSTANTS
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.engines import environment
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
 from taylor_verify.solvers.engines.environment import NotMade
 from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.engines.script import scripts as read_scripts
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import OUTSIDE, remarks, solver_named, solver_names
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -115,7 +117,6 @@ def scripts() -> list[Path]:
 def test_every_requirement_is_pinned(file: Path) -> None:
     """A script names exact versions, and fits every Python that the project fits."""
     script = read_script(file)
-    assert script.requirements
     for requirement in script.requirements:
         assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*", requirement)
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
@@ -134,7 +135,8 @@ def test_a_script_has_the_methods_it_names(file: Path) -> None:
         for node in tree.body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "METHODS"
     ]
-    (table,) = tables
+    # One without methods is a single solver.
+    table = tables[0] if about.methods else {}
     assert list(about.methods) == list(table)
     siblings = {"equations", "question"}
     for node in tree.body:
@@ -263,3 +265,50 @@ def test_a_library_keeps_near_its_tolerance(
         assert errors[tolerance] <= tolerance * found.steps * 30
     # A thousandth of the tolerance is at least a tenth of the error, for the lowest of orders.
     assert errors[1e-9] <= errors[1e-6] / 10
+
+
+def written(folder: Path, metadata: str) -> Path:
+    """A script of the folder with this block."""
+    lines = "\n".join(f"# {line}".rstrip() for line in metadata.splitlines())
+    file = folder / "with_mine.py"
+    file.write_text(f"# /// script\n{lines}\n# ///\n", encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("metadata", "fault"),
+    [
+        (
+            'dependencies = ["six"]',
+            "expected a dependency pinned with ==, got 'six' @ with_mine.py",
+        ),
+        (
+            'dependencies = ["six==1.0"]\n[tool.taylor-verify]\ntitle = "x"\npackage = "seven"',
+            "expected a package among the dependencies, got 'seven' @ with_mine.py",
+        ),
+        (
+            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = -1.0}',
+            "expected a positive number or words for the setting step, got -1.0 @ with_mine.py",
+        ),
+        (
+            '[tool.taylor-verify]\ntitle = "x"\nsettings = {step = "stp"}',
+            "expected an earlier setting for step to follow, got 'stp' @ with_mine.py",
+        ),
+    ],
+)
+def test_a_script_that_is_wrong_is_refused(metadata: str, fault: str, tmp_path: Path) -> None:
+    """Each fault is one line with its file, and reading the folder tells all of them."""
+    about = "" if "tool" in metadata else '\n[tool.taylor-verify]\ntitle = "x"'
+    file = written(tmp_path, f"{metadata}{about}")
+    with pytest.raises(ValueError, match=re.escape(fault)):
+        read_script(file)
+    with pytest.raises(Refused, match=re.escape(fault)):
+        read_scripts(tmp_path)
+
+
+def test_a_script_without_a_library_has_no_version(tmp_path: Path) -> None:
+    """A program of the standard library alone is an engine too, and no version of it can be asked for."""
+    script = read_script(written(tmp_path, '[tool.taylor-verify]\ntitle = "x"'))
+    assert script.package == ""
+    with pytest.raises(ValueError, match=r"expected no version: with_mine\.py has no library"):
+        script.at_version("1.0")

@@ -80,6 +80,7 @@ def test_every_scene_has_its_portrait() -> None:
     }
 
 
+@pytest.mark.slow
 def test_a_portrait_is_small() -> None:
     """No file has more than 120 kB, and all together less than 7 MB: a page can load them."""
     sizes = [file.stat().st_size for file in (every_portrait() / portraits.FOLDER).glob("*.json")]

@@ -127,7 +127,7 @@ def test_a_study_is_listed(capsys: Captured) -> None:
     assert main(["publish", "--list"]) == 0
     text = capsys.readouterr().out
     assert "smallest   the smallest study there can be\n" in text
-    assert "no time; exact, without heyoka" in text
+    assert "no time; works without heyoka" in text
     assert main(["publish", "--list", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["studies"]
     assert [row["name"] for row in rows] == [study.name for study in STUDIES]
@@ -239,10 +239,13 @@ def test_without_matplotlib_the_page_is_made_all_the_same(
             "expected `publish smallest`, got --smallest\nexpected `publish worst`",
         ),
         (["zzz"], "known: accuracy, controls"),
-        (["--terms", "3"], "expected --terms with `publish smallest`, got it without @ publish"),
+        (
+            ["--terms", "3"],
+            "expected --terms with `publish smallest`, got it with no study @ publish",
+        ),
         (
             ["claims", "--seed", "3"],
-            "expected --seed with `publish worst`, got it without @ publish",
+            "expected --seed with `publish worst`, got it with claims @ publish",
         ),
         (["smallest", "--terms", "x"], "@ --terms"),
         (["smallest", "--paper"], "expected studies or --paper, got both @ publish"),
@@ -290,3 +293,11 @@ def test_the_paper_has_every_page_that_is_read() -> None:
     own -= {SMALLEST.path}
     assert own | {"tables/accuracy.md", "claims.md"} <= set(paper.PAGES)
     assert {page.path for page in contents.others(Path(), paper.PAGES)} >= own
+
+
+@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
+def test_the_pages_of_docs_name_every_study(study: Study[object]) -> None:
+    """The table of `publish` names each study, so that a new one cannot be left out."""
+    page = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
+    table = page.partition("## publish")[2].partition("\n## ")[0]
+    assert f"`{study.name}`" in table

@@ -442,7 +442,8 @@ def test_a_site_of_committed_files_alone_is_whole(
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*bulk))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
     said = capsys.readouterr().err
-    assert "without 10 records of runs, 5 portraits of scenes: `taylor-verify publish" in said
+    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in said
+    assert "`taylor-verify publish --missing` makes" in said
     target = tmp_path / "site"
     files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
     read = {name: file.read_text("utf-8") for name, file in files.items() if name.endswith(".html")}

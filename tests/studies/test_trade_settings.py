@@ -301,4 +301,4 @@ def test_a_wrong_solver_is_refused_before_any_work(
 def test_outside_asks_for_the_trade(capsys: pytest.CaptureFixture[str]) -> None:
     """`publish --outside` alone would do nothing of what it says."""
     assert main(["publish", "--outside"]) == 2
-    assert "--tradeoff" in capsys.readouterr().err
+    assert "`publish tradeoff`" in capsys.readouterr().err

@@ -113,7 +113,8 @@ def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) 
             continue
         if not is_asked:
             expected = f"expected --{option.name} with `publish {study.name}`"
-            raise WrongCall(f"{expected}, got it without @ publish")
+            named = " ".join(options.studies) or "no study"
+            raise WrongCall(f"{expected}, got it with {named} @ publish")
         try:
             given[option.name] = option.read(value) if option.read else value
         except ValueError as error:
@@ -142,7 +143,7 @@ def _listed(studies: Sequence[Study[Any]]) -> Answer:
     width = max(len(study.name) for study in studies)
     lines = [
         f"{study.name:{width}}  {study.title}\n{'':{width}}  {study.duration}; "
-        f"{'needs heyoka' if study.needs_heyoka else 'exact, without heyoka'}"
+        f"{'needs heyoka' if study.needs_heyoka else 'works without heyoka'}"
         for study in studies
     ]
     return Answer(PASS, {"studies": rows}, lambda: "\n".join(lines))

@@ -25,13 +25,13 @@ def list_all(options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.scene_text import names_text
     from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.guide import GUIDE
-    from taylor_verify.scenes.library import EXTREMES, names
+    from taylor_verify.scenes.library import EXTREMES, WORST, names
     from taylor_verify.scenes.reading.reader import load
     from taylor_verify.solvers.files.formats.reading import FORMATS
     from taylor_verify.solvers.registry import remarks, solver_names
 
     del options
-    scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES))}
+    scenes = {"scenes": list(names()), "extremes": list(names(EXTREMES, WORST))}
     titles = {name: load(name).title for group in scenes.values() for name in group}
     read = {suffix: one.sentence for suffix, one in FORMATS.items()}
     found = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate, pairwise
@@ -122,6 +122,11 @@ def _no_array(answered: Any) -> str:
 
     NumPy drops a mask, and a table's columns have names that say more than their order.
     """
+    if isinstance(answered, Mapping):
+        return (
+            "expected an array of states, got a dict (hand over its columns in the order of a state, as "
+            "an array, or check(scene, the_dict))"
+        )
     if hasattr(answered, "columns"):
         kind = type(answered).__name__
         return (

@@ -11,7 +11,7 @@ from __future__ import annotations
 import logging
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Final, final
@@ -124,7 +124,7 @@ class Outside(Solver):
     Tolerances and steps count in the scene's own units.
     """
 
-    engine: Engine
+    engine: Engine = field(hash=False)
     name: str
     block: str
     settings: tuple[tuple[str, str], ...]
@@ -172,7 +172,8 @@ def named(name: str) -> Outside:
     known = engines()
     method = name.removeprefix(PREFIX).partition("?")[0]
     defaults = known[method].script.about.settings if method in known else {}
-    asked = options(name, known, [*defaults, _VERSION])
+    versions = [_VERSION] if method in known and known[method].script.package else []
+    asked = options(name, known, [*defaults, *versions])
     engine = known[asked.method]
     settings: dict[str, str] = {}
     for key, default in defaults.items():

@@ -20,15 +20,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any, Final
 
 import msgspec
 
+from taylor_verify.scenes.reading.faults import Refused
+
 _BLOCK: Final = re.compile(r"^# /// script\n((?:#(?: .*)?\n)+)# ///$", re.MULTILINE)
 _VERSION: Final = re.compile(r"\d+(\.\d+)*((a|b|rc)\d+)?(\.(post|dev)\d+)*")
+_PINNED: Final = re.compile(r"([A-Za-z0-9_.-]+)(==\d+(\.\d+)*| @ \S+)")
 _PREFIX: Final = "with_"
 
 
@@ -57,17 +61,34 @@ class Script:
     def library(self) -> str:
         return self.path.stem.removeprefix(_PREFIX)
 
+    @property
+    def package(self) -> str:
+        """The package whose version can be chosen; empty for a script that needs none."""
+        first = _PINNED.match(self.requirements[0]) if self.requirements else None
+        return self.about.package or (first[1] if first else "")
+
     def at_version(self, version: str) -> str:
         """Return the block with another version of the package; ValueError for text that is none."""
         if not _VERSION.fullmatch(version):
             raise ValueError(f"expected a version such as 1.2.0, got {version!r:.60} @ version")
-        package = self.about.package or self.requirements[0].partition("==")[0]
-        return re.sub(rf'"{re.escape(package)}==[^"]*"', f'"{package}=={version}"', self.block)
+        if not self.package:
+            raise ValueError(f"expected no version: {self.path.name} has no library @ version")
+        return re.sub(
+            rf'"{re.escape(self.package)}==[^"]*"', f'"{self.package}=={version}"', self.block
+        )
 
 
 def scripts(folder: Path) -> list[Script]:
-    """Read the scripts of a folder that answer for a library, by name."""
-    return [read_script(path) for path in sorted(folder.glob(f"{_PREFIX}*.py"))]
+    """Read the scripts of a folder that answer for a library, by name; Refused with the faults of all."""
+    found, faults = list[Script](), list[str]()
+    for path in sorted(folder.glob(f"{_PREFIX}*.py")):
+        try:
+            found.append(read_script(path))
+        except ValueError as error:
+            faults += str(error).splitlines()
+    if faults:
+        raise Refused(faults)
+    return found
 
 
 def read_script(path: Path) -> Script:
@@ -84,4 +105,28 @@ def read_script(path: Path) -> Script:
         raise ValueError(f"expected TOML in the metadata, got {error} @ {path.name}") from error
     except msgspec.ValidationError as error:
         raise ValueError(f"expected other metadata, got: {error} @ {path.name}") from error
-    return Script(path, block, requirements, about)
+    script = Script(path, block, requirements, about)
+    if faults := list(_faults(script)):
+        raise ValueError("\n".join(f"{fault} @ {path.name}" for fault in faults))
+    return script
+
+
+def _faults(script: Script) -> Iterator[str]:
+    """Yield a sentence for each requirement without its version and each default that is none."""
+    pinned: set[str] = set()
+    for requirement in script.requirements:
+        if match := _PINNED.fullmatch(requirement):
+            pinned.add(match[1])
+        else:
+            yield f"expected a dependency pinned with ==, got {requirement!r}"
+    if script.about.package and script.about.package not in pinned:
+        yield f"expected a package among the dependencies, got {script.package!r}"
+    known: set[str] = set()
+    for key, default in script.about.settings.items():
+        if isinstance(default, int | float) and not 0 < default < inf:
+            yield f"expected a positive number or words for the setting {key}, got {default!r}"
+        if isinstance(default, str) and default not in known:
+            yield f"expected an earlier setting for {key} to follow, got {default!r}"
+        if isinstance(default, list) and not default:
+            yield f"expected words for the setting {key}, got none"
+        known.add(key)

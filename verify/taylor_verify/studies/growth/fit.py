@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from math import isfinite, nan, sqrt, tan
 from typing import Any, Final
 
@@ -273,6 +274,7 @@ def chi_square_tail(value: float, freedom: int) -> float:
     return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))
 
 
+@cache
 def student(freedom: int, level: float) -> float:
     """The t for which Student's variable is between -t and t with probability ``level``."""
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from samples import IMPULSE, LOADED, MOMENT, SPIN, TENSOR
+from builders.scenes import IMPULSE, LOADED, MOMENT, SPIN, TENSOR
 
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
