@@ -189,8 +189,8 @@ def test_a_run_that_was_stopped_goes_on(
     [
         (["growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
         (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
-        (["--periods", "1e4"], "expected --periods with `publish growth`, got it without"),
-        (["prices", "--long"], "expected --long with `publish growth`, got it without"),
+        (["--periods", "1e4"], "expected --periods with `publish growth`, got it with no study"),
+        (["prices", "--long"], "expected --long with `publish growth`, got it with prices"),
     ],
 )
 def test_a_wrong_call_is_refused(
