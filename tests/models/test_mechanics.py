@@ -23,7 +23,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.studies.portraits.equations import equations
 
 # A scene of each kind of body.
-SCENES = ("euler/full-tensor", "kirchhoff/general-body")
+SCENES = ("euler/full-tensor", "kirchhoff/general-body", "euler/gyrostat")
 # Powers of two, so that a change of units rounds nothing.
 UNITS = Units(time=Fraction(1, 8), momentum=Fraction(32), impulse=Fraction(2))
 

@@ -19,12 +19,16 @@ from taylor_verify.scenes.tensors import Matrix, Vector
 
 @dataclass(frozen=True)
 class Equations:
-    """z' = constant + rates, with Omega = spin z and U = velocity z; no rows of velocity without a U."""
+    """z' = constant + linear z + rates, with Omega = spin z and U = velocity z.
+
+    There are no rows of velocity without a U, and none of linear without such terms.
+    """
 
     constant: Vector
     rates: list[Polynomial]
     spin: Matrix
     velocity: Matrix = ()
+    linear: Matrix = ()
 
 
 def driven(free: list[Polynomial], motion: Manufactured | None, clock: int) -> list[Polynomial]:

@@ -62,6 +62,8 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     if manufactured is not None:
         times = scene.clock.elapsed if elapsed is None else elapsed
         blocks.append(clocks.floats(manufactured, times))
+    elif kind_of(scene.body).equations(scene.body).linear:
+        blocks.append(np.ones((len(blocks[0]), 1)))
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
         found = _flow(scene).derivatives(np.concatenate(blocks, axis=1), values.get("attitude"))
     velocity, acceleration = (_by_name(derivatives, moving) for derivatives in found)

@@ -255,6 +255,8 @@ class _Arcs(_Enclosing):
             state = balls(kind_of(self.scene.body).state(start))
             if manufactured is not None:
                 state += clocks.balls_at(manufactured, self.begins[number])
+            else:
+                state += balls(self._system.start[len(state) :])
             arc = replace(whole, start=state, place=_place(self.scene, start))
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
 

@@ -55,15 +55,16 @@ def products(steps: Floats) -> Floats:
 class Flow:
     """The equations in units of their size: d = 3 or 6 components of momentum.
 
-    ``twice`` (d, d, d) gives J = twice @ z; ``omega`` and ``velocity`` (3, d) give Omega and, for a
-    solid in a fluid, U. ``momenta`` are the units of each block of the momentum by name; time is
-    measured in ``time``, lengths in ``length``: powers of two. ``swing`` is S and N.
+    ``twice`` (d, d, d) and ``linear`` L (d, d) give J = twice @ z + L; ``omega`` and ``velocity`` (3, d)
+    give Omega and, for a solid in a fluid, U. ``momenta`` are the units of each block of the momentum by
+    name; time is measured in ``time``, lengths in ``length``: powers of two. ``swing`` is S and N.
     """
 
     momenta: Mapping[str, Fraction]
     constant: Floats
     swing: clocks.Swing
     twice: Floats
+    linear: Floats
     omega: Floats
     velocity: Floats | None
     time: Fraction
@@ -96,6 +97,7 @@ class Flow:
             constant=np.array([float(c * time / u) for c, u in zip(constant, units, strict=True)]),
             swing=clocks.swing(kind.manufactured_momentum(scene.body), units, time),
             twice=twice,
+            linear=_linear(equations.linear, units, time),
             omega=_floats(omega, units, time),
             velocity=_floats(velocity, units, time / length) if velocity else None,
             time=time,
@@ -117,7 +119,7 @@ class Flow:
         """J (..., d, d) at z (..., d)."""
         d = z.shape[-1]
         found: Floats = z @ self.twice.reshape(d * d, d).T
-        return found.reshape(*z.shape, d)
+        return found.reshape(*z.shape, d) + self.linear
 
     def load(self, clock: Floats) -> Floats:
         """The constant load, and the one that a manufactured motion takes."""
@@ -152,6 +154,14 @@ def applied(matrices: Floats, vectors: Floats) -> Floats:
 
 def _norm(matrices: Floats) -> Floats:
     found: Floats = np.linalg.norm(matrices, axis=(-2, -1))
+    return found
+
+
+def _linear(rows: Matrix, units: Vector, time: Fraction) -> Floats:
+    """L in units; zero where there are no such terms."""
+    if not rows:
+        return np.zeros((len(units), len(units)))
+    found: Floats = _floats(rows, units, time) / np.array([[float(unit)] for unit in units])
     return found
 
 

@@ -210,7 +210,7 @@ def _rates(flow: Flow, at: _Arcs) -> _Arcs:
         shift = R @ (flow.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
         clock=at.clock @ flow.swing.turning.T,
-        momentum=flow.load(at.clock) + applied(jacobian, at.momentum) / 2,
+        momentum=flow.load(at.clock) + applied(jacobian + flow.linear, at.momentum) / 2,
         attitude=R @ cross_matrices(at.momentum @ flow.omega.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,

@@ -17,7 +17,7 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import lamb
-from taylor_verify.exact.equations import Equations, driven
+from taylor_verify.exact.equations import Equations, driven, total
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
 from taylor_verify.scenes.manufactured import Manufactured
@@ -86,13 +86,15 @@ def posed_exactly(scene: Scene) -> System:
     """The same, with the rational coefficients of the scene for an ellipsoid as well."""
     body, kind = scene.body, kind_of(scene.body)
     start, motion = kind.state(scene.initial), body.manufactured
-    clock = () if motion is None else clocks.at(motion, Fraction(0), 0)
-    ends = tuple(range(3, len(start) + 1, 3))
     free = kind.equations(body)
+    # Linear terms are products with a variable that stays 1.
+    one = (Fraction(1),) if free.linear else ()
+    clock = one if motion is None else clocks.at(motion, Fraction(0), 0)
+    ends = tuple(range(3, len(start) + 1, 3))
     return System(
         constant=free.constant + (Fraction(0),) * len(clock),
         forms=_forms(free, motion, len(clock)),
-        blocks=ends if motion is None else (*ends, len(start) + len(clock)),
+        blocks=ends if not clock else (*ends, len(start) + len(clock)),
         start=start + clock,
     )
 
@@ -102,7 +104,11 @@ def _forms(free: Equations, motion: Manufactured | None, clock: int) -> Forms:
     size = len(free.rates)
     n, padding = size + clock, (Fraction(0),) * clock
     hessian = [[Fraction(0)] * (n * n) for _ in range(n)]
-    for row, polynomial in zip(hessian, driven(free.rates, motion, size), strict=True):
+    rates = driven(free.rates, motion, size)
+    if free.linear:
+        lines = [{(k, size): c for k, c in enumerate(row) if c} for row in free.linear]
+        rates = [*(total(p, q) for p, q in zip(rates, lines, strict=True)), {}]
+    for row, polynomial in zip(hessian, rates, strict=True):
         for (a, b), coefficient in polynomial.items():
             row[a * n + b] += coefficient
             row[b * n + a] += coefficient

@@ -14,6 +14,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors.state import largest, norms
 from taylor_verify.judge.floor.attainable import condition
 from taylor_verify.scenes.bodies import Body, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -96,7 +97,7 @@ def _sizes(scene: Scene, elapsed: Sequence[Fraction]) -> _Sizes:
     return _Sizes(at_first, at_most)
 
 
-def _rigid_momentum(body: RigidBody, omega: Sequence[Any]) -> float:
+def _rigid_momentum(body: RigidBody | Gyrostat, omega: Sequence[Any]) -> float:
     """|I omega|."""
     return float(np.linalg.norm(np.array(body.inertia, dtype=float) @ np.array(omega, dtype=float)))
 
@@ -104,4 +105,5 @@ def _rigid_momentum(body: RigidBody, omega: Sequence[Any]) -> float:
 # By the class of a body, the size of the momentum of its state. One that is absent has momenta for it.
 _MOMENTUM: Final[Mapping[type[Body], Callable[[Any, Sequence[Any]], float]]] = {
     RigidBody: _rigid_momentum,
+    Gyrostat: _rigid_momentum,
 }

@@ -59,7 +59,8 @@ _EULER_BODY: Final = {
     ),
     "force": "a force does not turn a body; write its moment, constant in body axes, as `moment`",
     **_same(_FLUID_MODEL, "mass_matrix", "added_mass", "fluid_added_mass", "fluid_density"),
-    **_same(_NOT_YET, "rotor", "wheels", "reaction_wheels", "damping"),
+    **_same(_NOT_YET, "damping"),
+    **_same("write `rotor`, the momentum of all wheels", "wheels", "reaction_wheels"),
     **_same(
         "not modelled: drag has no exact motion to compare with", "drag", "friction", "viscosity"
     ),

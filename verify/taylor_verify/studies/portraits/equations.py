@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.scene import Scene
 
 _EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
@@ -74,8 +75,14 @@ def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
     return [f"{_LINEAR}{loads[0]}", f"{_ANGULAR}{loads[1]}", _VELOCITIES, _ENERGY, *made]
 
 
+def _gyrostat_equations(body: Gyrostat) -> list[str]:
+    loaded = "" if body.is_free else r" + \mathbf M"
+    return [f"{_EULER}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
+
+
 # For each kind of body its equations, and what its angular velocity is called in them.
 _EQUATIONS: Final[Mapping[type[Body], tuple[Callable[[Any], list[str]], str]]] = {
     RigidBody: (_euler_equations, r"\boldsymbol\omega"),
     ImmersedBody: (_kirchhoff_equations, r"\boldsymbol\Omega"),
+    Gyrostat: (_gyrostat_equations, r"\boldsymbol\omega"),
 }
