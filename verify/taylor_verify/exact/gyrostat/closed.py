@@ -1,14 +1,37 @@
-"""Closed forms of a gyrostat: none is written yet, and the enclosed series answer."""
+"""Which closed form answers a gyrostat: that of the free motion, in every regime.
+
+Each function imports what it needs: the two routes load different libraries.
+"""
 
 from __future__ import annotations
 
+from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.solution import NoClosedForm, Solution
+from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 
 
 def enclosed(scene: Scene) -> Solution:
-    """Raise NoClosedForm: Weierstrass' functions are the next step."""
-    raise NoClosedForm(f"no closed form of a gyrostat is written here @ {scene.name}")
+    """Return the motion in balls; raises NoClosedForm for a moment on the body."""
+    from taylor_verify.exact.gyrostat.sigma import GyrostatBalls
+
+    return GyrostatBalls(*_free(scene))
 
 
-closed_form = enclosed
+def closed_form(scene: Scene) -> Solution:
+    """Return the motion in mpmath; raises NoClosedForm likewise."""
+    from taylor_verify.exact.gyrostat.jacobi import GyrostatMotion
+
+    return GyrostatMotion(*_free(scene))
+
+
+def _free(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:
+    """The start, and the attitude where it is tracked."""
+    body, start = scene.body, scene.initial
+    assert isinstance(body, Gyrostat)
+    assert isinstance(start, Spin)
+    if not body.is_free:
+        raise NoClosedForm("a moment acts on a body with wheels")
+    attitude = start.attitude if "attitude" in scene.track else None
+    return FreeGyrostat(body.inertia, body.rotor, start.omega), attitude

@@ -1,0 +1,111 @@
+"""The azimuth of a body axis about the momentum of a gyrostat: its rate, and the poles of that rate.
+
+Legend: as in pencil; (a, b, c) a right-handed orthonormal frame fixed in the body, f = a + i b, N = |G|. With
+
+    M = [m1 m2 m3],    m3 = G/N,    m1 along c - (c.m3) m3,    m2 = m3 x m1,
+    R(t) = R(0) M(0) Rz(phi(t)) M(t)^T,    phi' = N (G.w - (G.c)(w.c))/(N^2 - (G.c)^2),    phi(0) = 0.
+
+As a function of complex t, phi' has poles where G = sigma N c + rho f is on the curve, sigma = 1 or -1, with
+the residue sigma/2i, and where it is the conjugate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any, Final, NamedTuple
+
+from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.gyrostat.point import PointMap
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import Matrix, Vector, dot
+
+
+class Arithmetic(NamedTuple):
+    """Real and complex numbers of one library: from a rational, from two real ones, and the square root."""
+
+    real: Callable[[Fraction], Any]
+    complex: Callable[[Any, Any], Any]
+    sqrt: Callable[[Any], Any]
+
+
+class Pole(NamedTuple):
+    """A pole of phi': sigma, and Weierstrass's p and p' of its argument."""
+
+    sigma: int
+    p: Any
+    slope: Any
+
+
+class Frame(NamedTuple):
+    """Three axes of the body, c the one whose azimuth is followed."""
+
+    a: Vector
+    b: Vector
+    c: Vector
+
+
+def _frames() -> Iterator[Frame]:
+    """Rational frames: the momentum may pass the axes of one, and not those of all."""
+    for quaternion in ((1, 0, 0, 0), (3, 1, 1, 1), (4, 3, -2, 1)):
+        scalar, *vector = map(Fraction, quaternion)
+        x, y, z = rotation_matrix((scalar, vector[0], vector[1], vector[2]))
+        yield from (Frame(x, y, z), Frame(y, z, x), Frame(z, x, y))
+
+
+FRAMES: Final = tuple(_frames())
+
+
+def poles(free: FreeGyrostat, place: PointMap, frame: Frame, numbers: Arithmetic) -> list[Pole]:
+    """Return one pole of each pair of conjugates; ZeroDivisionError for a frame that has too few.
+
+    ``place`` is the point map of the motion in the same arithmetic.
+    """
+    real = numbers.real
+    a, b, c = (tuple(map(real, axis)) for axis in frame)
+    K = tuple(tuple(map(real, row)) for row in free.K)
+    g = tuple(map(real, free.g))
+    N = numbers.sqrt(real(free.n))
+    f = [numbers.complex(p, q) for p, q in zip(a, b, strict=True)]
+    found = []
+    for sigma in (1, -1):
+        for rho in _feet(free, frame, sigma, N, numbers):
+            point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
+            omega = [_dot(row, point) - entry for row, entry in zip(K, g, strict=True)]
+            found.append(Pole(sigma, *place.at(point, _cross(point, omega))))
+    return found
+
+
+def _feet(free: FreeGyrostat, frame: Frame, sigma: int, N: Any, numbers: Arithmetic) -> list[Any]:
+    """Every rho for which sigma N c + rho f is a point of the orbit's curve."""
+    real = numbers.real
+
+    def along_f(vector: Vector) -> Any:
+        return numbers.complex(real(dot(vector, frame.a)), real(dot(vector, frame.b)))
+
+    if free.is_circle:
+        nu = free.osculating_plane
+        away = real(dot(nu, free.momentum)) - sigma * N * real(dot(nu, frame.c))
+        return [away / along_f(nu)]
+    images = [tensors.apply(free.K, axis) for axis in frame]
+    K_a, K_b, K_c = images
+    lead = numbers.complex(real(dot(frame.a, K_a) - dot(frame.b, K_b)), real(2 * dot(frame.a, K_b)))
+    half = sigma * N * along_f(K_c) - along_f(free.g)
+    last = real(free.n * dot(frame.c, K_c) - free.E) - 2 * sigma * N * real(dot(free.g, frame.c))
+    root = numbers.sqrt(half * half - lead * last)
+    return [(root - half) / lead, (-root - half) / lead]
+
+
+def rate_at_start(free: FreeGyrostat, c: Vector, N: Any, real: Callable[[Fraction], Any]) -> Any:
+    """phi' at the start: N times a rational number."""
+    G, w = free.momentum, free.omega
+    return N * real((dot(G, w) - dot(G, c) * dot(w, c)) / (free.n - dot(G, c) ** 2))
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Sequence[Any], b: Sequence[Any]) -> list[Any]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

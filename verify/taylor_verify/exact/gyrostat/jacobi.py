@@ -1,0 +1,297 @@
+"""The free motion of a gyrostat in mpmath: Jacobi's functions, and Carlson's integrals for the attitude.
+
+Legend: as in pencil and azimuth; x_j and v_j are p and p' at a pole of phi' and sigma_j its sign, L the
+period of p. For t = n L + r with |r| <= L/2,
+
+    phi = phi'(0) t + (1/2) Im sum_j sigma_j [log(p(r) - x_j) + v_j (2 n J_j(L/2) + J_j(r))],
+    J_j(r) = int_0^r dt/(p - x_j) = R_J(p - e1, p - e2, p - e3, p - x_j)/3 for r > 0, and odd in r.
+
+p is real on the way and x_j is not, so that the principal logarithm is continuous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Final, NamedTuple, final
+
+import numpy as np
+from mpmath import mp, mpc, mpf
+
+from taylor_verify.exact.elliptic import Landen
+from taylor_verify.exact.frames import Frame as Rows
+from taylor_verify.exact.frames import applied, product, start_frame, transposed, turn
+from taylor_verify.exact.gyrostat.azimuth import FRAMES, Arithmetic, Frame, poles, rate_at_start
+from taylor_verify.exact.gyrostat.carlson import integral_j
+from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.gyrostat.point import PointMap, point_map
+from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
+from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.motion import Quaternion
+from taylor_verify.scenes.precision import floor_log2
+from taylor_verify.scenes.tensors import Vector, dot
+
+_MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
+_GUARD_DIGITS: Final = 15
+_CHOICE_DIGITS: Final = 30
+_SAMPLES: Final = 12
+# An orbit without a period is looked at for so many times the time in which G turns by a radian at first.
+_UNITS: Final = 16
+
+
+@final
+class GyrostatMotion(Settled):
+    """The free motion of a rigid body with wheels: omega(t) in body axes, and R(t) where it is tracked."""
+
+    route = "mpmath"
+
+    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None) -> None:
+        self.regime = free.regime.value
+        self._free, self._attitude = free, attitude
+
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        longest = max((abs(t) for t in elapsed), default=Fraction(0))
+        with mp.workdps(digits + _GUARD_DIGITS + self._turned_digits(longest)):
+            outer = self._free.outer
+            course = (
+                Tumbling(self._free, self._attitude)
+                if outer is None
+                else Turning(self._free, outer, self._attitude)
+            )
+            rows = [course.at(mp.convert(t)) for t in elapsed]
+            found = {"omega": np.array([omega for omega, _ in rows], dtype=object).reshape(-1, 3)}
+            if self._attitude is not None:
+                found["attitude"] = np.array([R for _, R in rows], dtype=object).reshape(-1, 3, 3)
+            return found
+
+    def _turned_digits(self, longest: Fraction) -> int:
+        """The digits lost to the angle turned in that time."""
+        free = self._free
+        rates = sum(abs(c) for v in (free.omega, free.g, free.momentum) for c in v)
+        angle = rates * (1 + max(free.K[i][i] for i in range(3))) * longest
+        return max(0, floor_log2(angle)) // 3 + 1 if angle else 0
+
+
+@final
+class Turning:
+    """w turns in the body at a constant rate v, and the body about u: R = R(0) Rot(u t) Rot(-v t)."""
+
+    def __init__(self, free: FreeGyrostat, outer: Vector, attitude: Quaternion | None) -> None:
+        self._omega, self._outer, self._inner = (
+            [mp.convert(c) for c in v] for v in (free.omega, outer, free.inner)
+        )
+        self._start = None if attitude is None else start_frame(attitude)
+
+    def at(self, t: mpf) -> tuple[list[mpf], Rows | None]:
+        """omega, and R where it is tracked."""
+        inner = turn(self._inner, mp.norm(self._inner) * t)
+        omega = applied(inner, self._omega)
+        if self._start is None:
+            return omega, None
+        about_outer = product(self._start, turn(self._outer, mp.norm(self._outer) * t))
+        return omega, product(about_outer, transposed(inner))
+
+
+class Place(NamedTuple):
+    """p at a time, p', and p less each of the three roots, of which p - e1 is real."""
+
+    p: mpf
+    slope: mpf
+    above_roots: tuple[mpf | mpc, mpf | mpc, mpf | mpc]
+
+
+@final
+class Swing:
+    """p and p' at real times, with numbers of one precision; ``period`` is infinite where p has none."""
+
+    at: Callable[[mpf], Place]
+    half: Place
+    """The place at half the period, where there is one."""
+
+    def __init__(self, free: FreeGyrostat) -> None:
+        g2, g3 = (mp.convert(g) for g in free.invariants)
+        self.period = mp.inf
+        discriminant = mp.convert(free.discriminant)
+        if not discriminant:
+            self._root = mp.convert(free.double_root)
+            self._rate = mp.sqrt(3 * abs(self._root))
+            if self._root < 0:
+                self.period = mp.pi / self._rate
+                self.half = Place(-2 * self._root, mpf(0), (mpf(0), self._rate**2, self._rate**2))
+            self.at = self._elementary
+        elif discriminant > 0:
+            self._three_roots(g2, g3, discriminant)
+        else:
+            self._one_root(g2, g3, discriminant)
+
+    def reduced(self, t: mpf) -> tuple[int, mpf]:
+        """n and r of t = n L + r."""
+        if self.period == mp.inf:
+            return 0, t
+        n = int(mp.nint(t / self.period))
+        return n, t - n * self.period
+
+    def _three_roots(self, g2: mpf, g3: mpf, discriminant: mpf) -> None:
+        """e1 > e2 > e3: the closer two have their distance from the discriminant."""
+        size = mp.sqrt(g2 / 12)
+        angle = mp.acos(max(min(g3 / (8 * size**3), mpf(1)), mpf(-1))) / 3
+        e1, e2, e3 = (2 * size * mp.cos(angle - 2 * mp.pi * k / 3) for k in (0, 1, 2))
+        e2, e3 = max(e2, e3), min(e2, e3)
+        upper, lower, whole = e1 - e2, e2 - e3, e1 - e3
+        if upper < lower:
+            upper = mp.sqrt(discriminant) / (4 * lower * whole)
+        else:
+            lower = mp.sqrt(discriminant) / (4 * upper * whole)
+        self._root, self._rate = e3, mp.sqrt(whole)
+        self._chain = Landen(lower / whole, upper / whole)
+        self.period = 2 * self._chain.quarter_period / self._rate
+        self.half = Place(e1, mpf(0), (mpf(0), upper, whole))
+        self.at = self._rectangular
+
+    def _rectangular(self, t: mpf) -> Place:
+        sn, cn, dn = self._chain.jacobi(self._rate * t)
+        ns = self._rate / sn
+        above = (ns * cn) ** 2, (ns * dn) ** 2, ns**2
+        return Place(self._root + above[2], -2 * ns**3 * cn * dn, above)
+
+    def _one_root(self, g2: mpf, g3: mpf, discriminant: mpf) -> None:
+        """One real root e; 1/2 -+ 3 e/4 H are the parameters, of which the smaller from their product."""
+        grown = mp.sqrt(-discriminant / 27)
+        # Of the two cube roots in Cardano's formula the larger one, and the other from their product.
+        larger = mp.cbrt((abs(g3) + grown) / 8)
+        e = larger + g2 / (12 * larger)
+        e = e if g3 >= 0 else -e
+        H = mp.sqrt(3 * e * e - g2 / 4)
+        bigger = mpf(1) / 2 + abs(3 * e / (4 * H))
+        smaller = -discriminant / (256 * H**6 * bigger)
+        m, m_prime = (smaller, bigger) if e >= 0 else (bigger, smaller)
+        self._root, self._rate = e, mp.sqrt(H)
+        self._chain = Landen(m, m_prime)
+        self.period = 2 * self._chain.quarter_period / self._rate
+        self._to_pair = mpc(3 * e / 2, 2 * H * mp.sqrt(m * m_prime))
+        self.half = Place(e, mpf(0), (mpf(0), self._to_pair, mp.conj(self._to_pair)))
+        self.at = self._rhombic
+
+    def _rhombic(self, t: mpf) -> Place:
+        sn, cn, dn = self._chain.jacobi(2 * self._rate * t)
+        versed = 1 - cn if cn < 0 else sn**2 / (1 + cn)
+        whole = self._rate / versed
+        rise = self._rate**2 * (1 + cn) / versed
+        above = rise, rise + self._to_pair, rise + mp.conj(self._to_pair)
+        return Place(self._root + rise, -4 * whole**2 * self._rate * sn * dn, above)
+
+    def _elementary(self, t: mpf) -> Place:
+        """A double root e, whose k^2 = 3 |e|: hyperbolic, trigonometric or rational."""
+        e, k = self._root, self._rate
+        if e == 0:
+            square = 1 / t**2
+            return Place(square, -2 / t**3, (square, square, square))
+        sine, cosine = (mp.sinh, mp.cosh) if e > 0 else (mp.sin, mp.cos)
+        s, c = sine(k * t), cosine(k * t)
+        rise = (k / s) ** 2
+        # The simple root is -2 e = e - 3 e.
+        above = ((k * c / s) ** 2, rise, rise) if e < 0 else (rise, rise, (k * c / s) ** 2)
+        return Place(e + rise, -2 * k**3 * c / s**3, above)
+
+
+@final
+class Tumbling:
+    """omega and R of a motion that is not a uniform turning, with numbers of one precision."""
+
+    def __init__(self, free: FreeGyrostat, attitude: Quaternion | None) -> None:
+        self._swing = Swing(free)
+        self._form = WeierstrassForm.of(free).converted(mp.convert)
+        self._K = [[mp.convert(c) for c in row] for row in free.K]
+        self._g = [mp.convert(c) for c in free.g]
+        self._omega = [mp.convert(c) for c in free.omega]
+        self._azimuth: Azimuth | None = None
+        if attitude is not None:
+            self._start = start_frame(attitude)
+            self._azimuth = Azimuth(free, _best_frame(free), self._swing)
+            start = self._azimuth.tilt([mp.convert(c) for c in free.momentum])
+            self._to_space = product(self._start, transposed(start))
+
+    def at(self, t: mpf) -> tuple[list[mpf], Rows | None]:
+        """omega, and R where it is tracked."""
+        if t == 0:
+            return self._omega, self._start if self._azimuth else None
+        turns, r = self._swing.reduced(t)
+        place = self._swing.at(r)
+        G = self._form.at(place.p, place.slope)
+        omega = [q - g for q, g in zip(applied(self._K, G), self._g, strict=True)]
+        if self._azimuth is None:
+            return omega, None
+        cos, sin = mp.cos_sin(self._azimuth.at(t, turns, r, place))
+        about_momentum = [[cos, -sin, mpf(0)], [sin, cos, mpf(0)], [mpf(0), mpf(0), mpf(1)]]
+        return omega, product(product(self._to_space, about_momentum), self._azimuth.tilt(G))
+
+
+@final
+class Azimuth:
+    """phi(t) of one frame, and M(t)."""
+
+    def __init__(self, free: FreeGyrostat, frame: Frame, swing: Swing) -> None:
+        self._c = [mp.convert(c) for c in frame.c]
+        self._N = mp.sqrt(mp.convert(free.n))
+        self._rate = rate_at_start(free, frame.c, self._N, mp.convert)
+        self._poles = poles(free, point_map(free).converted(mp.convert), frame, _MPMATH)
+        self._half = mpf(0)
+        if swing.period < mp.inf:
+            self._half = sum(
+                pole.sigma * pole.slope * _integral(swing.half, pole.p) for pole in self._poles
+            )
+
+    def at(self, t: mpf, turns: int, r: mpf, place: Place) -> mpf:
+        """phi at t = turns L + r, where p is at ``place``."""
+        total = 2 * turns * self._half
+        for sigma, x, v in self._poles:
+            part = v * _integral(place, x)
+            total += sigma * (mp.log(place.p - x) + (part if r > 0 else -part))
+        return self._rate * t + mp.im(total) / 2
+
+    def tilt(self, G: Sequence[mpf]) -> Rows:
+        """M^T: its rows are m1, m2, m3."""
+        m3 = [component / self._N for component in G]
+        along = mp.fdot(self._c, m3)
+        across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
+        length = mp.norm(across)
+        m1 = [component / length for component in across]
+        m2 = [
+            m3[1] * m1[2] - m3[2] * m1[1],
+            m3[2] * m1[0] - m3[0] * m1[2],
+            m3[0] * m1[1] - m3[1] * m1[0],
+        ]
+        return [m1, m2, m3]
+
+
+def _integral(place: Place, x: mpc) -> mpc:
+    """int_0^r dt/(p - x) up to the time r > 0 of the place, at most half a period."""
+    real, *others = place.above_roots
+    return integral_j(real, *others, place.p - x) / 3
+
+
+def _best_frame(free: FreeGyrostat) -> Frame:
+    """Return the frame whose axis c the momentum stays farthest away from, at a few times of an orbit."""
+    with mp.workdps(_CHOICE_DIGITS):
+        swing, form = Swing(free), WeierstrassForm.of(free).converted(mp.convert)
+        pace = mp.norm(list(map(mp.convert, free.jet[1]))) / mp.norm(
+            list(map(mp.convert, free.momentum))
+        )
+        span = swing.period if swing.period < mp.inf else _UNITS / pace
+        unit = span / (2 * _SAMPLES)
+        places = [swing.at((k + mpf(1) / 2) * unit) for k in range(-_SAMPLES, _SAMPLES)]
+        orbit = [form.at(place.p, place.slope) for place in places]
+        return min(
+            (frame for frame in FRAMES if _has_poles(free, frame)),
+            key=lambda frame: max(abs(mp.fdot(frame.c, G)) for G in orbit),
+        )
+
+
+def _has_poles(free: FreeGyrostat, frame: Frame) -> bool:
+    """Return True if none of the poles is at infinity."""
+    a, b, _ = frame
+    if free.is_circle:
+        return any(dot(free.osculating_plane, axis) for axis in (a, b))
+    K_a, K_b = (tensors.apply(free.K, axis) for axis in (a, b))
+    return dot(a, K_a) != dot(b, K_b) or dot(a, K_b) != 0

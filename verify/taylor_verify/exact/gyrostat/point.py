@@ -1,0 +1,112 @@
+"""Weierstrass's p and p' at any point of the curve on which the momentum of a gyrostat moves.
+
+Legend: as in pencil; G is a point of the curve, real or complex, and d = G - G(0). Four points of the curve
+lie in one plane if the sum of their arguments t is that of 0, 0, 0 and c, where the osculating plane of the
+start, nu.d = 0, meets the curve at 0 three times and at c. A plane mu.d = 0 through 0 and c meets it at t and
+-t besides, where p is equal: so p is a linear function of mu.d/nu.d. The line through 0 and c lies on the
+quadric of the pencil that holds the tangent of the start, K - s with s = G'.K G'/G'.G', and is rational.
+Where c is 0 the line is the tangent itself.
+
+Where that quadric is a pair of planes the orbit is a circle, nu.d = 0 on all of it, and p has the double root e.
+There coth, k coth(k t) with k^2 = 3 e, is a linear function of a quotient of planes through the start.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Self, final
+
+from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.scenes import tensors
+from taylor_verify.scenes.tensors import Vector, cross, dot
+
+Convert = Callable[[Fraction], Any]
+
+
+@dataclass(frozen=True)
+class PointMap(ABC):
+    """p and p' as functions of the point, in one arithmetic; ``ratio`` is that of the planes mu and nu."""
+
+    start: Sequence[Any]
+    mu: Sequence[Any]
+    nu: Sequence[Any]
+    scale: Any
+    constant: Any
+    double_root: Any
+
+    @abstractmethod
+    def at(self, point: Sequence[Any], rate: Sequence[Any]) -> tuple[Any, Any]:
+        """(p, p') at the point G with its rate G'."""
+
+    @final
+    def converted(self, convert: Convert) -> Self:
+        """Return the same map in another arithmetic."""
+        planes = ([convert(c) for c in v] for v in (self.start, self.mu, self.nu))
+        return type(self)(*planes, *map(convert, (self.scale, self.constant, self.double_root)))
+
+
+@final
+class ByPlanes(PointMap):
+    """p = scale mu.d/nu.d + constant."""
+
+    def at(self, point: Sequence[Any], rate: Sequence[Any]) -> tuple[Any, Any]:
+        d = [p - q for p, q in zip(point, self.start, strict=True)]
+        below = _dot(self.nu, d)
+        ratio = _dot(self.mu, d) / below
+        slope = (_dot(self.mu, rate) - ratio * _dot(self.nu, rate)) / below
+        return self.scale * ratio + self.constant, self.scale * slope
+
+
+@final
+class OnCircle(PointMap):
+    """c = scale mu.d/nu.d + constant is k coth(k t): p = c^2 - 2 e, and c' = 3 e - c^2."""
+
+    def at(self, point: Sequence[Any], rate: Sequence[Any]) -> tuple[Any, Any]:
+        d = [p - q for p, q in zip(point, self.start, strict=True)]
+        c = self.scale * _dot(self.mu, d) / _dot(self.nu, d) + self.constant
+        return c * c - 2 * self.double_root, 2 * c * (3 * self.double_root - c * c)
+
+
+def point_map(free: FreeGyrostat) -> PointMap:
+    """Return p and p' by the point of a motion that is not steady, in exact numbers."""
+    G1, osculating = free.jet[1], free.osculating_plane
+    if free.is_circle:
+        # Two planes through the start, the second one through its tangent.
+        mu, nu = G1, cross(G1, osculating)
+        first, constant, _ = _quotient(free, mu, nu)
+        return OnCircle(free.momentum, mu, nu, 1 / first, -constant / first, free.double_root)
+    mu, nu = cross(_line(free), osculating), osculating
+    first, _, constant = _quotient(free, mu, nu)
+    return ByPlanes(free.momentum, mu, nu, 1 / first, -constant / first, free.double_root)
+
+
+def _line(free: FreeGyrostat) -> Vector:
+    """The other direction a of the osculating plane with a.(K - s) a = 0; the tangent if there is none."""
+    G1 = free.jet[1]
+    across = cross(free.osculating_plane, G1)
+    image = tensors.minus(tensors.apply(free.K, across), tensors.scaled(free.tangent_value, across))
+    return tensors.minus(
+        tensors.scaled(2 * dot(G1, image), across), tensors.scaled(dot(across, image), G1)
+    )
+
+
+def _quotient(free: FreeGyrostat, mu: Vector, nu: Vector) -> tuple[Fraction, ...]:
+    """The first three coefficients of mu.d/nu.d in powers of t, from the first that is not zero."""
+    a, b = (_stripped([dot(plane, c) for c in free.jet[1:]]) for plane in (mu, nu))
+    terms: list[Fraction] = []
+    for k in range(3):
+        known = sum((b[k - j] * terms[j] for j in range(k)), Fraction(0))
+        terms.append((a[k] - known) / b[0])
+    return tuple(terms)
+
+
+def _stripped(series: Sequence[Fraction]) -> Sequence[Fraction]:
+    """The series from its first coefficient that is not zero."""
+    return series[next(k for k, c in enumerate(series) if c) :]
+
+
+def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
