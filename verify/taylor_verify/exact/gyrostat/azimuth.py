@@ -1,12 +1,12 @@
 """The azimuth of a body axis about the momentum of a gyrostat: its rate, and the poles of that rate.
 
-Legend: as in pencil; (a, b, c) a right-handed orthonormal frame fixed in the body, f = a + i b, N = |G|. With
+Legend: as in pencil; (a, b, c) is a right-handed orthonormal frame of the body, f = a + i b, N = |G|. With
 
     M = [m1 m2 m3],    m3 = G/N,    m1 along c - (c.m3) m3,    m2 = m3 x m1,
     R(t) = R(0) M(0) Rz(phi(t)) M(t)^T,    phi' = N (G.w - (G.c)(w.c))/(N^2 - (G.c)^2),    phi(0) = 0.
 
-As a function of complex t, phi' has poles where G = sigma N c + rho f is on the curve, sigma = 1 or -1, with
-the residue sigma/2i, and where it is the conjugate.
+As a function of complex t, phi' has a pole with the residue sigma/2i, sigma = 1 or -1, where the point
+G = sigma N c + rho f is on the curve, and another one where G is its conjugate.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector, dot
+from taylor_verify.scenes.tensors import Vector, dot
 
 
 class Arithmetic(NamedTuple):

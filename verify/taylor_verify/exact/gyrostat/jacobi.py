@@ -24,7 +24,7 @@ from taylor_verify.exact.frames import applied, product, start_frame, transposed
 from taylor_verify.exact.gyrostat.azimuth import FRAMES, Arithmetic, Frame, poles, rate_at_start
 from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.gyrostat.point import PointMap, point_map
+from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes import tensors
@@ -60,10 +60,11 @@ class GyrostatMotion(Settled):
                 else Turning(self._free, outer, self._attitude)
             )
             rows = [course.at(mp.convert(t)) for t in elapsed]
-            found = {"omega": np.array([omega for omega, _ in rows], dtype=object).reshape(-1, 3)}
-            if self._attitude is not None:
-                found["attitude"] = np.array([R for _, R in rows], dtype=object).reshape(-1, 3, 3)
-            return found
+        omegas: Quantities = {"omega": np.array([w for w, _ in rows], dtype=object).reshape(-1, 3)}
+        if self._attitude is None:
+            return omegas
+        attitudes = np.array([R for _, R in rows], dtype=object).reshape(-1, 3, 3)
+        return {**omegas, "attitude": attitudes}
 
     def _turned_digits(self, longest: Fraction) -> int:
         """The digits lost to the angle turned in that time."""
@@ -267,8 +268,7 @@ class Azimuth:
 
 def _integral(place: Place, x: mpc) -> mpc:
     """int_0^r dt/(p - x) up to the time r > 0 of the place, at most half a period."""
-    real, *others = place.above_roots
-    return integral_j(real, *others, place.p - x) / 3
+    return integral_j(*place.above_roots, place.p - x) / 3
 
 
 def _best_frame(free: FreeGyrostat) -> Frame:

@@ -5,9 +5,9 @@ g = K h, and G = I w + h the whole momentum, so that w = K G - g and
 
     G' = G x (K G - g),        n = G.G,        E = G.K G - 2 g.G
 
-with n and E constant: the orbit of G is where two quadrics meet. Their pencil has the characteristic quartic
-D(s) = det(K - s)(n s - E) - g.adj(K - s) g, whose invariants g2 and g3 are those of Weierstrass's p in the
-time itself. Everything is rational, so every decision is final.
+with n and E constant: the orbit of G is where two quadrics meet. Their pencil has the quartic
+D(s) = det(K - s)(n s - E) - g.adj(K - s) g, and its invariants g2 and g3 are those of Weierstrass's p in
+the time itself. Everything is rational, so every decision is final.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
-
 
 # The osculating plane meets the orbit four times at most, and a constant takes two orders more.
 _ORDER: Final = 6

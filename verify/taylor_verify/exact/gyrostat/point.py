@@ -1,14 +1,14 @@
 """Weierstrass's p and p' at any point of the curve on which the momentum of a gyrostat moves.
 
-Legend: as in pencil; G is a point of the curve, real or complex, and d = G - G(0). Four points of the curve
-lie in one plane if the sum of their arguments t is that of 0, 0, 0 and c, where the osculating plane of the
-start, nu.d = 0, meets the curve at 0 three times and at c. A plane mu.d = 0 through 0 and c meets it at t and
--t besides, where p is equal: so p is a linear function of mu.d/nu.d. The line through 0 and c lies on the
-quadric of the pencil that holds the tangent of the start, K - s with s = G'.K G'/G'.G', and is rational.
-Where c is 0 the line is the tangent itself.
+Legend: as in pencil; G is a point of the curve, real or complex, and d = G - G(0). Four points of the
+curve lie in one plane if their arguments t have one fixed sum. The plane nu.d = 0 that osculates the orbit
+at the start meets the curve there three times, and once at an argument c: the sum is c. A plane mu.d = 0
+through the start and through c meets it at two more points, t and -t, where p is equal. So p is a linear
+function of mu.d/nu.d. The line through 0 and c is rational: it lies on that quadric of the pencil, of
+K - s, that holds the tangent of the start. Where c is 0 it is the tangent.
 
-Where that quadric is a pair of planes the orbit is a circle, nu.d = 0 on all of it, and p has the double root e.
-There coth, k coth(k t) with k^2 = 3 e, is a linear function of a quotient of planes through the start.
+Where that quadric is a pair of planes the orbit is a circle, nu.d is 0 on all of it, and p has a double
+root e. With k^2 = 3 e, k coth(k t) is there a linear function of a quotient of two planes.
 """
 
 from __future__ import annotations

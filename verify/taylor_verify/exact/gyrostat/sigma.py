@@ -1,7 +1,7 @@
-"""The free motion of a gyrostat in balls: omega by Weierstrass's functions, the attitude by sigma quotients.
+"""The free motion of a gyrostat in balls: omega by Weierstrass's p, the attitude by sigma quotients.
 
-Legend: as in pencil and azimuth; s is the odd function of exact.kirchhoff.lattice, alpha_j the argument of a
-pole of phi' and sigma_j its sign. With the rate k that phi' has at the start,
+Legend: as in pencil and azimuth; s is the odd function of exact.kirchhoff.lattice, alpha_j the argument of
+a pole of phi' and sigma_j its sign. With k such that the rate at the start is phi'(0),
 
     e^{i phi} = e^{i k t} prod (q_j/|q_j|)^sigma_j,    q_j = s(t - alpha_j)/s(-alpha_j):
 
@@ -31,7 +31,6 @@ from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.tensors import Vector, dot
 

@@ -1,6 +1,6 @@
 """The whole momentum of a gyrostat as a rational function of Weierstrass's p and p'.
 
-Legend: as in pencil; P = p(t), P' = p'(t), and the poles of G are p_k, k = 1..4. With constants of the start
+Legend: as in pencil; P = p(t), P' = p'(t), and G has the four poles p_k. With constants of the start
 
     X = P - xb,    V = P' + vb,    Q = prod (P - p(p_k)) = X^4 - 2 B X^2 + 8 beta X + B^2 - 4 Pi > 0,
 

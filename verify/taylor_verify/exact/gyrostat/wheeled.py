@@ -10,9 +10,9 @@ from typing import Final, final
 from taylor_verify.exact.equations import Equations, cross, times, total
 from taylor_verify.exact.gyrostat.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
-from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.parameters import Block, Parameters, entries
+from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.gyrostat import Gyrostat
