@@ -94,7 +94,9 @@ def _feet(free: FreeGyrostat, frame: Frame, sigma: int, N: Any, numbers: Arithme
     half = sigma * N * along_f(K_c) - along_f(free.g)
     last = real(free.n * dot(frame.c, K_c) - free.E) - 2 * sigma * N * real(dot(free.g, frame.c))
     root = numbers.sqrt(half * half - lead * last)
-    return [(root - half) / lead, (-root - half) / lead]
+    # The smaller rho from the product of both: where lead is small it would be a difference.
+    larger = half + root if abs(half + root) > abs(half - root) else half - root
+    return [-larger / lead, -last / larger]
 
 
 def rate_at_start(free: FreeGyrostat, c: Vector, N: Any, real: Callable[[Fraction], Any]) -> Any:

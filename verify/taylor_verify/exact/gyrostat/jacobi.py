@@ -12,6 +12,7 @@ p is real on the way and x_j is not, so that the principal logarithm is continuo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from typing import Final, NamedTuple, final
 
@@ -21,21 +22,27 @@ from mpmath import mp, mpc, mpf
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.frames import Frame as Rows
 from taylor_verify.exact.frames import applied, product, start_frame, transposed, turn
-from taylor_verify.exact.gyrostat.azimuth import FRAMES, Arithmetic, Frame, poles, rate_at_start
+from taylor_verify.exact.gyrostat.azimuth import (
+    FRAMES,
+    Arithmetic,
+    Frame,
+    Pole,
+    poles,
+    rate_at_start,
+)
 from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import WeierstrassForm
 from taylor_verify.exact.solution import Quantities, Settled
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.precision import floor_log2
-from taylor_verify.scenes.tensors import Vector, dot
+from taylor_verify.scenes.tensors import Vector
 
 _MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
 _GUARD_DIGITS: Final = 15
-_CHOICE_DIGITS: Final = 30
-_SAMPLES: Final = 12
+_CHOICE_DIGITS: Final = 15
+_SAMPLES: Final = 48
 # An orbit without a period is looked at for so many times the time in which G turns by a radian at first.
 _UNITS: Final = 16
 
@@ -209,7 +216,7 @@ class Tumbling:
         self._azimuth: Azimuth | None = None
         if attitude is not None:
             self._start = start_frame(attitude)
-            self._azimuth = Azimuth(free, _best_frame(free), self._swing)
+            self._azimuth = Azimuth(free, self._swing)
             start = self._azimuth.tilt([mp.convert(c) for c in free.momentum])
             self._to_space = product(self._start, transposed(start))
 
@@ -232,11 +239,11 @@ class Tumbling:
 class Azimuth:
     """phi(t) of one frame, and M(t)."""
 
-    def __init__(self, free: FreeGyrostat, frame: Frame, swing: Swing) -> None:
+    def __init__(self, free: FreeGyrostat, swing: Swing) -> None:
+        frame, self._poles = _best_poles(free, swing.period)
         self._c = [mp.convert(c) for c in frame.c]
         self._N = mp.sqrt(mp.convert(free.n))
         self._rate = rate_at_start(free, frame.c, self._N, mp.convert)
-        self._poles = poles(free, point_map(free).converted(mp.convert), frame, _MPMATH)
         self._half = mpf(0)
         if swing.period < mp.inf:
             self._half = sum(
@@ -258,12 +265,7 @@ class Azimuth:
         across = [p - along * q for p, q in zip(self._c, m3, strict=True)]
         length = mp.norm(across)
         m1 = [component / length for component in across]
-        m2 = [
-            m3[1] * m1[2] - m3[2] * m1[1],
-            m3[2] * m1[0] - m3[0] * m1[2],
-            m3[0] * m1[1] - m3[1] * m1[0],
-        ]
-        return [m1, m2, m3]
+        return [m1, _cross(m3, m1), m3]
 
 
 def _integral(place: Place, x: mpc) -> mpc:
@@ -271,27 +273,41 @@ def _integral(place: Place, x: mpc) -> mpc:
     return integral_j(*place.above_roots, place.p - x) / 3
 
 
-def _best_frame(free: FreeGyrostat) -> Frame:
-    """Return the frame whose axis c the momentum stays farthest away from, at a few times of an orbit."""
+def _best_poles(free: FreeGyrostat, period: mpf) -> tuple[Frame, list[Pole]]:
+    """Return the frame whose axis c the momentum stays farthest away from, and its poles."""
+    orbit = _rough_orbit(free, period)
+    place = point_map(free).converted(mp.convert)
+    nearest = {k: max(abs(mp.fdot(frame.c, G)) for G in orbit) for k, frame in enumerate(FRAMES)}
+    for number in sorted(nearest, key=nearest.__getitem__):
+        with suppress(ZeroDivisionError):
+            return FRAMES[number], poles(free, place, FRAMES[number], _MPMATH)
+    raise ZeroDivisionError("no frame has its poles at finite places")
+
+
+def _rough_orbit(free: FreeGyrostat, period: mpf) -> list[list[mpf]]:
+    """G along one period, or some turns of a motion without one, by a rough integration."""
     with mp.workdps(_CHOICE_DIGITS):
-        swing, form = Swing(free), WeierstrassForm.of(free).converted(mp.convert)
-        pace = mp.norm(list(map(mp.convert, free.jet[1]))) / mp.norm(
-            list(map(mp.convert, free.momentum))
-        )
-        span = swing.period if swing.period < mp.inf else _UNITS / pace
-        unit = span / (2 * _SAMPLES)
-        places = [swing.at((k + mpf(1) / 2) * unit) for k in range(-_SAMPLES, _SAMPLES)]
-        orbit = [form.at(place.p, place.slope) for place in places]
-        return min(
-            (frame for frame in FRAMES if _has_poles(free, frame)),
-            key=lambda frame: max(abs(mp.fdot(frame.c, G)) for G in orbit),
-        )
+        K = [[mp.convert(c) for c in row] for row in free.K]
+        g = [mp.convert(c) for c in free.g]
+        G, slope = ([mp.convert(c) for c in v] for v in free.jet[:2])
+        span = period if period < mp.inf else _UNITS * mp.norm(G) / mp.norm(slope)
+        h = span / _SAMPLES
+
+        def rate(G: list[mpf], step: list[mpf], size: mpf) -> list[mpf]:
+            moved = [p + size * q for p, q in zip(G, step, strict=True)]
+            return _cross(moved, [q - c for q, c in zip(applied(K, moved), g, strict=True)])
+
+        orbit = [G]
+        for _ in range(_SAMPLES):
+            one = rate(G, slope, mpf(0))
+            two = rate(G, one, h / 2)
+            three = rate(G, two, h / 2)
+            four = rate(G, three, h)
+            slopes = zip(G, one, two, three, four, strict=True)
+            G = [p + h * (a + 2 * b + 2 * c + d) / 6 for p, a, b, c, d in slopes]
+            orbit.append(G)
+        return orbit
 
 
-def _has_poles(free: FreeGyrostat, frame: Frame) -> bool:
-    """Return True if none of the poles is at infinity."""
-    a, b, _ = frame
-    if free.is_circle:
-        return any(dot(free.osculating_plane, axis) for axis in (a, b))
-    K_a, K_b = (tensors.apply(free.K, axis) for axis in (a, b))
-    return dot(a, K_a) != dot(b, K_b) or dot(a, K_b) != 0
+def _cross(a: Sequence[mpf], b: Sequence[mpf]) -> list[mpf]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

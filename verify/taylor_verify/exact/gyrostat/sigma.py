@@ -15,7 +15,7 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import Any, Final, NamedTuple, Protocol, final
 
-from flint import acb, arb, arb_mat, ctx
+from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls
 from taylor_verify.exact.euler import quaternion
@@ -37,8 +37,6 @@ from taylor_verify.scenes.tensors import Vector, dot
 Row = tuple[list[arb], arb_mat | None]
 
 _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
-# Frames are compared by the distance of the poles from the real line: a few digits suffice.
-_CHOICE_BITS: Final = 128
 
 
 class Course(Protocol):
@@ -187,14 +185,12 @@ class _Factor(NamedTuple):
 
 def _best_frame(free: FreeGyrostat) -> Frame:
     """Return the frame whose poles are farthest from the real line; any that has them would be right."""
-    distances, place = {}, point_map(free)
-    with ctx.workprec(_CHOICE_BITS):
-        curve = lattice(*free.invariants)
-        for number, frame in enumerate(FRAMES):
-            with suppress(Undecidable, ZeroDivisionError, ValueError):
-                distance = Azimuth(free, place, frame, curve).distance
-                if distance > 0:  # and no NaN
-                    distances[number] = distance
+    distances, place, curve = {}, point_map(free), lattice(*free.invariants)
+    for number, frame in enumerate(FRAMES):
+        with suppress(Undecidable, ZeroDivisionError):
+            distance = Azimuth(free, place, frame, curve).distance
+            if distance > 0:  # and no NaN
+                distances[number] = distance
     if not distances:
         raise Undecidable
     return FRAMES[max(distances, key=distances.__getitem__)]
