@@ -16,18 +16,18 @@ def enclosed(scene: Scene) -> Solution:
     """Return the motion in balls; raises NoClosedForm for a moment on the body."""
     from taylor_verify.exact.gyrostat.sigma import GyrostatBalls
 
-    return GyrostatBalls(*_free(scene))
+    return GyrostatBalls(*free_gyrostat(scene))
 
 
 def closed_form(scene: Scene) -> Solution:
     """Return the motion in mpmath; raises NoClosedForm likewise."""
     from taylor_verify.exact.gyrostat.jacobi import GyrostatMotion
 
-    return GyrostatMotion(*_free(scene))
+    return GyrostatMotion(*free_gyrostat(scene))
 
 
-def _free(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:
-    """The start, and the attitude where it is tracked."""
+def free_gyrostat(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:
+    """Return the motion without a moment, and the attitude where it is tracked; else NoClosedForm."""
     body, start = scene.body, scene.initial
     assert isinstance(body, Gyrostat)
     assert isinstance(start, Spin)

@@ -1,13 +1,125 @@
-"""Elements of a gyrostat's orbit: none without a closed form."""
+"""The elements of a gyrostat's motion, from its exact invariants; legend as in pencil."""
 
 from __future__ import annotations
 
-from taylor_verify.exact.element import Elements
-from taylor_verify.exact.solution import NO_CLOSED_FORM
+from collections.abc import Mapping
+from typing import Final
+
+from mpmath import mp
+
+from taylor_verify.exact.element import Element, Elements, settled
+from taylor_verify.exact.gyrostat.closed import free_gyrostat
+from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing
+from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
+from taylor_verify.exact.gyrostat.spins import steady_spins
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
+
+_CONSERVED: Final = (
+    "Conserved: T = omega.I omega/2 and |H|^2 with H = I omega + h; in space axes the vector H."
+)
+_STORY: Final[Mapping[Regime, str]] = {
+    Regime.REST: "The body is at rest; its wheels turn.",
+    Regime.STEADY: "H is along omega: a steady spin, which the wheels do not disturb.",
+    Regime.SPHERICAL: "All three moments are equal: omega turns about h at the constant rate |h|/J.",
+    Regime.AXISYMMETRIC: (
+        "Two moments are equal and h is along the third axis: omega goes round that axis at a constant "
+        "rate, and the axis round H at another."
+    ),
+    Regime.PERIODIC: "omega recurs in the body: elliptic functions of the time.",
+    Regime.TRIGONOMETRIC: "omega recurs in the body: trigonometric functions of the time.",
+    Regime.SEPARATRIX: (
+        "omega leaves an unstable steady spin and returns to a steady spin for ever: hyperbolic functions "
+        "of the time, and no period."
+    ),
+    Regime.CUSP: (
+        "omega leaves a steady spin that is at the border of stability, and returns to it for ever as "
+        "1/t^2: rational functions of the time."
+    ),
+}
+_PENCIL: Final = "invariants of the pencil of |H|^2 and T"
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """No number; the regime says why."""
-    del scene, digits
-    return Elements(NO_CLOSED_FORM, (), ())
+    """Return every element of a free gyrostat; under a moment none, and a sentence."""
+    try:
+        free, _ = free_gyrostat(scene)
+    except NoClosedForm:
+        story = "A constant moment acts on a body with wheels: no closed form is built."
+        return Elements(NO_CLOSED_FORM, (), (story,))
+    numbers = settled(lambda _: [*_numbers(free), *_conserved(free), *_spins(free)], digits)
+    return Elements(free.regime.value, numbers, (_STORY[free.regime], _count(free), _CONSERVED))
+
+
+def _numbers(free: FreeGyrostat) -> list[Element]:
+    """The elements of the orbit itself, at the ambient precision."""
+    if free.outer is not None:
+        return _turning(free)
+    swing = Swing(free)
+    if free.regime is Regime.SEPARATRIX:
+        meaning = "rate at which omega leaves the steady spin and returns to it, as e^{s t}"
+        return [Element("saddle_rate", 2 * swing.rate, "1/time", meaning, _PENCIL)]
+    if free.regime is Regime.CUSP:
+        return []
+    # R recurs but for a turn about H: phi of any body axis, which differ by whole turns.
+    turned = Azimuth(free, swing).per_period
+    angle = turned - 2 * mp.pi * mp.floor(turned / (2 * mp.pi))
+    meaning = "angle about H by which the attitude differs after a period, less whole turns"
+    found = [
+        Element("period", swing.period, "time", "omega recurs in body axes", _PENCIL),
+        Element("precession", angle, "radians", meaning, "", size=2 * mp.pi),
+    ]
+    if swing.m is not None:
+        found += [
+            Element("m", swing.m, "", "parameter k^2 of the elliptic functions", _PENCIL),
+            Element("m_prime", swing.m_prime, "", "1 - m", _PENCIL),
+        ]
+    return found
+
+
+def _turning(free: FreeGyrostat) -> list[Element]:
+    """The rates of a uniform turning."""
+    found = []
+    for name, rate, meaning in (
+        ("rate", free.inner, "omega turns in body axes"),
+        ("precession_rate", free.outer, "the body turns about H, or about a steady omega"),
+    ):
+        if rate is not None and any(rate):
+            size = mp.norm([mp.convert(c) for c in rate])
+            found.append(Element(name, size, "radians/time", meaning))
+    return found
+
+
+def _conserved(free: FreeGyrostat) -> list[Element]:
+    T, H2 = mp.convert(free.twice_energy / 2), mp.convert(free.n)
+    return [
+        Element("T", T, "energy", "kinetic energy, conserved", "omega.I omega/2"),
+        Element("H2", H2, "angular momentum^2", "|H|^2, conserved", "|I omega + h|^2"),
+    ]
+
+
+def _spins(free: FreeGyrostat) -> list[Element]:
+    """The steady spins with this |H|, and the growth or the frequency of a disturbance of each."""
+    found = []
+    for k, spin in enumerate(steady_spins(free), start=1):
+        name, source = f"spin_{k}", "(I^-1 - mu) H = I^-1 h with |H| given"
+        meaning = f"omega along H in steady spin number {k} with this |H|"
+        found.append(
+            Element(name, spin.rate, "radians/time", meaning, source, mp.sqrt(mp.convert(free.n)))
+        )
+        size = mp.sqrt(abs(spin.square))
+        if spin.square > 0:
+            meaning = f"rate at which a disturbance of spin {k} grows: it is unstable"
+            found.append(Element(f"{name}_growth", size, "1/time", meaning))
+        elif spin.square < 0:
+            meaning = f"frequency of a disturbance of spin {k}: it is stable"
+            found.append(Element(f"{name}_wobble", size, "radians/time", meaning))
+    return found
+
+
+def _count(free: FreeGyrostat) -> str:
+    """The number of steady spins in words."""
+    with mp.workdps(30):
+        spins = steady_spins(free)
+    unstable = sum(spin.square > 0 for spin in spins)
+    return f"With this |H| there are {len(spins)} steady spins, {unstable} of them unstable."

@@ -116,6 +116,8 @@ class Swing:
     at: Callable[[mpf], Place]
     half: Place
     """The place at half the period, where there is one."""
+    m: mpf | None = None
+    m_prime: mpf | None = None
 
     def __init__(self, free: FreeGyrostat) -> None:
         g2, g3 = (mp.convert(g) for g in free.invariants)
@@ -123,10 +125,10 @@ class Swing:
         discriminant = mp.convert(free.discriminant)
         if not discriminant:
             self._root = mp.convert(free.double_root)
-            self._rate = mp.sqrt(3 * abs(self._root))
+            self.rate = mp.sqrt(3 * abs(self._root))
             if self._root < 0:
-                self.period = mp.pi / self._rate
-                self.half = Place(-2 * self._root, mpf(0), (mpf(0), self._rate**2, self._rate**2))
+                self.period = mp.pi / self.rate
+                self.half = Place(-2 * self._root, mpf(0), (mpf(0), self.rate**2, self.rate**2))
             self.at = self._elementary
         elif discriminant > 0:
             self._three_roots(g2, g3, discriminant)
@@ -151,15 +153,16 @@ class Swing:
             upper = mp.sqrt(discriminant) / (4 * lower * whole)
         else:
             lower = mp.sqrt(discriminant) / (4 * upper * whole)
-        self._root, self._rate = e3, mp.sqrt(whole)
-        self._chain = Landen(lower / whole, upper / whole)
-        self.period = 2 * self._chain.quarter_period / self._rate
+        self._root, self.rate = e3, mp.sqrt(whole)
+        self.m, self.m_prime = lower / whole, upper / whole
+        self._chain = Landen(self.m, self.m_prime)
+        self.period = 2 * self._chain.quarter_period / self.rate
         self.half = Place(e1, mpf(0), (mpf(0), upper, whole))
         self.at = self._rectangular
 
     def _rectangular(self, t: mpf) -> Place:
-        sn, cn, dn = self._chain.jacobi(self._rate * t)
-        ns = self._rate / sn
+        sn, cn, dn = self._chain.jacobi(self.rate * t)
+        ns = self.rate / sn
         above = (ns * cn) ** 2, (ns * dn) ** 2, ns**2
         return Place(self._root + above[2], -2 * ns**3 * cn * dn, above)
 
@@ -173,25 +176,25 @@ class Swing:
         H = mp.sqrt(3 * e * e - g2 / 4)
         bigger = mpf(1) / 2 + abs(3 * e / (4 * H))
         smaller = -discriminant / (256 * H**6 * bigger)
-        m, m_prime = (smaller, bigger) if e >= 0 else (bigger, smaller)
-        self._root, self._rate = e, mp.sqrt(H)
-        self._chain = Landen(m, m_prime)
-        self.period = 2 * self._chain.quarter_period / self._rate
-        self._to_pair = mpc(3 * e / 2, 2 * H * mp.sqrt(m * m_prime))
+        self.m, self.m_prime = (smaller, bigger) if e >= 0 else (bigger, smaller)
+        self._root, self.rate = e, mp.sqrt(H)
+        self._chain = Landen(self.m, self.m_prime)
+        self.period = 2 * self._chain.quarter_period / self.rate
+        self._to_pair = mpc(3 * e / 2, 2 * H * mp.sqrt(self.m * self.m_prime))
         self.half = Place(e, mpf(0), (mpf(0), self._to_pair, mp.conj(self._to_pair)))
         self.at = self._rhombic
 
     def _rhombic(self, t: mpf) -> Place:
-        sn, cn, dn = self._chain.jacobi(2 * self._rate * t)
+        sn, cn, dn = self._chain.jacobi(2 * self.rate * t)
         versed = 1 - cn if cn < 0 else sn**2 / (1 + cn)
-        whole = self._rate / versed
-        rise = self._rate**2 * (1 + cn) / versed
+        whole = self.rate / versed
+        rise = self.rate**2 * (1 + cn) / versed
         above = rise, rise + self._to_pair, rise + mp.conj(self._to_pair)
-        return Place(self._root + rise, -4 * whole**2 * self._rate * sn * dn, above)
+        return Place(self._root + rise, -4 * whole**2 * self.rate * sn * dn, above)
 
     def _elementary(self, t: mpf) -> Place:
         """A double root e, whose k^2 = 3 |e|: hyperbolic, trigonometric or rational."""
-        e, k = self._root, self._rate
+        e, k = self._root, self.rate
         if e == 0:
             square = 1 / t**2
             return Place(square, -2 / t**3, (square, square, square))
@@ -245,10 +248,10 @@ class Azimuth:
         self._N = mp.sqrt(mp.convert(free.n))
         self._rate = rate_at_start(free, frame.c, self._N, mp.convert)
         self._half = mpf(0)
+        self.per_period = mp.nan
         if swing.period < mp.inf:
-            self._half = sum(
-                pole.sigma * pole.slope * _integral(swing.half, pole.p) for pole in self._poles
-            )
+            self._half = sum(sigma * v * _integral(swing.half, x) for sigma, x, v in self._poles)
+            self.per_period = self._rate * swing.period + mp.im(self._half)
 
     def at(self, t: mpf, turns: int, r: mpf, place: Place) -> mpf:
         """phi at t = turns L + r, where p is at ``place``."""

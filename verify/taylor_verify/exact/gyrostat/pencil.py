@@ -70,6 +70,11 @@ class FreeGyrostat:
         G = self.momentum
         return dot(G, tensors.apply(self.K, G)) - 2 * dot(self.g, G)
 
+    @property
+    def twice_energy(self) -> Fraction:
+        """2T, which is E + h.K h."""
+        return dot(self.omega, tensors.apply(self.inertia, self.omega))
+
     @cached_property
     def trace(self) -> Fraction:
         """S = tr K."""
