@@ -198,6 +198,10 @@ class FreeGyrostat:
         total = tensors.plus(tensors.scaled(simple - self.double_moment, spin), along)
         return tensors.scaled(1 / self.double_moment, total)
 
+    @property
+    def has_equal_moments(self) -> bool:
+        return self._is_spherical or self.axis_projector is not None
+
     @cached_property
     def double_moment(self) -> Fraction:
         """The repeated moment of inertia, where two or all three are equal; always rational."""

@@ -30,17 +30,15 @@ def steady_spins(free: FreeGyrostat) -> list[SteadySpin]:
 
     Their mu are roots of rational polynomials: how many there are is decided exactly.
     """
-    S, c2, n = free.trace, free.minors, free.n
-    k1, k2, k3 = free.K
-    determinant = _polynomial(dot(k1, cross(k2, k3)), -c2, S, Fraction(-1))
-    images = _adjugate_images(free)
+    n, determinant = free.n, _polynomial(*_determinant(free))
+    images = [_polynomial(*row) for row in zip(*_adjugate(free), strict=True)]
     squares = sum((image * image for image in images), fmpq_poly())
     condition = determinant * determinant * fmpq(n.numerator, n.denominator) - squares
     # Where K - mu is singular, but has g among its images, G is free along the axis.
     axial = determinant
     for image in images:
         axial = axial.gcd(image)
-    if free.axis_projector is not None:
+    if free.has_equal_moments:
         double = 1 / free.double_moment
         while axial.degree() > 0 and not axial(fmpq(double.numerator, double.denominator)):
             axial //= _polynomial(-double, Fraction(1))
@@ -58,12 +56,11 @@ def steady_spins(free: FreeGyrostat) -> list[SteadySpin]:
 
 def _regular(free: FreeGyrostat, mu: mpf, N: mpf) -> SteadySpin:
     """The spin with G = (K - mu)^-1 g."""
-    image = [mp.polyval(list(reversed(c)), mu) for c in _adjugate_coefficients(free)]
-    k1, k2, k3 = free.K
-    cubic = (Fraction(-1), free.trace, -free.minors, dot(k1, cross(k2, k3)))
-    determinant = mp.polyval([mp.convert(c) for c in cubic], mu)
-    G = [component / determinant for component in image]
-    return SteadySpin(mu * N, -_adjugate_form(free, mu, G))
+    images = [
+        _value([mp.convert(c) for c in row], mu) for row in zip(*_adjugate(free), strict=True)
+    ]
+    determinant = _value([mp.convert(c) for c in _determinant(free)], mu)
+    return SteadySpin(mu * N, -_adjugate_form(free, mu, [G / determinant for G in images]))
 
 
 def _axial(free: FreeGyrostat, mu: mpf, N: mpf) -> list[SteadySpin]:
@@ -93,10 +90,6 @@ def _adjugate_form(free: FreeGyrostat, mu: mpf, G: list[mpf]) -> mpf:
     return form(free.square) - S * first + c2 * n - mu * (S * n - first) + mu**2 * n
 
 
-def _adjugate_coefficients(free: FreeGyrostat) -> list[list[mpf]]:
-    return [[mp.convert(c) for c in row] for row in zip(*_adjugate(free), strict=True)]
-
-
 def _adjugate(free: FreeGyrostat) -> tuple[Vector, Vector, Vector]:
     """adj(K - mu) g by powers of mu, the constant first."""
     g, Kg = free.g, tensors.apply(free.K, free.g)
@@ -106,9 +99,18 @@ def _adjugate(free: FreeGyrostat) -> tuple[Vector, Vector, Vector]:
     return constant, tensors.minus(Kg, tensors.scaled(S, g)), g
 
 
-def _adjugate_images(free: FreeGyrostat) -> list[fmpq_poly]:
-    """The components of adj(K - mu) g as polynomials of mu."""
-    return [_polynomial(*row) for row in zip(*_adjugate(free), strict=True)]
+def _determinant(free: FreeGyrostat) -> tuple[Fraction, ...]:
+    """det(K - mu) by powers of mu, the constant first."""
+    k1, k2, k3 = free.K
+    return dot(k1, cross(k2, k3)), -free.minors, free.trace, Fraction(-1)
+
+
+def _value(coefficients: list[mpf], mu: mpf) -> mpf:
+    """The polynomial of these coefficients, the constant one first."""
+    total = mpf(0)
+    for coefficient in reversed(coefficients):
+        total = total * mu + coefficient
+    return total
 
 
 def _polynomial(*coefficients: Fraction) -> fmpq_poly:
