@@ -1,89 +1,93 @@
-"""A gyrostat in the numbers of its equations: H' = H x (K H - g) + M in the whole momentum H = I omega + h.
+"""A gyrostat in the numbers of Euler's equations: K, the momentum r of the wheels, M and H = I omega.
 
-K  inverse inertia tensor        g = K h, so that omega = K H - g        M  moment
-
-K, g and H are formed exactly and rounded once each. Whatever symmetric K and whatever g are stored, it is a
-gyrostat: I = K^-1 and h = K^-1 g.
+H' = (H + r) x K H + M. H is the momentum without that of the wheels: omega = K H is then no difference of
+large numbers, however strong the wheels are. The rounded body is K^-1, and its wheels are r, exactly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, final
+from typing import Any, Final, final
 
 from taylor_verify.models.algebra import add, apply, cross, minus
 from taylor_verify.models.choice import Choice
-from taylor_verify.models.form import Equations, Named, frame_rates, labelled
-from taylor_verify.models.manufactured import Inverse, Moved
+from taylor_verify.models.euler import euler_equations
+from taylor_verify.models.form import Equations, Named, labelled
+from taylor_verify.models.manufactured import EULER_INVERSE, Inverse, Moved
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, largest, size
+from taylor_verify.models.rigid import Rigid, chosen_equations
+from taylor_verify.models.units import Units, binary, size
 from taylor_verify.scenes import tensors
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.parts import MOMENT, MOMENTUM, RATE, Dimension, Part, Shape, Value
+from taylor_verify.scenes.parts import MOMENTUM, Part, Shape, Value
 from taylor_verify.scenes.precision import Rung
 
+_RIGID: Final = Rigid()
 
-def gyrostat_equations(n: Named) -> dict[str, Any]:
-    """H' = H x (K H - g) + M, and the attitude where it is tracked."""
-    H = n.vector("H")
-    omega = [minus(a, b) for a, b in zip(apply(n.symmetric("K"), H), n.vector("g"), strict=True)]
-    return labelled("H", add(cross(H, omega), n.vector("M"))) | frame_rates(n, omega, U=None)
+
+@final
+@dataclass(frozen=True)
+class WithWheels:
+    """Euler's equations of the body alone, and r x omega."""
+
+    body: Equations
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        rates = dict(self.body(n))
+        turned = cross(n.vector("r"), apply(n.symmetric("K"), n.vector("H")))
+        H = [rates[name] for name in ("H1", "H2", "H3")]
+        return rates | labelled("H", add(H, turned))
 
 
 def _moment(n: Named, momentum: Moved) -> dict[str, Any]:
-    """M = H*' - H* x (K H* - g)."""
-    (H, rate), K, g = momentum, n.symmetric("K"), n.vector("g")
-    omega = [minus(a, b) for a, b in zip(apply(K, H), g, strict=True)]
-    turned = cross(H, omega)
-    return labelled("M", [minus(a, b) for a, b in zip(rate, turned, strict=True)])
+    """M = H*' - (H* + r) x K H*, with components e_ijk r_j (K H*)_k taken off."""
+    H, _ = momentum
+    loads, r, K = EULER_INVERSE.loads(n, momentum), n.vector("r"), n.symmetric("K")
+    omega = apply(K, H)
+    turned = cross(r, omega)
+    return labelled("M", [minus(loads[f"M{i}"], turned[i - 1]) for i in (1, 2, 3)])
 
 
 @final
 class Wheeled(Mechanics[Gyrostat, Spin]):
-    """Euler's equations with a constant rotor momentum."""
+    """Euler's equations with a constant momentum of wheels."""
 
-    body_letters = (
-        Part("K", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
-        Part("g", Shape.VECTOR, RATE),
-        Part("M", Shape.VECTOR, MOMENT, is_load=True),
-    )
-    momenta = (Part("H", Shape.VECTOR, MOMENTUM),)
+    body_letters = (*Rigid.body_letters, Part("r", Shape.VECTOR, MOMENTUM))
+    momenta = Rigid.momenta
     inverse = Inverse("H", _moment)
 
     @property
     def equations(self) -> Equations:
-        return gyrostat_equations
+        return WithWheels(euler_equations)
 
     def values(self, body: Gyrostat) -> Mapping[str, Value]:
-        K = body.inverse_inertia
-        return {"K": K, "g": tensors.apply(K, body.rotor), "M": body.moment}
+        return {"K": body.inverse_inertia, "M": body.moment, "r": body.rotor}
 
     def body(self, values: Mapping[str, Value]) -> Gyrostat:
-        if not tensors.is_positive_definite(values["K"]):
-            raise ValueError("the inverse inertia tensor is not positive definite")
-        inertia = tensors.inverse(values["K"])
-        return Gyrostat(inertia, tensors.apply(inertia, values["g"]), values["M"])
+        alone = _RIGID.body(values)
+        return Gyrostat(alone.inertia, values["r"], alone.moment)
 
     def change(self, body: Gyrostat) -> Change:
-        return Change(body.inertia, body.inverse_inertia, body.rotor)
+        return Change(body.inertia, body.inverse_inertia)
 
     def choice(self, numbers: Mapping[str, Fraction], rung: Rung) -> Choice:
-        del rung
-        return Choice(gyrostat_equations, numbers, {}, ("the rotor's momentum is part of H",))
+        chosen = chosen_equations(numbers, rung)
+        return replace(chosen, equations=WithWheels(chosen.equations))
 
     def units(self, body: Gyrostat, start: Spin, span: Fraction) -> Units:
-        whole = self.change(body).momentum(start.omega)
-        momentum = (
-            size(whole) or size(body.rotor) or binary(size(body.moment) * span) or Fraction(1)
-        )
-        K = body.inverse_inertia
-        rate = max(size(start.omega), size(tensors.apply(K, body.rotor)), largest(K) * momentum)
-        return Units(time=1 / binary(rate), momentum=momentum)
+        """H by its size, or what the moment makes of it; time by omega or by the wheels."""
+        alone = RigidBody(body.inertia, body.moment, body.manufactured)
+        units = _RIGID.units(alone, start, span)
+        rate = size(tensors.apply(body.inverse_inertia, body.rotor))
+        return replace(units, time=min(units.time, 1 / binary(rate))) if rate else units
 
     def derived(self, body: Gyrostat, start: Spin) -> Mapping[str, Mapping[str, Value]]:
+        alone = tensors.apply(body.inertia, start.omega)
         return {
             "body": {"inverse_inertia": body.inverse_inertia},
-            "initial": {"angular_momentum": self.change(body).momentum(start.omega)},
+            "initial": {"angular_momentum": tensors.plus(alone, body.rotor)},
         }

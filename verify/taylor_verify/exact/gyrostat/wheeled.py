@@ -86,7 +86,7 @@ class Wheeled(Kind[Gyrostat, Spin]):
         body = scene.body
         assert isinstance(body, Gyrostat)
         in_body = energy(body), momentum(body)
-        return (*in_body, space_momentum(body)) if scene.track else in_body
+        return (*in_body, space_momentum(body)) if "attitude" in scene.track else in_body
 
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
         body = scene.body

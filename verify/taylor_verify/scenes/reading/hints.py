@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Final
 
+_WHEELS_IN_FLUID: Final = "not modelled: wheels turn in a body of the model euler"
 _NOT_YET: Final = "not modelled yet"
 _ATTITUDE: Final = "write `attitude = [q0, q1, q2, q3]`, a quaternion, scalar first, body to space"
 _NO_FLOW: Final = (
@@ -81,7 +82,8 @@ _KIRCHHOFF_BODY: Final = {
     **_same(_NEUTRAL, "gravity", "g", "weight", "buoyancy", "centre_of_buoyancy", "cob", "volume"),
     **_same(_NO_FLOW, "drag", "lift", "friction", "viscosity", "linear_drag", "quadratic_drag"),
     **_same(_NO_FLOW, "current", "circulation"),
-    **_same(_NOT_YET, "rotor", "damping"),
+    **_same(_NOT_YET, "damping"),
+    **_same(_WHEELS_IN_FLUID, "rotor", "wheels", "reaction_wheels"),
     **_same("write `couple`, constant in body axes", "torque", "torques", "moment"),
     **_same(
         "write `force` and `couple`, constant in body axes",
