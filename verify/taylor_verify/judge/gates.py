@@ -126,8 +126,7 @@ def _ratios(errors: Floats, attainable: Floats) -> Floats:
     """Error over attainable: 0 for no error, infinite where the floor is zero and the error not."""
     with np.errstate(all="ignore"):
         held = np.where(attainable > 0, errors / attainable, np.inf + 0 * errors)
-    found: Floats = np.where(errors == 0, 0.0, held)
-    return found
+    return np.where(errors == 0, 0.0, held)
 
 
 def index_of_largest(values: Floats) -> int:

@@ -142,8 +142,7 @@ def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats
         return None
     tracked = replace(given, track=frozenset({"attitude"}))
     exact = solution(tracked).evaluate(given.clock.elapsed, _DIGITS)["attitude"]
-    matrices: Floats = exact.astype(float)
-    return matrices
+    return exact.astype(float)
 
 
 def _quaternions(matrices: Floats | None) -> Floats | None:

@@ -90,8 +90,7 @@ class Equations:
         omega, one = z[:, :3], z[:, 3:]
         torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + one**2 * self.load
         driven = (torque - self.drag * one * omega) @ self.inverse
-        found: Floats = driven - self.damping * one * omega
-        return found
+        return driven - self.damping * one * omega
 
     def _immersed(self, z: Floats) -> Floats:
         state, one = z[:, :6], z[:, 6:]

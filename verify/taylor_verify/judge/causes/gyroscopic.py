@@ -64,13 +64,11 @@ def gyroscopic_step(material: Material) -> Iterator[Candidate]:
 
 def _torque(body: Equations, omega: Floats) -> Floats:
     """M - omega x I omega for every row."""
-    found: Floats = body.load - np.cross(omega, omega @ body.tensor)
-    return found
+    return body.load - np.cross(omega, omega @ body.tensor)
 
 
 def _explicit(body: Equations, omega: Floats, h: Floats) -> Floats:
-    found: Floats = omega + h * (_torque(body, omega) @ body.inverse)
-    return found
+    return omega + h * (_torque(body, omega) @ body.inverse)
 
 
 def _explicit_of_fixed_size(body: Equations, omega: Floats, h: Floats) -> Floats:
@@ -87,8 +85,7 @@ def _implicit(body: Equations, omega: Floats, h: Floats) -> Floats:
     """(I + h ([omega]x I - [I omega]x)) (omega' - omega) = h (M - omega x I omega)."""
     slope = _cross(omega) @ body.tensor - _cross(omega @ body.tensor)
     right = (h * _torque(body, omega))[:, :, None]
-    found: Floats = omega + np.linalg.solve(body.tensor + h[:, :, None] * slope, right)[:, :, 0]
-    return found
+    return omega + np.linalg.solve(body.tensor + h[:, :, None] * slope, right)[:, :, 0]
 
 
 def _cross(vectors: Floats) -> Floats:

@@ -97,10 +97,9 @@ def _map(equations: Equations, known: _Kinematics) -> Floats:
 def _times(omega: Floats, q: Floats, sign: int) -> Floats:
     """omega q for the sign +1, q omega for -1: products of quaternions."""
     scalar, vector = q[:, :1], q[:, 1:]
-    found: Floats = np.column_stack(
+    return np.column_stack(
         [-np.sum(omega * vector, axis=1), scalar * omega + sign * np.cross(omega, vector)]
     )
-    return found
 
 
 def _angle(q: Floats, other: Floats) -> float:

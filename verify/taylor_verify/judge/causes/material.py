@@ -121,8 +121,7 @@ class Pairs:
         """The size of every component: the largest |omega|, or |x| and |y| apart."""
         vectors = np.stack([self.begin, self.end]).reshape(-1, len(self.begin[0]) // 3, 3)
         largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
-        found: Floats = np.repeat(np.where(largest > 0, largest, 1.0), 3)
-        return found
+        return np.repeat(np.where(largest > 0, largest, 1.0), 3)
 
     @cached_property
     def flow(self) -> Floats:
@@ -132,8 +131,7 @@ class Pairs:
 
     @cached_property
     def defect(self) -> Floats:
-        found: Floats = self.end - self.flow
-        return found
+        return self.end - self.flow
 
     @cached_property
     def largest(self) -> float:
@@ -145,8 +143,7 @@ class Pairs:
         begin = np.column_stack([self.begin, np.ones(len(self.begin))])
         maps = np.stack([one.map for one in equations])
         states = flow(maps, begin, self.spans, np.append(self.sizes, np.inf))
-        found: Floats = states[:, :, :-1]
-        return found
+        return states[:, :, :-1]
 
     def size(self, rows: Floats) -> float:
         """Return the largest vector of rows, relative to its usual size; infinite if it is no number."""

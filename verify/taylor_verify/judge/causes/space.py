@@ -100,5 +100,4 @@ def _to_body(q: Floats, vectors: Floats) -> Floats:
     """R(q)^T v for every row."""
     scalar, axis = q[:, :1], -q[:, 1:]
     twice = 2 * np.cross(axis, vectors)
-    found: Floats = vectors + scalar * twice + np.cross(axis, twice)
-    return found
+    return vectors + scalar * twice + np.cross(axis, twice)

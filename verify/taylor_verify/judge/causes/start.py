@@ -46,8 +46,7 @@ def _conjugate(q: Floats) -> Floats:
 
 
 def _rolled(q: Floats) -> Floats:
-    found: Floats = np.roll(q, 1, axis=1)
-    return found
+    return np.roll(q, 1, axis=1)
 
 
 def _apart(q: Floats, other: Floats) -> float:

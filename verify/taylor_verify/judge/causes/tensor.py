@@ -103,8 +103,7 @@ def another_body(material: Material) -> Iterator[Candidate]:
     def tensor(parameters: Floats) -> Floats:
         change = np.zeros_like(right.tensor)
         change[rows, columns] = change[columns, rows] = parameters
-        found: Floats = right.tensor + scale * change
-        return found
+        return right.tensor + scale * change
 
     def model(parameters: Floats) -> Floats:
         bodies = [with_tensor(right, tensor(p)) for p in parameters]

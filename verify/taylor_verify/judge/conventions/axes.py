@@ -53,18 +53,18 @@ class Axes:
 
     def vectors(self, rows: Array) -> Array:
         """P v for every row v."""
-        turned: Array = rows[:, self.order] * np.array(self.signs)
-        return turned
+        found: Array = rows[:, self.order] * np.array(self.signs)
+        return found
 
     def left(self, matrices: Array) -> Array:
         """P R for every matrix R."""
-        turned: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
-        return turned
+        found: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
+        return found
 
     def right(self, matrices: Array) -> Array:
         """R P^T for every matrix R."""
-        turned: Array = matrices[:, :, self.order] * np.array(self.signs)
-        return turned
+        found: Array = matrices[:, :, self.order] * np.array(self.signs)
+        return found
 
     @cached_property
     def quaternion(self) -> tuple[int, ...]:

@@ -176,8 +176,7 @@ def _free(scene: Scene, rows: Column) -> Column:
         found.velocity[name] * np.array([mp.ldexp(1, found.units[name] - found.time)], dtype=object)
         for name in MOMENTA[scene.model]
     ]
-    joined: Column = np.concatenate(columns, axis=1)
-    return joined
+    return np.concatenate(columns, axis=1)
 
 
 def _parts(scene: Scene, rows: Column) -> dict[str, Column]:

@@ -63,8 +63,7 @@ class Shifted:
     def shift(self) -> Floats:
         """The whole shift of every sample, in the scene's unit of time."""
         begun = np.array([float(c) for c in self.shifts]) if any(self.shifts) else 0.0
-        found: Floats = begun + self.more * (float(self.unit) * self.size)
-        return found
+        return begun + self.more * (float(self.unit) * self.size)
 
     @property
     def is_finite(self) -> bool:

@@ -46,8 +46,7 @@ def _along(basis: Floats, fit: Shifted) -> Floats:
     root = np.sqrt(fit.weight)
     asked = np.divide(fit.wanted, root, out=np.zeros(len(root)), where=root > 0)
     parameters = np.linalg.lstsq(root[:, None] * basis, asked, rcond=None)[0]
-    found: Floats = basis @ parameters
-    return found
+    return basis @ parameters
 
 
 def single(fit: Shifted, times: Floats) -> Floats:
@@ -57,8 +56,7 @@ def single(fit: Shifted, times: Floats) -> Floats:
 
 def moving(fit: Shifted) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """The samples at which the motion is fast enough to tell the time."""
-    found: np.ndarray[Any, np.dtype[np.bool_]] = fit.weight > _AT_REST**2 * np.max(fit.weight)
-    return found
+    return fit.weight > _AT_REST**2 * np.max(fit.weight)
 
 
 def fitted(compared: Compared, fit: Shifted, course: Course) -> Shifted:

@@ -141,15 +141,14 @@ class Drifts:
 
 
 def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
-    change: Column = invariant.value(answer) - invariant.value(start)[0]
-    return change
+    found: Column = invariant.value(answer) - invariant.value(start)[0]
+    return found
 
 
 def _sizes(values: Column) -> Column:
     if values.ndim > 1:
         return sqrt(np.sum(values * values, axis=1))
-    sizes: Column = abs(values)
-    return sizes
+    return abs(values)
 
 
 # The arcs.

@@ -252,5 +252,4 @@ def _theil_sen(shifts: Floats, moving: Places, times: Floats) -> Floats:
         # Beside a large start, instants may be one number in float64: there is no slope to tell.
         return _median(shifts, moving, times)
     slope = float(np.median((c[second] - c[first]) / gaps))
-    found: Floats = np.median(c - slope * t) + slope * times
-    return found
+    return np.median(c - slope * t) + slope * times

@@ -125,8 +125,8 @@ def _larger(by_part: Sequence[Column]) -> Column:
 def _width(truth: Motion, quantity: str, sizes: Column) -> Column:
     """How wrong each vector of the truth may be, in its own unit; ``sizes`` are those of the vectors."""
     whole = np.array([or_one(size) for size in sizes], dtype=object)
-    width: Column = truth.radius_of(quantity) * whole
-    return width
+    found: Column = truth.radius_of(quantity) * whole
+    return found
 
 
 def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:

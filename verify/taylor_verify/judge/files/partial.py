@@ -227,8 +227,7 @@ def _velocity_attainable(
         norm = np.linalg.norm(np.array([[float(v) for v in row] for row in matrix]), 2)
         alone = Errors(part, "", sizes, sizes, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2
-    attainable: Floats = np.sqrt(squares)
-    return attainable
+    return np.sqrt(squares)
 
 
 def _row(

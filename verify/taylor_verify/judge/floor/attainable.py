@@ -121,8 +121,7 @@ class Floor:
         """The sums over the steps so far of squared roundings of a block, component by component."""
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
-        found: Floats = np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
-        return found
+        return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
 
     def _path_times(self) -> Floats:
         return np.array([abs(float(t)) for t in self.orbit.elapsed])
@@ -132,8 +131,7 @@ class Floor:
         later = np.searchsorted(times, self.times)
         earlier = np.searchsorted(times, self.times, side="right") - 1
         last = len(times) - 1
-        found: Floats = np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
-        return found
+        return np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
 
 
 def floor(
