@@ -12,16 +12,13 @@ import numpy as np
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.readings import OFF, PRINTED
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
-# A start that is off by more than the one is another start, and one within the other is the same.
-_OFF: Final = 1e-3
-_PRINTED: Final = 1e-6
 # The first rows are compared with the exact motion of a scene that has the same start; to so much they fit.
 _FIRST_ROWS: Final = 5
 _FITS: Final = 1e-2
@@ -31,15 +28,14 @@ _DIGITS: Final = 20
 def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
     """Yield the shipped scenes of the same model that begin as the answer does."""
     own = material.start_error
-    if own is None or not own > _OFF:
+    if own is None or not own > OFF:
         return
-    row = int(np.flatnonzero(material.elapsed == 0)[0])
     for other in map(load, names(scene.model)):
-        begins = replace(material, start=_state(other))
+        begins = replace(material, start=np.array(other.initial.moving, dtype=float))
         error = begins.start_error
-        if other.clock.start != scene.clock.start or error is None or not error <= _PRINTED:
+        if other.clock.start != scene.clock.start or error is None or not error <= PRINTED:
             continue
-        within = _error(material, other, row)
+        within = _error(material, other)
         if within <= _FITS:
             why = f"the rows fit {other.name} better ({material.quantity} within {within:.2g})"
         else:
@@ -49,13 +45,9 @@ def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
         )
 
 
-def _state(scene: Scene) -> Floats:
-    return np.array([float(value) for value in scene.initial.moving])
-
-
-def _error(material: Material, scene: Scene, row: int) -> float:
-    """The largest error of the first rows as an answer to a scene, relative to its largest state."""
-    order = np.argsort(np.abs(material.elapsed - material.elapsed[row]))[:_FIRST_ROWS]
+def _error(material: Material, scene: Scene) -> float:
+    """The largest error of the rows about the start as an answer to a scene, over its largest state."""
+    order = np.argsort(np.abs(material.elapsed))[:_FIRST_ROWS]
     elapsed = [Fraction(float(material.elapsed[k])) for k in order]
     try:
         exact = solution(replace(scene, track=frozenset())).evaluate(elapsed, _DIGITS)

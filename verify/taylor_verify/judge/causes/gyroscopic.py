@@ -1,4 +1,4 @@
-"""Treatments of the gyroscopic term omega x I omega: left out, turned round, explicit, implicit.
+"""Steps of first order for the gyroscopic term omega x I omega: explicit and implicit.
 
 An explicit step is forward Euler on the term, an implicit one a step of Newton's method for backward
 Euler. Each is a map of one step, and its result is computed from every row to the next one. Rows need
@@ -9,7 +9,6 @@ order is nearly proportional to h.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -29,27 +28,6 @@ _MOST_STEPS: Final = 5_000
 
 # One step of length h (n, 1) from every row of omega (n, 3).
 _Step = Callable[[Equations, Floats, Floats], Floats]
-
-
-def gyroscopic_term(material: Material) -> Iterator[Candidate]:
-    """Yield the term left out and the term with the other sign, which have no number to fit."""
-    right, pairs = material.equations, material.pairs
-    if not right.is_rigid:
-        return
-    for weight, name, why in (
-        (
-            0.0,
-            "no gyroscopic term",
-            "from row to row omega changes by I^-1 M alone, without omega x I omega",
-        ),
-        (
-            -1.0,
-            "gyroscopic term with the other sign",
-            "from row to row omega changes by I^-1 (M + omega x I omega)",
-        ),
-    ):
-        (states,) = pairs.moved([replace(right, gyroscopic=weight)])
-        yield Candidate(name, "omega", pairs.left(states), why)
 
 
 def gyroscopic_step(material: Material) -> Iterator[Candidate]:
@@ -75,10 +53,8 @@ def _explicit_of_fixed_size(body: Equations, omega: Floats, h: Floats) -> Floats
     before = omega @ body.tensor
     after = before + h * _torque(body, omega)
     old, new = (np.linalg.norm(rows, axis=1, keepdims=True) for rows in (before, after))
-    found: Floats = (
-        after * np.divide(old, new, out=np.ones_like(old), where=new > 0)
-    ) @ body.inverse
-    return found
+    found: Floats = after * np.divide(old, new, out=np.ones_like(old), where=new > 0)
+    return found @ body.inverse
 
 
 def _implicit(body: Equations, omega: Floats, h: Floats) -> Floats:
@@ -90,10 +66,7 @@ def _implicit(body: Equations, omega: Floats, h: Floats) -> Floats:
 
 def _cross(vectors: Floats) -> Floats:
     """The matrices [v]x with [v]x u = v x u."""
-    matrices = np.zeros((len(vectors), 3, 3))
-    for i, k, m in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        matrices[:, m, k], matrices[:, k, m] = vectors[:, i], -vectors[:, i]
-    return matrices
+    return np.cross(np.eye(3), vectors[:, None])
 
 
 _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (

@@ -10,7 +10,6 @@ import numpy as np
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.records.reason import Kind
-from taylor_verify.records.verdict import Verdict
 
 _FEWEST_ROWS: Final = 3
 # Rows are evenly spaced if no space differs by more than this part.
@@ -27,29 +26,22 @@ def other_rows(material: Material) -> Iterator[Candidate]:
     spaces = np.diff(material.elapsed)
     if len(spaces) < _FEWEST_ROWS - 1 or np.ptp(spaces) > _EVEN * np.max(np.abs(spaces)):
         return
-    for name, verdict in material.failed.items():
-        if verdict.shift != Kind.CONSTANT.value or not verdict.time_shift or not verdict.max:
+    for quantity, verdict in material.failed.items():
+        shift = verdict.time_shift
+        if verdict.shift != Kind.CONSTANT.value or not shift or not verdict.max:
             continue
-        said = _said(verdict, float(np.mean(spaces)))
-        if said is not None:
-            yield Candidate(said[0], name, (verdict.remains or 0.0) / verdict.max, said[1])
-
-
-def _said(verdict: Verdict, space: float) -> tuple[str, str] | None:
-    """Name and reason of a constant shift; positive in units of the space if row k is too old."""
-    shift = verdict.time_shift
-    assert shift is not None
-    assert verdict.max
-    doubt = max(_KNOWN, _LEAVES_TIMES * (verdict.remains or 0.0) / verdict.max)
-    steps = space / shift
-    if abs(abs(steps) - 1) <= min(doubt, _WHOLE):
-        other = "k-1" if steps > 0 else "k+1"
-        return "one row off", f"row k holds the state of row {other}"
-    whole = round(-steps)
-    if whole > 1 and whole * doubt <= _WHOLE and abs(-steps - whole) <= whole * doubt:
-        why = (
-            f"every row holds the state a step of {abs(shift):.6g} later, {whole} of which make the "
-            "time from row to row"
-        )
-        return "first row stepped already", why
-    return None
+        leaves = (verdict.remains or 0.0) / verdict.max
+        doubt = max(_KNOWN, _LEAVES_TIMES * leaves)
+        # Negative if row k is too old.
+        steps = -float(np.mean(spaces)) / shift
+        whole = round(steps)
+        if abs(abs(steps) - 1) <= min(doubt, _WHOLE):
+            other = "k+1" if steps > 0 else "k-1"
+            why = f"row k holds the state of row {other}"
+            yield Candidate("one row off", quantity, leaves, why)
+        elif whole > 1 and whole * doubt <= _WHOLE and abs(steps - whole) <= whole * doubt:
+            why = (
+                f"every row holds the state a step of {abs(shift):.6g} later, {whole} of which make "
+                "the time from row to row"
+            )
+            yield Candidate("first row stepped already", quantity, leaves, why)
