@@ -14,6 +14,7 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.conventions.axes import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.judgement import Judgement
@@ -72,7 +73,7 @@ def _of_file(
     if not groups and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
         own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
         values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
-    q = None if attitudes is None else _quaternions(attitudes)
+    q = None if attitudes is None else _unit(quaternion_columns(attitudes))
     made = _material(given, values, q, rung, verdicts)
     return replace(made, digits=file.digits, columns=columns)
 
@@ -85,9 +86,8 @@ def _of_trajectory(
     if not rows or not Equations.are_known(given.body):
         return None
     values = {name: _doubles(rows[name]) for name in MOMENTA[given.model]}
-    q = _doubles(rows["quaternion"]) if "quaternion" in rows else None
-    unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
-    return _material(given, values, unit, problem.rung, verdicts)
+    q = _unit(_doubles(rows["quaternion"])) if "quaternion" in rows else None
+    return _material(given, values, q, problem.rung, verdicts)
 
 
 def _material(
@@ -138,19 +138,8 @@ def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats
     return exact
 
 
-def _quaternions(matrices: Floats) -> Floats:
-    """Unit quaternions of rotation matrices (n, 3, 3), from the largest column of 4 q q^T."""
-    trace = np.trace(matrices, axis1=1, axis2=2)
-    squares = np.empty((len(matrices), 4, 4))
-    squares[:, 0, 0] = 1 + trace
-    for i, k, m in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        squares[:, i + 1, i + 1] = 1 - trace + 2 * matrices[:, i, i]
-        squares[:, 0, i + 1] = squares[:, i + 1, 0] = matrices[:, m, k] - matrices[:, k, m]
-        mixed = matrices[:, i, k] + matrices[:, k, i]
-        squares[:, i + 1, k + 1] = squares[:, k + 1, i + 1] = mixed
-    largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
-    columns = squares[np.arange(len(squares)), largest]
-    found: Floats = columns / np.linalg.norm(columns, axis=1, keepdims=True)
+def _unit(quaternions: Floats) -> Floats:
+    found: Floats = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
     return found
 
 
