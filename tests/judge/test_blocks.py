@@ -19,7 +19,6 @@ from mpmath import mp, mpf
 from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.errors import accumulated as series
 from taylor_verify.judge.errors import measured
 from taylor_verify.judge.errors.accumulated import Series
 from taylor_verify.records.doubles import Doubles, four_digits
@@ -128,8 +127,8 @@ def test_the_blocks_change_no_verdict(
     changed(columns)
     path = written(tmp_path, columns)
     whole = check(name, path).verdicts
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
-    monkeypatch.setattr(series, "BLOCK_OF_SERIES", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK_OF_SERIES", BLOCK)
     parts = check(name, path).verdicts
     assert [v.quantity for v in parts] == [v.quantity for v in whole]
     for one, other in zip(whole, parts, strict=True):
@@ -147,7 +146,7 @@ def test_a_scale_that_is_forgotten_changes_a_verdict(
     def forgotten(self: Series) -> tuple[Any, Any]:
         return np.concatenate(self._blocks), self._scale
 
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(Series, "joined", forgotten)
     (twin,) = (v for v in check("kirchhoff/whole-motion", path).verdicts if v.quantity == "centre")
     assert not alike(twin.max, whole.max)
@@ -161,7 +160,7 @@ def test_the_worst_row_of_a_long_file_is_among_those_of_its_shift(
     late(columns)
     columns["w1"][41] += 0.5
     path = written(tmp_path, columns)
-    monkeypatch.setattr(series, "BLOCK", BLOCK)
+    monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(measured, "MOST_SHIFTED", 21)
     (omega,) = (v for v in check("euler/with-attitude", path).verdicts if v.quantity == "omega")
     assert omega.max == pytest.approx(0.5 / 1.1, rel=0.2)
