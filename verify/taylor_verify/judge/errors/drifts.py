@@ -44,7 +44,7 @@ def drifts(
     held: Mapping[str, Column],
     digits: int,
 ) -> list[tuple[Invariant, Errors]]:
-    """The drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
+    """Return the drift of every conserved quantity, at the ambient precision of mpmath and in its numbers.
 
     ``start`` is the exact initial state as a Motion of one row. The exact motion ``truth`` has the scales,
     so that an answer that runs away does not hide its own drift. ``held`` are the answer's own exact
@@ -90,18 +90,19 @@ class Drifts:
             assert self._largest is not None
             for invariant in self._found:
                 if is_free:
-                    change = _conserved(invariant, self._begin, quick)
+                    change = invariant.value(quick) - invariant.value(self._begin)[0]
                 elif ends is None:
                     change = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
                 else:
                     change = self._balance(invariant, quick, ends)
-                scale = invariant.scale(self._largest)
-                self._series[invariant.name].add(_sizes(change), scale)
-                if change.ndim == 1:
+                scale, is_vector = invariant.scale(self._largest), change.ndim > 1
+                sizes = sqrt(np.sum(change * change, axis=1)) if is_vector else abs(change)
+                self._series[invariant.name].add(sizes, scale)
+                if not is_vector:
                     self._changes[invariant.name] = float(change[-1] / scale)
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
-        """The drifts of all rows; if one is not finite under loads, NaN for all."""
+        """Return the drifts of all rows; if one is not finite under loads, NaN for all."""
         return [(invariant, self._errors(invariant)) for invariant in self._found]
 
     def _errors(self, invariant: Invariant) -> Errors:
@@ -137,32 +138,17 @@ class Drifts:
         return arcs(self._scene, [state, *states[:-1]], spans, self._digits, begins)
 
 
-# What follows is in MPFR's numbers.
-
-
-def _conserved(invariant: Invariant, start: Motion, answer: Motion) -> Column:
-    found: Column = invariant.value(answer) - invariant.value(start)[0]
-    return found
-
-
-def _sizes(values: Column) -> Column:
-    if values.ndim > 1:
-        return sqrt(np.sum(values * values, axis=1))
-    return abs(values)
-
-
 # The arcs.
 
 
 def _states(scene: Scene, held: Mapping[str, Column]) -> list[State]:
     """The answer's samples as exact initial states."""
-    columns = {GROUPS[name].start: [_exact(row) for row in rows] for name, rows in held.items()}
+    columns = {
+        GROUPS[name].start: [tuple(exact_value(value) for value in row) for row in rows]
+        for name, rows in held.items()
+    }
     samples = zip(*columns.values(), strict=True)
     return [replace(scene.initial, **dict(zip(columns, row, strict=True))) for row in samples]
-
-
-def _exact(row: Sequence[Any]) -> tuple[Fraction, ...]:
-    return tuple(exact_value(value) for value in row)
 
 
 def _is_finite(motion: Motion) -> bool:
