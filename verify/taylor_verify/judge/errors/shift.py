@@ -65,6 +65,16 @@ class Shift:
     course: tuple[float, ...]
     strays: tuple[float, ...] = ()
 
+    def numbers(self) -> dict[str, Any]:
+        """Return the numbers of a verdict on the quantity, by the names of its fields."""
+        return {
+            "time_shift": self.time_shift,
+            "residual": self.residual,
+            "shift": self.kind.value,
+            "trend": self.trend if self.kind is Kind.DRIFTING else None,
+            "remains": None if self.kind is Kind.NONE else self.remains,
+        }
+
     def terms(self) -> TimeShift:
         """Return the shift as a reason has it, at the sample where it is largest."""
         if self.kind is Kind.NONE:

@@ -96,16 +96,15 @@ class Floor:
         drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
         return self._at_samples(drift, self.times[nodes])
 
-    def terms(self, attainable: Floats, sample: int, carried: Carried) -> RoundoffFloor:
-        """Return the terms of the floor at one sample."""
-        reached = self._path_times() <= self.times[sample]
+    def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
+        """Return the terms of the floor at the sample of the largest error."""
+        worst = int(np.argmax(errors.doubles))
+        reached = self._path_times() <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
-        floor_there = float(attainable[sample])
-        growth = floor_there / (self.unit_roundoff * steps**0.5)
+        value = float(attainable[worst])
+        growth = shown(value / (self.unit_roundoff * steps**0.5))
         bits = round(-log2(self.unit_roundoff))
-        growth = shown(growth)
-        value, by_velocities = shown(floor_there), self.velocities
-        return RoundoffFloor(carried, value, bits, steps, growth, velocities=by_velocities)
+        return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
 
     def worst(self) -> float:
         """The largest attainable error of a momentum, relative to its own size."""

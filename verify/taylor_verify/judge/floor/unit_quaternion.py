@@ -19,32 +19,23 @@ import numpy as np
 
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.attainable import Floats, Floor
-from taylor_verify.judge.gates import Finding, index_of_largest, judge
+from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
-from taylor_verify.records.status import Status
 
 # A length is written out where six digits show that it is not 1.
 _SHOWN: Final = 1e-4
 
 
-def unit_quaternion(
-    excess: Floats, base: Floor, tolerance: float | None = None
-) -> tuple[Errors, Floats, Finding] | None:
-    """The errors of length, what is attainable, and the failure; None where q is a unit quaternion.
-
-    ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure. With a ``tolerance``
-    the length may be off by the tolerance.
-    """
-    if not np.isfinite(excess).all():
-        return None
+def lengths(excess: Floats, base: Floor) -> tuple[Errors, Floats, Reason]:
+    """Return the errors of length, what is attainable, and its terms; ``excess`` (n,) is |q| - 1."""
     errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
     elapsed = base.times / (np.max(base.times) or 1.0)
     steps = 1 + float(np.sum(base.steps_at)) * elapsed
     attainable = base.unit_roundoff * steps
     worst = index_of_largest(errors.doubles)
-    lowest, highest = (float(end(excess)) for end in (np.min, np.max))
-    extent = dict.fromkeys(_length(end, attainable[worst]) for end in (lowest, highest))
+    ends = (float(np.min(excess)), float(np.max(excess)))
+    extent = dict.fromkeys(_length(end, attainable[worst]) for end in ends)
     terms = RoundoffFloor(
         Carried.LENGTH,
         shown(float(attainable[worst])),
@@ -52,8 +43,7 @@ def unit_quaternion(
         round(steps[worst]),
         lengths=" to ".join(extent),
     )
-    finding = judge(errors, attainable, Reason(floor=terms), tolerance)
-    return (errors, attainable, finding) if finding.status is Status.FAIL else None
+    return errors, attainable, Reason(floor=terms)
 
 
 def _length(excess: float, roundings: float) -> str:
