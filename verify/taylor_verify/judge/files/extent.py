@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final
 
-from taylor_verify.judge.judgement import unjudged
-from taylor_verify.records.quantities import COMPLETE
-from taylor_verify.records.reason import Cause
+from taylor_verify.judge.rows import verdict_on
+from taylor_verify.records.quantities import COMPLETE, GROUPS
+from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
@@ -102,8 +102,8 @@ class Extent:
 
 
 def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
-    """The parts of the scene's question that a file does not answer; ``missing`` are quantities."""
-    yield from (f"the {noun}" for noun in missing)
+    """Yield the parts of the scene's question that a file does not answer; ``missing`` are groups."""
+    yield from (f"the {GROUPS[name].noun}" for name in missing)
     span = f"the scene's span of {float(extent.end):g}"
     if extent.is_one_state:
         yield f"the motion along {span} (one row within it is no trajectory)"
@@ -117,13 +117,11 @@ def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
 def complete_verdict(
     scene: Scene, file: str, rung: Rung, lack: Sequence[str], partial: bool
 ) -> Verdict:
-    """The row that says what was not judged: undecided, or vacuous where a part was asked for."""
+    """Return the row that says what was not judged: undecided, or vacuous where a part was asked for."""
     status = Status.VACUOUS if partial else Status.UNDECIDED
     whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
     asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
     said = f"not judged: {', '.join(lack)}; {whole}; {asked}"
-    solver = Recorded({}, setting=file)
-    (row,) = unjudged(
-        scene, solver, rung, status, said, Cause.INCOMPLETE, Outcome.FINISHED
-    ).verdicts
-    return replace(row, quantity=COMPLETE, roundoff=float(rung.unit_roundoff))
+    row = (scene, Recorded({}, setting=file), rung, COMPLETE, status, Outcome.FINISHED)
+    reason, roundoff = stated(Cause.INCOMPLETE, said), float(rung.unit_roundoff)
+    return verdict_on(*row, reason=reason, roundoff=roundoff)

@@ -1,8 +1,8 @@
-"""Sentences about a file: what of it is compared, what is not and why."""
+"""Sentences about a file: the columns of it that are compared, and the others with the reason."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from taylor_verify.judge.files.extent import Extent
@@ -14,7 +14,6 @@ from taylor_verify.records.quantities import (
     TRACKED,
     VELOCITIES,
     state_groups,
-    with_needs,
 )
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
@@ -23,35 +22,31 @@ from taylor_verify.solvers.files.file import TrajectoryFile
 
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
     """Return the groups that the scene's motion has. A file without any is refused."""
-    foreign = _foreign(file, scene)
-    groups = [name for name in file.groups if name not in foreign and _is_compared(name, scene)]
+    known = _known(scene)
+    # A scene might track what the columns tell, and does not.
+    untracked = {name for name in TRACKED[scene.model] if name not in scene.track}
+    groups = [n for n in file.groups if n in known and GROUPS[n].quantity not in untracked]
     if groups:
         return groups
-    known = " ".join(" ".join(COLUMNS[name]) for name in _known(scene))
-    faults = [
-        f"expected columns of a scene of model {scene.model} ({known}), got "
-        f"{' '.join(COLUMNS[name])} @ {file.name}"
-        for name in foreign
-    ]
-    if not faults:
-        wanted = state_groups(scene.model, scene.track)
-        groups = [" ".join(COLUMNS[name]) for name in wanted]
-        if scene.model == "kirchhoff":
-            # Whoever has velocities has no impulses.
-            groups.insert(0, " ".join(n for name in VELOCITIES for n in COLUMNS[name]))
-        expected = " or ".join(groups)
-        got = " ".join(n for name in file.groups for n in COLUMNS[name]) or "t alone"
-        first = COLUMNS[wanted[0]][0]
-        notes = "; ".join((*file.notes, f"name other columns: --columns {first}=NAME,..."))
-        faults = [
-            f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"
-        ]
-    raise Refused(faults)
+    foreign = [name for name in file.groups if name not in known]
+    if foreign:
+        expected = f"expected columns of a scene of model {scene.model} ({_columns(known)})"
+        raise Refused([f"{expected}, got {_columns([name])} @ {file.name}" for name in foreign])
+    wanted = state_groups(scene.model, scene.track)
+    # Whoever has velocities has no impulses.
+    instead = [VELOCITIES] if scene.model == "kirchhoff" else []
+    expected = " or ".join(_columns(names) for names in (*instead, *([name] for name in wanted)))
+    notes = "; ".join(
+        (*file.notes, f"name other columns: --columns {COLUMNS[wanted[0]][0]}=NAME,...")
+    )
+    got = _columns(file.groups) or "t alone"
+    raise Refused(
+        [f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"]
+    )
 
 
-def _foreign(file: TrajectoryFile, scene: Scene) -> list[str]:
-    """The groups of a file that no scene of this model has."""
-    return [name for name in file.groups if name not in _known(scene)]
+def _columns(groups: Iterable[str]) -> str:
+    return " ".join(column for name in groups for column in COLUMNS[name])
 
 
 def _known(scene: Scene) -> list[str]:
@@ -61,35 +56,24 @@ def _known(scene: Scene) -> list[str]:
     return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
 
 
-def _is_compared(group: str, scene: Scene) -> bool:
-    """Return True unless the scene might track what the columns tell, and does not."""
-    quantity = GROUPS[group].quantity
-    return quantity in scene.track or quantity not in TRACKED[scene.model]
-
-
-def tracked(groups: Sequence[str]) -> frozenset[str]:
-    """Return what a scene with these columns would track."""
-    return with_needs({GROUPS[name].quantity for name in groups})
-
-
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
-    foreign = _foreign(file, scene)
-    for name in foreign:
-        yield (
-            f"{' '.join(COLUMNS[name])} not compared: {scene.name} is of model {scene.model}, whose "
-            f"motion has no {noun(name)}"
-        )
-    for name in file.groups:
-        if name not in groups and name not in foreign:
-            yield f"{' '.join(COLUMNS[name])} not compared: {scene.name} does not track the {noun(name)}"
+    """Yield a sentence for each group that is not compared, those without a meaning here first."""
+    known = _known(scene)
+    for name in sorted(file.groups, key=lambda name: name in known):
+        if name not in known:
+            why = f"{scene.name} is of model {scene.model}, whose motion has no {GROUPS[name].noun}"
+        elif name not in groups:
+            why = f"{scene.name} does not track the {GROUPS[name].noun}"
+        else:
+            continue
+        yield f"{_columns([name])} not compared: {why}"
     for name in missing_groups(groups, scene):
         other = " or r11 ... r33" if name == "quaternion" else ""
-        columns = " ".join(COLUMNS[name])
-        yield f"the {noun(name)} is not judged: the file has no {columns}{other}"
+        yield (f"the {GROUPS[name].noun} is not judged: the file has no {_columns([name])}{other}")
 
 
 def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
-    """The groups that the scene asks for and the file lacks."""
+    """Return the groups that the scene asks for and the file lacks."""
     has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
     if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
         # Together they stand for the impulses.
@@ -97,25 +81,14 @@ def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
     return [name for name in state_groups(scene.model, scene.track) if name not in has]
 
 
-def no_start(scene: Scene, times: Sequence[Fraction]) -> Iterator[str]:
-    """Whether the initial state could not be compared."""
-    start = scene.clock.start
-    if all(float(time) != float(start) for time in times):
-        yield f"no row is at the start, t = {float(start):g}: the initial state was not compared"
-
-
-def no_end(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
-    """Whether the file stops before the scene does."""
-    if extent.reaches_end or extent.rows[-1] < 0:
-        return
-    last = max(times, key=lambda t: abs(t - scene.clock.start))
-    end = float(scene.clock.instants[-1])
-    yield (
-        f"the last row is at t = {float(last):.12g}, and the scene ends at t = {end:.12g}: "
-        "the rest was not judged"
-    )
-
-
-def noun(group: str) -> str:
-    """Return the noun for what some columns tell."""
-    return GROUPS[group].noun
+def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
+    """Yield a sentence if no row is at the start, and one if the file stops before the scene does."""
+    start, end = float(scene.clock.start), float(scene.clock.instants[-1])
+    if all(float(time) != start for time in times):
+        yield f"no row is at the start, t = {start:g}: the initial state was not compared"
+    if extent.rows[-1] >= 0 and not extent.reaches_end:
+        last = float(max(times, key=lambda t: abs(t - scene.clock.start)))
+        yield (
+            f"the last row is at t = {last:.12g}, and the scene ends at t = {end:.12g}: "
+            "the rest was not judged"
+        )
