@@ -302,8 +302,8 @@ def _all_floors(asked: Scene) -> list[Array]:
 
     found, truth = _floor_of(asked, 40)
     floors = [found.of_state(errors) for errors in state_errors(asked, truth, truth)]
-    quick = in_mpfr(truth)
-    return floors + [found.of_invariant(i, quick, i.scale(truth)) for i in invariants(asked)]
+    quick = in_mpfr(truth.at(found.nodes))
+    return floors + [found.of_gradients(i, quick, i.scale(truth)) for i in invariants(asked)]
 
 
 def returning(samples: int) -> Scene:

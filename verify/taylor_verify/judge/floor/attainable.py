@@ -44,7 +44,7 @@ _SAME_ORBIT = 1e-3
 
 @dataclass(frozen=True)
 class Floor:
-    """Everything needed to say what is attainable on one run.
+    """The terms of what is attainable on one run.
 
     The roundings of the steps between two times of the path count at the later one: ``steps_at[k]`` of
     size u ``rounded[k]``, component by component, in the path's units. ``carried`` is what they have
@@ -61,17 +61,13 @@ class Floor:
     velocities: bool = False
 
     def of_state(self, errors: Errors) -> Floats:
-        """The attainable error at every sample, in the unit of the errors; the larger part counts."""
+        """Return the attainable error at every sample, in the unit of the errors, of the larger part."""
         parts = [
             self.carried[part] * float(mp.convert(self.orbit.units[part]) / scale)
             for part, scale in errors.parts.items()
         ]
         found: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return self._at_samples(found, self._path_times())
-
-    def of_invariant(self, invariant: Invariant, motion: Motion, scale: Any) -> Floats:
-        """The attainable drift at every sample, over the invariant's scale; of a motion in MPFR."""
-        return self.of_gradients(invariant, _rows(motion, self.nodes), scale)
+        return larger_neighbour(found, self._path_times(), self.times)
 
     @property
     def nodes(self) -> list[int]:
@@ -79,7 +75,10 @@ class Floor:
         return evenly(len(self.times), _MOST_NODES)
 
     def of_gradients(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
-        """The same, of a motion at the nodes alone."""
+        """Return the attainable drift at every sample, over the ``scale`` of the invariant.
+
+        The motion ``at_nodes`` is in numbers of MPFR.
+        """
         nodes = self.nodes
         ends = np.searchsorted(self._path_times(), self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
@@ -94,7 +93,7 @@ class Floor:
                 shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
                 injected += np.sum(shares * rounded, axis=1)
         drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
-        return self._at_samples(drift, self.times[nodes])
+        return larger_neighbour(drift, self.times[nodes], self.times)
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
@@ -107,7 +106,7 @@ class Floor:
         return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
 
     def worst(self) -> float:
-        """The largest attainable error of a momentum, relative to its own size."""
+        """Return the largest attainable error of a momentum, relative to its own size."""
         shares = []
         for k, block in enumerate(self.orbit.blocks):
             if block not in ("attitude", "centre"):
@@ -125,12 +124,13 @@ class Floor:
     def _path_times(self) -> Floats:
         return np.array([abs(float(t)) for t in self.orbit.elapsed])
 
-    def _at_samples(self, values: Floats, times: Floats) -> Floats:
-        """Between two of the times the larger of both."""
-        later = np.searchsorted(times, self.times)
-        earlier = np.searchsorted(times, self.times, side="right") - 1
-        last = len(times) - 1
-        return np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
+
+def larger_neighbour(values: Floats, nodes: Floats, places: Floats) -> Floats:
+    """Return a value for each of the places: between two nodes the larger of both."""
+    later = np.searchsorted(nodes, places)
+    earlier = np.searchsorted(nodes, places, side="right") - 1
+    last = len(nodes) - 1
+    return np.maximum(values[np.minimum(later, last)], values[np.maximum(earlier, 0)])
 
 
 def floor(
@@ -175,7 +175,7 @@ def _orbit(scene: Scene) -> Path:
 
 
 def radians(scene: Scene) -> float:
-    """The angle that the fastest of an orbit's rates turns through by its end."""
+    """Return the angle that the fastest of an orbit's rates turns through by its end."""
     orbit = _orbit(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
@@ -183,20 +183,15 @@ def radians(scene: Scene) -> float:
 
 
 def looked_at(scene: Scene) -> list[int]:
-    """The samples at which the floor looks at the orbit: all or many where passages are short."""
+    """Return the samples at which the floor is computed: all or many where passages are short."""
     points = set(_orbit(scene).elapsed)
     return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
-    """How errors travel along the scene's own orbit, between evenly chosen samples."""
+    """Return how errors travel along the scene's own orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
-
-
-def _rows(motion: Motion, nodes: Sequence[int]) -> Motion:
-    rows = list(nodes)
-    return Motion({n: values[rows] for n, values in motion.quantities.items()}, motion.radius[rows])
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:
