@@ -25,6 +25,8 @@ _EVALUATIONS: Final = 10
 _HALVINGS: Final = 3
 # An evaluation that leaves more than this part of the error before it is worth no further one.
 _PROGRESS: Final = 0.9
+# Beyond this error (relative, or radians) first order may not even know the direction.
+_FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, each way.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -90,7 +92,8 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     A motion that comes back has many shifts that are equally good: the smallest is taken of those
     that leave the least but for what the distance between two of them may add.
     """
-    if not compared.is_far(fit) or not fit.rate:
+    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
+    if not is_far or not fit.rate:
         return fit
     times = compared.run.times
     shape = np.ones(len(times)) if course is constant else times
