@@ -15,7 +15,6 @@ from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors, Floats
 from taylor_verify.judge.floor.attainable import Floor
 from taylor_verify.judge.floor.steps import Steps
-from taylor_verify.judge.floor.unit_quaternion import lengths
 from taylor_verify.judge.gates import judge
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.tolerances import Tolerances
@@ -161,13 +160,13 @@ class Gates:
         return self.run.gated(errors, attainable, reason)
 
     def unit_quaternion(self, excess: Floats | None) -> list[Gated]:
-        """Return the row of quaternions that are no unit quaternions; none where they are.
+        """Return the row of quaternions that are no unit quaternions; none where they are to roundoff.
 
         ``excess`` (n,) is |q| - 1; a length that is not finite is the attitude's failure.
         """
         if excess is None or not np.isfinite(excess).all():
             return []
-        row = self.run.gated(*lengths(excess, self.floor))
+        row = self.run.gated(*self.floor.lengths(excess))
         return [row] if row[0].verdict is Status.FAIL else []
 
     def _reason(

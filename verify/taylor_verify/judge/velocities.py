@@ -6,8 +6,7 @@ U   velocity of the body's origin, body axes        Omega   angular velocity, bo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from mpmath import mp
@@ -22,8 +21,7 @@ Array = np.ndarray[Any, Any]
 Velocity = Callable[[Body, Quantities], Any]
 
 
-@dataclass(frozen=True)
-class VelocityForms:
+class VelocityForms(NamedTuple):
     """Each velocity, by its columns, as a sum of matrices times momenta; ``mass_matrix`` leads back."""
 
     forms: Mapping[str, Mapping[str, Matrix]]
@@ -82,5 +80,5 @@ def _velocity(group: str, body: Body, quantities: Quantities) -> Any:
 
 
 def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Array:
-    """A matrix of rationals in the ambient precision."""
+    """Return a matrix of rationals in the ambient precision."""
     return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)

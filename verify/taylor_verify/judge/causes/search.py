@@ -9,18 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from taylor_verify.judge.causes.another_scene import another_scene
 from taylor_verify.judge.causes.candidate import Candidate, causes_of
 from taylor_verify.judge.causes.damping import damping
 from taylor_verify.judge.causes.gyroscopic import gyroscopic_step
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.loads import loads, space_loads
 from taylor_verify.judge.causes.material import Material
 from taylor_verify.judge.causes.readings import attitude_reading, omega_reading
-from taylor_verify.judge.causes.rows import other_rows
+from taylor_verify.judge.causes.rows import another_scene, other_rows
 from taylor_verify.judge.causes.single_precision import single_precision
 from taylor_verify.judge.causes.tensor import another_body, other_tensors
-from taylor_verify.judge.causes.terms import wrong_terms
+from taylor_verify.judge.causes.terms import loads, space_loads, wrong_terms
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.scenes.scene import Scene
 

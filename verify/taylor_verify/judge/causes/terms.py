@@ -1,4 +1,4 @@
-"""Terms of the equations that are left out or have the other sign: gyroscopic, Munk's, turns of axes."""
+"""Terms of the equations that are left out, have the other sign, or stand still in space."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.candidate import Candidate
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats, bilinear, flow
 from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.readings import to_body
 
 _Terms = tuple[tuple[str, str, dict[str, Any]], ...]
 
@@ -57,3 +60,56 @@ def wrong_terms(material: Material) -> Iterator[Candidate]:
             why = "the body has no coupling B of impulses and velocities"
             tried.append(("coupling left out", why, replace(right, tensor=uncoupled)))
     yield from material.tried(tried)
+
+
+def loads(material: Material) -> Iterator[Candidate]:
+    """Yield the constant loads left out, or with the other sign: each of them, and both."""
+    right = material.equations
+    parts = {"moment": [0]} if right.is_rigid else {"force": [0], "couple": [1], "loads": [0, 1]}
+    vectors = right.load.reshape(-1, 3)
+    tried = []
+    for noun, rows in parts.items():
+        if not all(np.any(vectors[row]) for row in rows):
+            continue
+        for weight, words, be in (
+            (0.0, "left out", "zero"),
+            (-1.0, "with the other sign", "of the other sign"),
+        ):
+            load = vectors.copy()
+            load[rows] *= weight
+            why = f"from row to row the {material.quantity} changes as if the {noun} were {be}"
+            tried.append((f"{noun} {words}", why, replace(right, load=load.ravel())))
+    yield from material.tried(tried)
+
+
+def space_loads(material: Material) -> Iterator[Candidate]:
+    """Yield the equations whose loads keep their components in space, by the answer's own attitude."""
+    right, pairs = material.equations, material.pairs
+    if pairs.turned is None or not np.any(right.load):
+        return
+    count = len(pairs.begin)
+    vectors = [
+        to_body(pairs.turned, np.broadcast_to(load, (count, 3)))
+        for load in right.load.reshape(-1, 3)
+    ]
+    begin = np.column_stack([pairs.begin, *vectors, np.ones(count)])
+    sizes = np.concatenate([pairs.sizes, np.full(right.moving + 1, np.linalg.norm(right.load))])
+    (moved,) = flow(_map(right)[None], begin, pairs.spans, sizes)
+    noun = "moment" if right.is_rigid else "load"
+    why = f"from row to row the {material.quantity} changes as if the {noun} stood still in space"
+    yield material.candidate(f"{noun} in space axes", why, moved[:, : right.moving])
+
+
+def _map(right: Equations) -> Floats:
+    """Q of z = (states, their loads, 1), where loads turn backwards in body axes: v' = v x W."""
+    count, free = right.moving, replace(right, load=np.zeros_like(right.load))
+
+    def rate(z: Floats) -> Floats:
+        load, one = z[:, count:-1], z[:, -1:]
+        state = np.column_stack([z[:, :count], one])
+        omega = right.omega(state)
+        driven = one * (load @ right.inverse if right.is_rigid else load)
+        turned = [np.cross(load[:, i : i + 3], omega) for i in range(0, count, 3)]
+        return np.column_stack([free.rates(state)[:, :-1] + driven, *turned, np.zeros(len(z))])
+
+    return bilinear(rate, 2 * count + 1)

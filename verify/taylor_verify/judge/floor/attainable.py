@@ -1,4 +1,4 @@
-"""What perfect rounding would leave: the floor under every solver that works on a rung.
+"""The error that perfect rounding would leave: the floor under every solver that works on a rung.
 
 A solver that rounds each component on its own commits in every step, at time s, an error of about
 u r_i(s) in component i, up or down, with r_i = |x_i| + h S_i(x): the state itself and what a step of
@@ -27,7 +27,8 @@ from taylor_verify.exact.conditioning.condition import Path, path, transition
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.magnitude import roundings
-from taylor_verify.records.reason import Carried, RoundoffFloor, shown
+from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
@@ -40,6 +41,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _MOST_NODES = 41
 # Below this floor, rounding the scene's data moves the orbit too little to change its condition.
 _SAME_ORBIT = 1e-3
+# A length is written out where six digits show that it is not 1.
+_SHOWN = 1e-4
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,25 @@ class Floor:
         bits = round(-log2(self.unit_roundoff))
         return RoundoffFloor(carried, shown(value), bits, steps, growth, velocities=self.velocities)
 
+    def lengths(self, excess: Floats) -> tuple[Errors, Floats, Reason]:
+        """Return the errors of the length of quaternions, what is attainable, and its terms.
+
+        ``excess`` (n,) is |q| - 1. An attitude is read from a quaternion of any length, so that no other
+        gate sees the length. A solver that rounds q in every step and takes none of it back leaves, all
+        roundings going one way, | |q| - 1 | <= u N after N steps.
+        """
+        errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
+        elapsed = self.times / (np.max(self.times) or 1.0)
+        steps = 1 + float(np.sum(self.steps_at)) * elapsed
+        attainable = self.unit_roundoff * steps
+        worst = int(np.argmax(errors.doubles))
+        value, count = float(attainable[worst]), round(steps[worst])
+        ends = (float(np.min(excess)), float(np.max(excess)))
+        extent = " to ".join(dict.fromkeys(_length(end, value) for end in ends))
+        bits = round(-log2(self.unit_roundoff))
+        terms = RoundoffFloor(Carried.LENGTH, shown(value), bits, count, lengths=extent)
+        return errors, attainable, Reason(floor=terms)
+
     def worst(self) -> float:
         """Return the largest attainable error of a momentum, relative to its own size."""
         shares = []
@@ -123,6 +145,13 @@ class Floor:
 
     def _path_times(self) -> Floats:
         return np.array([abs(float(t)) for t in self.orbit.elapsed])
+
+
+def _length(excess: float, roundings: float) -> str:
+    """The length 1 + excess, with the digits that tell it from 1."""
+    if abs(excess) <= roundings:
+        return "1"
+    return f"{1 + excess:.6g}" if abs(excess) > _SHOWN else f"1{excess:+.2g}"
 
 
 def larger_neighbour(values: Floats, nodes: Floats, places: Floats) -> Floats:

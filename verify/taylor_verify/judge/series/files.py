@@ -107,6 +107,21 @@ def files_judgement(
     return FilesJudgement(verdicts, None, tuple(judged), known, order, notes)
 
 
+def judge_files(
+    files: Sequence[Any], steps: Iterable[Any] | None, judge: Callable[[Any], Judgement]
+) -> FilesJudgement:
+    """Return the judgement of a list of files, each judged by itself by ``judge(file)``.
+
+    Raises ValueError for an empty list, a file that is there twice, and what `checked_steps` refuses.
+    """
+    if not files:
+        raise ValueError("expected at least one trajectory file, got an empty list")
+    if faults := repeated([file for file in files if isinstance(file, str | PathLike)]):
+        raise ValueError("\n".join(faults))
+    known = None if steps is None else checked_steps(steps, len(files))
+    return files_judgement(judge_each(files, judge), known)
+
+
 def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
     """Return ``judge(file)`` for each file. Raises Refused with the faults of all that are refused."""
     judged: list[FileJudgement] = []
