@@ -16,8 +16,15 @@ from taylor_verify.judge.causes.answers import causes_of_file
 from taylor_verify.judge.conventions.fits import Conventions, Finding
 from taylor_verify.judge.conventions.search import conventions, is_far
 from taylor_verify.judge.conventions.worlds import World
-from taylor_verify.judge.files.extent import Extent, complete_verdict, not_judged
-from taylor_verify.judge.files.notes import comparable, coverage_notes, missing_groups, span_notes
+from taylor_verify.judge.files.coverage import (
+    Extent,
+    comparable,
+    complete_verdict,
+    coverage_notes,
+    missing_groups,
+    not_judged,
+    span_notes,
+)
 from taylor_verify.judge.files.partial import partial_judgement
 from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds

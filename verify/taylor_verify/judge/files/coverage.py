@@ -1,13 +1,14 @@
-"""The extent of somebody's answer: the row `complete`, where a file lacks a part of what the scene asks.
+"""The part of the scene's question that a file answers: its columns, its span, and sentences on the rest.
 
 The times of the samples are the file's own affair. It has to reach the scene's end, to begin no later
-than one of its own sampling intervals after the start, and to have more than one row.
+than one of its own sampling intervals after the start, and to have more than one row. Where it lacks a part
+there is the row `complete`.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -15,13 +16,23 @@ from itertools import pairwise
 from typing import Any, Final
 
 from taylor_verify.judge.rows import verdict_on
-from taylor_verify.records.quantities import COMPLETE, GROUPS
+from taylor_verify.records.quantities import (
+    COLUMNS,
+    COMPLETE,
+    GROUPS,
+    MAIN,
+    MOMENTA,
+    TRACKED,
+    VELOCITIES,
+    state_groups,
+)
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.precision import Rung
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.file import Recorded
+from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 from taylor_verify.solvers.trajectory import Outcome
 
 # A clock that adds up its step errs by a roundoff of the span in each of them: steps of 1e-4 up to 100.
@@ -91,9 +102,9 @@ class Extent:
         """
         if not self.inside or self.first <= self.begin + self.slack:
             return bool(self.inside)
-        inside = pairwise(self.rows[k] for k in self.inside)
+        spaces = (b - a for a, b in pairwise(self.rows[k] for k in self.inside))
         is_known = len(self.inside) >= _FEWEST_ROWS
-        return is_known and any(self.first <= b - a + self.slack for a, b in inside)
+        return is_known and any(self.first <= space + self.slack for space in spaces)
 
     @property
     def is_one_state(self) -> bool:
@@ -125,3 +136,80 @@ def complete_verdict(
     row = (scene, Recorded({}, setting=file), rung, COMPLETE, status, Outcome.FINISHED)
     reason, roundoff = stated(Cause.INCOMPLETE, said), float(rung.unit_roundoff)
     return verdict_on(*row, reason=reason, roundoff=roundoff)
+
+
+# The columns, and the sentences.
+
+
+def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
+    """Return the groups that the scene's motion has. A file without any is refused."""
+    known = _known(scene)
+    # A scene might track what the columns tell, and does not.
+    untracked = {name for name in TRACKED[scene.model] if name not in scene.track}
+    groups = [n for n in file.groups if n in known and GROUPS[n].quantity not in untracked]
+    if groups:
+        return groups
+    foreign = [name for name in file.groups if name not in known]
+    if foreign:
+        expected = f"expected columns of a scene of model {scene.model} ({_columns(known)})"
+        raise Refused([f"{expected}, got {_columns([name])} @ {file.name}" for name in foreign])
+    wanted = state_groups(scene.model, scene.track)
+    # Whoever has velocities has no impulses.
+    instead = [VELOCITIES] if scene.model == "kirchhoff" else []
+    expected = " or ".join(_columns(names) for names in (*instead, *([name] for name in wanted)))
+    notes = "; ".join(
+        (*file.notes, f"name other columns: --columns {COLUMNS[wanted[0]][0]}=NAME,...")
+    )
+    got = _columns(file.groups) or "t alone"
+    raise Refused(
+        [f"expected {expected}, which {scene.name} tracks, got {got} @ {file.name} ({notes})"]
+    )
+
+
+def _columns(groups: Iterable[str]) -> str:
+    return " ".join(column for name in groups for column in COLUMNS[name])
+
+
+def _known(scene: Scene) -> list[str]:
+    """Return the groups that scenes of this model may have; of a solid in a fluid also its velocities."""
+    quantities = {MAIN[scene.model], *TRACKED[scene.model]}
+    velocities = VELOCITIES if scene.model == "kirchhoff" else ()
+    return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
+
+
+def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
+    """Yield a sentence for each group that is not compared, those without a meaning here first."""
+    known = _known(scene)
+    for name in sorted(file.groups, key=lambda name: name in known):
+        if name not in known:
+            why = f"{scene.name} is of model {scene.model}, whose motion has no {GROUPS[name].noun}"
+        elif name not in groups:
+            why = f"{scene.name} does not track the {GROUPS[name].noun}"
+        else:
+            continue
+        yield f"{_columns([name])} not compared: {why}"
+    for name in missing_groups(groups, scene):
+        other = " or r11 ... r33" if name == "quaternion" else ""
+        yield (f"the {GROUPS[name].noun} is not judged: the file has no {_columns([name])}{other}")
+
+
+def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
+    """Return the groups that the scene asks for and the file lacks."""
+    has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
+    if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
+        # Together they stand for the impulses.
+        has |= set(MOMENTA["kirchhoff"])
+    return [name for name in state_groups(scene.model, scene.track) if name not in has]
+
+
+def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
+    """Yield a sentence if no row is at the start, and one if the file stops before the scene does."""
+    start, end = float(scene.clock.start), float(scene.clock.instants[-1])
+    if all(float(time) != start for time in times):
+        yield f"no row is at the start, t = {start:g}: the initial state was not compared"
+    if extent.rows[-1] >= 0 and not extent.reaches_end:
+        last = float(max(times, key=lambda t: abs(t - scene.clock.start)))
+        yield (
+            f"the last row is at t = {last:.12g}, and the scene ends at t = {end:.12g}: "
+            "the rest was not judged"
+        )
