@@ -29,7 +29,7 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 @dataclass(frozen=True)
 class Graded:
-    """One gate: its verdict, and its errors and floors at all samples in the order of time."""
+    """A gate: its verdict, and its errors and floors at all samples in the order of time."""
 
     verdict: Verdict
     times: Floats

@@ -89,7 +89,7 @@ _STEPS: Final[tuple[tuple[str, str, _Step], ...]] = (
 
 
 def _best_step(step: _Step, body: Equations, pairs: Pairs) -> tuple[float, float]:
-    """What the best step leaves, and this step; the search ends where a step repeats itself."""
+    """The part that the best step leaves, and this step; the search ends where a step repeats itself."""
     longest = float(np.max(np.abs(pairs.spans)))
     h, best = min(longest, _FIRST_STEP / (_pace(body, pairs.begin) or 1.0)), (np.inf, 0.0)
     for _ in range(_SEARCHES):

@@ -20,7 +20,7 @@ FLOAT64: Final = 2.0**-53
 
 @dataclass(frozen=True)
 class Finding:
-    """One convention of the file that is not the scene's.
+    """A convention of the file that is not the scene's.
 
     ``subject`` is ``time``, ``body``, ``axes`` or a group of columns; ``before`` and ``after`` are
     relative errors (radians for an attitude) without and with it. With ``alternatives`` it is ambiguous.

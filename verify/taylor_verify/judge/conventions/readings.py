@@ -28,7 +28,7 @@ Read = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True)
 class Reading:
-    """One way to read a group; ``words`` say how it departs from the scene's conventions.
+    """A way to read a group; ``words`` say how it departs from the scene's conventions.
 
     Of two readings that explain a file alike, the one with fewer departures is the explanation. ``read``
     returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3, 3).

@@ -96,7 +96,7 @@ def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:
-    """The same numbers by the other convention, where a part of the body has one."""
+    """The scene with a part of its body read by the other convention, where there is one."""
     body, found = scene.body, []
     parts = body.parts()
     for name, (misread, words) in _MISREAD.items():

@@ -145,7 +145,7 @@ def _displaced(scene: Scene, motion: Motion, by: Column) -> Motion:
 
 
 def _pushes(scene: Scene, motion: Manufactured, times: Sequence[Fraction]) -> list[Any]:
-    """For either axis of every wave, the wave and zeta' - J(z*) zeta at every time, (n, d)."""
+    """The wave, for either of its axes, and zeta' - J(z*) zeta at every time, (n, d)."""
     angles = [[mp.cos_sin(mp.convert(w.frequency * t)) for t in times] for w in motion.waves]
     there = np.array([[mp.convert(z) for z in motion.constant]] * len(times), dtype=object)
     offsets = []

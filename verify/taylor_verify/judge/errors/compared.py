@@ -161,7 +161,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Compared:
-    """One quantity of an answer beside the exact motion at any shifts."""
+    """A quantity of an answer beside the exact motion at any shifts."""
 
     run: Run
     errors: Errors
@@ -177,7 +177,7 @@ class Compared:
 
     @cached_property
     def reach(self) -> float:
-        """How far the answer goes from its first sample, in the unit of the error."""
+        """The distance that the answer goes from its first sample, in the unit of the error."""
         parts = []
         for part, scale in self._scales.items():
             rows = to_mpfr(self.run.answer[part].reshape(len(self.run.elapsed), -1))
@@ -188,7 +188,7 @@ class Compared:
 
     @cached_property
     def doubt(self) -> float:
-        """How wide the truth is: less than this cannot be said to be left."""
+        """The width of the truth: less than this cannot be said to be left."""
         return float(max(self.errors.truth_radius))
 
     def evaluated(self, shifts: Shifts) -> Shifted | None:

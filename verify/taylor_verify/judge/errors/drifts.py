@@ -129,7 +129,7 @@ class Drifts:
         return sums
 
     def _arc_ends(self, elapsed: Sequence[Fraction], held: Mapping[str, Column]) -> Motion:
-        """Where the exact motion leads from each sample (the first from the start) to the next one."""
+        """The exact motion at each sample that sets out from the sample before, or from the start."""
         states = _states(self._scene, held)
         time, state = self._before
         begins = (time, *elapsed[:-1])

@@ -161,7 +161,7 @@ def _states_apart(run: Run, exact: Solution, filled: Quantities) -> list[Gated]:
 
 @dataclass(frozen=True)
 class _Kind:
-    """One of the two velocities: its quantity, its unit, and the blocks of the energy it is made with."""
+    """A velocity of a solid in a fluid: its quantity, its unit, and the blocks of the energy it is made with."""
 
     quantity: str
     unit: str

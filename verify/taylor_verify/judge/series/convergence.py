@@ -270,7 +270,7 @@ class Sweep:
 
     @property
     def reason(self) -> str:
-        """All in one line: `omega is 4th order, attitude 2nd`."""
+        """The orders in one line: `omega is 4th order, attitude 2nd`."""
         orders = {name: found.order for name, found in self.quantities.items()}
         known = [(name, _ordinal(order)) for name, order in orders.items() if order is not None]
         words = [f"{n} {o}" if i else f"{n} is {o} order" for i, (n, o) in enumerate(known)]

@@ -39,7 +39,7 @@ _OF_DIGITS: Final = 30.0
 
 @dataclass(frozen=True)
 class Sample:
-    """One file and the step of the integrator that wrote it."""
+    """A file and the step of the integrator that wrote it."""
 
     judged: FileJudgement
     step: float
