@@ -17,8 +17,6 @@ from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.tensors import Matrix, transpose
 
 Array = np.ndarray[Any, Any]
-# U or Omega of a body at every sample.
-Velocity = Callable[[Body, Quantities], Any]
 
 
 class VelocityForms(NamedTuple):
@@ -52,19 +50,15 @@ def velocity_forms(body: Body) -> VelocityForms:
     return _FORMS[type(body)](body)
 
 
-def angular_velocity(body: Body, quantities: Quantities) -> Any:
-    """Return Omega at every sample, from the exact coefficients."""
-    return _velocity("omega", body, quantities)
-
-
-def linear_velocity(body: Body, quantities: Quantities) -> Any:
-    """Return U at every sample, from the exact coefficients."""
-    return _velocity("linear_velocity", body, quantities)
+def velocity(group: str, body: Body, quantities: Quantities) -> Any:
+    """Return a velocity at every sample, by the name of its columns, from the exact coefficients."""
+    linear = velocity_forms(body).forms[group].items()
+    return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
 
 
 def velocities(body: Body, quantities: Quantities) -> dict[str, Any]:
     """Return every velocity at every sample, by the names of their columns."""
-    return {group: _velocity(group, body, quantities) for group in velocity_forms(body).forms}
+    return {group: velocity(group, body, quantities) for group in VELOCITIES}
 
 
 def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
@@ -72,11 +66,6 @@ def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
     M = exact_matrix(velocity_forms(body).mass_matrix)
     both = np.concatenate([quantities[name] for name in VELOCITIES], axis=1) @ M.T
     return {name: both[:, 3 * k : 3 * k + 3] for k, name in enumerate(body.STATE.MOVING)}
-
-
-def _velocity(group: str, body: Body, quantities: Quantities) -> Any:
-    linear = velocity_forms(body).forms[group].items()
-    return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
 
 
 def exact_matrix(matrix: Sequence[Sequence[Any]]) -> Array:

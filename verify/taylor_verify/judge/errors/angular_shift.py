@@ -18,7 +18,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors.shift import LEAVES, strays_from
 from taylor_verify.judge.errors.state import largest, norms
-from taylor_verify.judge.velocities import Velocity, angular_velocity
+from taylor_verify.judge.velocities import velocity
 from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene
@@ -80,15 +80,15 @@ class _Fit:
 
 
 def angular_shift(
-    given: Scene, answer: Array, digits: int, of: Velocity = angular_velocity
+    given: Scene, answer: Array, digits: int, group: str = "omega"
 ) -> AngularShift | None:
     """Return the constant shift, at the ambient precision; None where the answer is not finite.
 
-    ``answer`` holds Omega, or whatever velocity ``of`` makes of the impulses, at the instants of ``given``.
+    ``answer`` holds Omega, or the velocity of another ``group`` of columns, at the instants of ``given``.
     """
     if not all(mp.isfinite(value) for value in answer.flat):
         return None
-    compared = _Compared(given, solution(given), answer, digits, of)
+    compared = _Compared(given, solution(given), answer, digits, group)
     whole, best = compared.shift(range(len(answer)))
     if whole.kind is Kind.NONE and (strays := best.strays()):
         shared, _ = compared.shift([k for k in range(len(answer)) if k not in strays])
@@ -102,7 +102,7 @@ class _Compared:
     exact: Solution
     answer: Array
     digits: int
-    of: Velocity
+    group: str
 
     def shift(self, rows: Sequence[int]) -> tuple[AngularShift, _Fit]:
         """Return the shift of some samples, and their fit by least squares."""
@@ -126,7 +126,7 @@ class _Compared:
         elapsed = [self.given.clock.elapsed[k] - shift for k in samples]
         h = _DIFFERENCE * (max(abs(t) for t in elapsed) or 1)
         both = [*elapsed, *(t + h for t in elapsed)]
-        rows = self.of(self.given.body, self.exact.evaluate(both, self.digits + _MORE_DIGITS))
-        here, ahead = np.split(rows, 2)
+        motion = self.exact.evaluate(both, self.digits + _MORE_DIGITS)
+        here, ahead = np.split(velocity(self.group, self.given.body, motion), 2)
         own = self.answer[list(samples)]
         return _Fit(shift, own, own - here, (ahead - here) / mp.convert(h))

@@ -103,16 +103,18 @@ class Drifts:
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
         """Return the drifts of all rows; if one is not finite under loads, NaN for all."""
-        return [(invariant, self._errors(invariant)) for invariant in self._found]
-
-    def _errors(self, invariant: Invariant) -> Errors:
-        with precision():
-            values, scale = self._series[invariant.name].joined()
-        if self._is_lost:
-            values = np.full(len(values), np.nan)
-        name, (in_mpf,) = invariant.name, to_mpf(np.array([scale], dtype=object))
-        widths, change = np.zeros(len(values)), self._changes.get(name)
-        return Errors(name, f"scale of {name}", values, widths, {name: in_mpf}, change=change)
+        found = []
+        for invariant in self._found:
+            name = invariant.name
+            with precision():
+                values, scale = self._series[name].joined()
+            if self._is_lost:
+                values = np.full(len(values), np.nan)
+            parts = {name: to_mpf(np.array([scale], dtype=object))[0]}
+            widths, change = np.zeros(len(values)), self._changes.get(name)
+            errors = Errors(name, f"scale of {name}", values, widths, parts, change=change)
+            found.append((invariant, errors))
+        return found
 
     def _widen(self, truth: Motion) -> None:
         rows = truth.at(decisive(self._scene, truth))

@@ -26,14 +26,15 @@ from taylor_verify.judge.floor.attainable import Floats, Floor, floor
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.judge.rows import Gated, Run
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
-from taylor_verify.judge.velocities import (
-    Velocity,
-    angular_velocity,
-    linear_velocity,
-    velocity_forms,
-)
+from taylor_verify.judge.velocities import velocity, velocity_forms
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import GROUPS, TRACKED, UNIT_QUATERNION, VELOCITIES
+from taylor_verify.records.quantities import (
+    GROUPS,
+    QUANTITIES,
+    TRACKED,
+    UNIT_QUATERNION,
+    VELOCITIES,
+)
 from taylor_verify.records.reason import Carried, Kind, Reason, RoundoffFloor
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
@@ -68,9 +69,9 @@ def partial_judgement(
     )
     run = Run(problem, solver, solver.solve(problem), tolerances)
     apart = [
-        _velocity(run, exact, kind)
-        for kind in _VELOCITIES
-        if kind.group in own and kind.group not in one_row.quantities
+        _velocity(run, exact, group)
+        for group in _CARRIED
+        if group in own and group not in one_row.quantities
     ]
     if "attitude" in filled and not given.body.is_free:
         # The balances of a loaded body start an arc of the exact motion from every row, for which a
@@ -158,36 +159,21 @@ def _states_apart(run: Run, exact: Solution, filled: Quantities) -> list[Gated]:
 
 # The velocities of a solid in a fluid: U = A x + B y, Omega = B^T x + C y.
 
-
-@dataclass(frozen=True)
-class _Kind:
-    """A velocity of a solid in a fluid: its quantity, its unit, and the blocks of the energy it is made with."""
-
-    quantity: str
-    unit: str
-    group: str
-    of: Velocity
-    carried: Carried
+_CARRIED: Final = {"omega": Carried.VELOCITY, "linear_velocity": Carried.LINEAR_VELOCITY}
 
 
-_VELOCITIES: Final = (
-    _Kind("omega", "max|omega|", "omega", angular_velocity, Carried.VELOCITY),
-    _Kind("velocity", "max|U|", "linear_velocity", linear_velocity, Carried.LINEAR_VELOCITY),
-)
-
-
-def _velocity(run: Run, exact: Solution, kind: _Kind) -> Gated:
+def _velocity(run: Run, exact: Solution, group: str) -> Gated:
     compared, given = _comparison(run, exact, run.trajectory.quantities), run.problem.given
-    errors, sizes = _velocity_errors(compared, kind)
+    errors, sizes = _velocity_errors(compared, group)
     with mp.workprec(compared.bits):
-        scale = errors.parts[kind.group]
-        attainable = _velocity_attainable(run, kind, sizes, scale)
-        reason = Reason(floor=RoundoffFloor(kind.carried))
+        scale = errors.parts[group]
+        attainable = _velocity_attainable(run, group, sizes, scale)
+        reason = Reason(floor=RoundoffFloor(_CARRIED[group]))
         row, gate = run.gated_in_full(errors, attainable, reason)
         places = evenly(len(sizes), MOST_SHIFTED)
         clock = Clock(given.clock.start, tuple(given.clock.instants[k] for k in places))
-        own = rows_at(compared.quantities, places)[kind.group]
-        shift = angular_shift(replace(given, clock=clock), own, compared.digits, kind.of)
+        own = rows_at(compared.quantities, places)[group]
+        shift = angular_shift(replace(given, clock=clock), own, compared.digits, group)
         if shift is None:
             return row, gate
         late, left = float(shift.time_shift), shift.residual / float(scale)
@@ -196,17 +182,17 @@ def _velocity(run: Run, exact: Solution, kind: _Kind) -> Gated:
         return replace(row, remains=remains), gate
 
 
-def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]:
+def _velocity_errors(compared: Comparison, group: str) -> tuple[Errors, Floats]:
     """The errors of a velocity, and its own size at every sample over the largest."""
-    body = compared.scene.body
+    body, quantity = compared.scene.body, QUANTITIES[GROUPS[group].quantity]
     states, sizes, radii = States(), Series(), Series()
     for block in compared.blocks(Costs()):
         with mp.workprec(compared.bits):
-            rows = kind.of(body, block.truth.quantities)
-            size, distances = norms(rows), norms(block.own[kind.group] - rows)
-            zeros, most = {kind.group: 0 * block.truth.radius}, {kind.group: largest(size)}
-            found = Distances(kind.quantity, kind.unit, {kind.group: distances}, zeros, most)
-            scale = states.add(found)[kind.group]
+            rows = velocity(group, body, block.truth.quantities)
+            size, distances = norms(rows), norms(block.own[group] - rows)
+            zeros, most = {group: 0 * block.truth.radius}, {group: largest(size)}
+            found = Distances(quantity.name, quantity.unit, {group: distances}, zeros, most)
+            scale = states.add(found)[group]
             sizes.add(size, scale)
             radii.add(block.truth.radius, mpf(1))
     (errors,) = states.errors()
@@ -214,11 +200,11 @@ def _velocity_errors(compared: Comparison, kind: _Kind) -> tuple[Errors, Floats]
     return errors, sizes.joined()[0]
 
 
-def _velocity_attainable(run: Run, kind: _Kind, sizes: Floats, scale: Any) -> Floats:
+def _velocity_attainable(run: Run, group: str, sizes: Floats, scale: Any) -> Floats:
     """The error that a rounding of x and y, and of the velocity itself, leaves."""
     base = _floor(run)
     squares = (base.unit_roundoff * sizes) ** 2
-    for part, matrix in velocity_forms(run.problem.given.body).forms[kind.group].items():
+    for part, matrix in velocity_forms(run.problem.given.body).forms[group].items():
         norm = np.linalg.norm(np.array(matrix, dtype=float), 2)
         alone = Errors(part, "", sizes, sizes, {part: scale})
         squares = squares + (norm * base.of_state(alone)) ** 2

@@ -73,7 +73,10 @@ class FileRows(ByRows):
         if "attitude" in found:
             found["attitude"] = found["attitude"].reshape(-1, 3, 3)
         if self.readings:
-            R = _attitudes(self.scene, self.rung, tuple(self.times[k] for k in asked), bits)
+            # The exact attitude, for vectors that are in space axes.
+            given = adopt(self.scene, self.rung, tuple(self.times[k] for k in asked)).given
+            tracked, digits = replace(given, track=frozenset({"attitude"})), truth_digits(bits, 0)
+            R = solution(tracked).motion(given.clock.elapsed, digits)["attitude"]
             with mp.workprec(bits):
                 for name, reading in self.readings.items():
                     found[name] = reading.read(found[name], R)
@@ -112,13 +115,6 @@ def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
     if isinstance(places, range) and places.step == 1:
         return rows[places.start : places.stop]
     return [rows[k] for k in places]
-
-
-def _attitudes(scene: Scene, rung: Rung, times: tuple[Fraction, ...], bits: int) -> Array:
-    """The exact R at these times, for vectors that are in space axes."""
-    given = replace(adopt(scene, rung, times).given, track=frozenset({"attitude"}))
-    digits = truth_digits(bits, 0)
-    return solution(given).motion(given.clock.elapsed, digits)["attitude"]
 
 
 def first_flaw(file: TrajectoryFile, quantity: str) -> str:

@@ -172,30 +172,25 @@ def floor(
     The condition of the orbit is that of the scene as asked, computed once for all rungs, unless the
     rounding of the data moves the orbit so much that the rounded one needs a condition of its own.
     """
-    shared = _floor(given, asked, unit_roundoff, steps, velocities)
-    if shared.worst() <= _SAME_ORBIT:
-        return shared
-    return _floor(given, given, unit_roundoff, steps, velocities)
-
-
-def _floor(
-    given: Scene, conditioned: Scene, unit_roundoff: Fraction, steps: int, velocities: bool
-) -> Floor:
-    orbit = _orbit(conditioned)
     # A row is at least one rounding.
     count = max(steps, len(given.clock.instants))
-    steps_at = _steps_at(orbit.elapsed, count)
     bits = unit_roundoff.denominator.bit_length() - 1
-    rounded = roundings(given, orbit, bits, count, velocities)
-    return Floor(
-        unit_roundoff=float(unit_roundoff),
-        times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
-        orbit=orbit,
-        steps_at=steps_at,
-        rounded=rounded,
-        carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
-        velocities=velocities,
-    )
+    for conditioned in (asked, given):
+        orbit = _orbit(conditioned)
+        steps_at = _steps_at(orbit.elapsed, count)
+        rounded = roundings(given, orbit, bits, count, velocities)
+        found = Floor(
+            unit_roundoff=float(unit_roundoff),
+            times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+            orbit=orbit,
+            steps_at=steps_at,
+            rounded=rounded,
+            carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
+            velocities=velocities,
+        )
+        if found.worst() <= _SAME_ORBIT:
+            break
+    return found
 
 
 @lru_cache(maxsize=32)

@@ -32,7 +32,8 @@ from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import norms, state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import larger_neighbour, looked_at
-from taylor_verify.judge.velocities import angular_velocity, has_velocities, linear_velocity
+from taylor_verify.judge.velocities import has_velocities, velocity
+from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.parts import Part, Shape, Value
@@ -99,9 +100,9 @@ def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
         sizes = norms(change) if change.ndim > 1 else abs(change)
         found[invariant.name] = sizes / invariant.scale(here)
     if has_velocities(scene.body):
-        for name, of in (("omega", angular_velocity), ("velocity", linear_velocity)):
-            one, other = (of(scene.body, motion.quantities) for motion in (here, there))
-            found[name] = norms(other - one) / (max(norms(one)) or 1)
+        for group in VELOCITIES:
+            one, other = (velocity(group, scene.body, m.quantities) for m in (here, there))
+            found[GROUPS[group].quantity] = norms(other - one) / (max(norms(one)) or 1)
     return {name: values.astype(float) ** 2 for name, values in found.items()}
 
 
