@@ -27,26 +27,36 @@ class EscapingConsole(Console):
             yield Segment(escaped(segment.text), segment.style) if is_text else segment
 
 
-def print_line(console: Console, *parts: str | Text) -> None:
-    """One line as it is: a name may hold brackets or colons, and a pipe takes any length."""
-    console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+def bold(text: str, colour: str = "") -> Text:
+    """Return a text in bold type."""
+    return Text(text, f"bold {colour}".rstrip())
 
 
-def print_indented(console: Console, label: str, text: str) -> None:
-    """A line behind its label; on a terminal what is too long goes on below itself."""
-    width = max(console.width - len(label), 20) if sys.stdout.isatty() else len(text) + 1
-    for i, line in enumerate(textwrap.wrap(text, width, break_on_hyphens=False)):
-        print_line(console, (label if i == 0 else " " * len(label)) + line)
+class Page:
+    """A text that is kept until it is asked for, in the width and colours of stdout.
 
+    It takes no markup: a name may hold brackets or colons.
+    """
 
-def new_console(piped_width: int = PIPED_WIDTH) -> Console:
-    """A console that keeps its text, in the width and colours of stdout, and adds no markup."""
-    console = EscapingConsole(markup=False, emoji=False, highlight=False)
-    if not sys.stdout.isatty():
-        console.width = piped_width
-    console.begin_capture()
-    return console
+    def __init__(self, piped_width: int = PIPED_WIDTH) -> None:
+        self.console = EscapingConsole(markup=False, emoji=False, highlight=False)
+        if not sys.stdout.isatty():
+            self.console.width = piped_width
+        self.console.begin_capture()
 
+    def line(self, *parts: str | Text) -> None:
+        """Print one line; a pipe takes any length."""
+        self.console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
 
-def text_of(console: Console) -> str:
-    return console.end_capture().rstrip("\n")
+    def indented(self, label: str, *texts: str) -> None:
+        """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
+        for text in texts:
+            width = max(self.console.width - len(label), 20)
+            width = width if sys.stdout.isatty() else len(text) + 1
+            for line in textwrap.wrap(text, width, break_on_hyphens=False):
+                self.line(label + line)
+                label = " " * len(label)
+
+    def text(self) -> str:
+        """Return everything printed."""
+        return self.console.end_capture().rstrip("\n")

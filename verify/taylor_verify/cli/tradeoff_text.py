@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
+from taylor_verify.cli.console import Page, bold
 from taylor_verify.studies.tradeoff.pictures.wording import label_of
 
 _NOT_RUN = "not run"
@@ -21,63 +20,66 @@ _HEADINGS = {
 
 
 def tradeoff_text(found: Sequence[Mapping[str, Any]]) -> str:
-    """For each scene a line for each setting, the front in words, and what was asked and achieved."""
-    console = new_console()
+    """Return for each scene a line for each setting, the front in words, the errors asked and achieved."""
+    page = Page()
     for trade in found:
-        _print_trade(console, trade)
-    return text_of(console)
+        _print_trade(page, trade)
+    return page.text()
 
 
-def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
+def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     timing, machine = trade["timing"], trade["provenance"]
-    print_line(console, Text(trade["scene"], "bold"), f" on {machine['processor']}")
-    console.print(_points_table(trade))
+    page.line(bold(trade["scene"]), f" on {machine['processor']}")
+    page.console.print(_points_table(trade))
     for reason, names in _not_run(trade["points"]).items():
-        print_line(console, f"not run: {', '.join(names)} ({reason})")
+        page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
             told = f"  {label_of(row)}: {row['because']}"
-            print_line(console, Text(row["standing"], "bold red"), told)
-    print_line(
-        console,
+            page.line(bold(row["standing"], "red"), told)
+    page.line(
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
         "* is on the front. first: the whole first solve, with compiling and start-up.",
     )
-    print_line(console, f"seconds: {timing['of']}.")
+    page.line(f"seconds: {timing['of']}.")
     floors = [f"{rung} {least:.2g}" for rung, least in trade.get("attainable", {}).items() if least]
     if floors:
         told = (
             f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
         )
-        print_line(console, told)
+        page.line(told)
     if any("cold" in row for row in trade["points"]):
-        print_line(console)
-        print_line(console, Text("In a process of its own, nothing compiled", "bold"))
-        console.print(_cold_table(trade["points"]))
+        page.line()
+        page.line(bold("In a process of its own, nothing compiled"))
+        page.console.print(_cold_table(trade["points"]))
     for heading, key in _HEADINGS.items():
-        if not trade.get(key):
-            continue
-        print_line(console)
-        print_line(console, Text(heading, "bold"))
-        for sentence in trade[key]:
-            print_indented(console, "  ", sentence)
+        if trade.get(key):
+            page.line()
+            page.line(bold(heading))
+            page.indented("  ", *trade[key])
     if trade.get("recommendation"):
-        print_line(console)
-        print_line(console, Text(trade["recommendation"]["sentence"], "green"))
-        print_line(console, f"  {trade['recommendation']['command']}")
-    print_line(console)
+        page.line()
+        page.line(Text(trade["recommendation"]["sentence"], "green"))
+        page.line(f"  {trade['recommendation']['command']}")
+    page.line()
+
+
+def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
+    """Return a table with columns of words to the left and of numbers to the right."""
+    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in words:
+        table.add_column(heading, no_wrap=True)
+    for heading in numbers:
+        table.add_column(heading, justify="right", no_wrap=True)
+    return table
 
 
 def _points_table(trade: Mapping[str, Any]) -> Table:
     rows = [row for row in trade["points"] if row["standing"] != _NOT_RUN]
-    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
     quantities = list(dict.fromkeys(name for row in rows for name in row["max"]))
     errors = [heading for name in quantities for heading in (name, "final")]
     numbers = ("drift", "steps", "evals", "seconds", "spread", "first", "compile")
-    for heading in ("", "setting", "rung"):
-        table.add_column(heading, no_wrap=True)
-    for heading in (*errors, *numbers):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = _table(("", "setting", "rung"), (*errors, *numbers))
     for row in rows:
         mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
@@ -92,12 +94,9 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
 
 
 def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
-    """Seconds of the first solve of all, part by part, and the solve that needs no more of that."""
-    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
-    table.add_column("setting", no_wrap=True)
+    """Return the seconds of the first solve, part by part, and of a solve after it."""
     parts = ("process", "importing", "compiling", "solving", "rest", "whole")
-    for heading in (*parts, "later solves"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = _table(("setting",), (*parts, "later solves"))
     for row in points:
         if row.get("cold"):
             cells = [*(row["cold"][part] for part in parts), row["seconds"]]
@@ -106,7 +105,7 @@ def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def _not_run(points: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
-    """What was not run, by the reason: a whole family by its name, else each setting."""
+    """Return the settings that were not run, by the reason; a whole family by its name."""
     ran = {row["family"] for row in points if row["standing"] != _NOT_RUN}
     found: dict[str, dict[str, None]] = {}
     for row in points:
