@@ -11,7 +11,7 @@ from functools import cache
 from typing import Final
 
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS
-from taylor_verify.scenes.precision import exact_value, nearest, power_of_two
+from taylor_verify.scenes.precision import exact_value, rounded
 from taylor_verify.scenes.reading.table import Table, exact_number, quantity
 from taylor_verify.scenes.tensors import Vector
 
@@ -27,10 +27,11 @@ def rates(table: Table, key: str) -> Vector | None:
 
     Where one entry has a unit, each of the others has one or is 0. A note says what was converted.
     """
-    units = table.units(key)
+    # Each unit once, in the order written.
+    units = dict.fromkeys(unit for _, unit in filter(None, map(quantity, table.peek(key))))
     if not units:
         return table.vector(key)
-    vector = table.converted(key, _in_radians)
+    vector = table.vector(key, number=_in_radians)
     if any(unit in _DEGREES for unit in units):
         table.note(
             f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. "
@@ -42,13 +43,11 @@ def rates(table: Table, key: str) -> Vector | None:
 
 @cache
 def degree() -> Fraction:
-    """pi/180, rounded once to 400 bits."""
+    """Return pi/180, rounded once to 400 bits."""
     from mpmath import mp
 
     with mp.workprec(COEFFICIENT_BITS + _GUARD_BITS):
-        angle = exact_value(+mp.degree)
-    significand, exponent = nearest(angle.numerator, angle.denominator, COEFFICIENT_BITS)
-    return significand * power_of_two(exponent)
+        return rounded(exact_value(+mp.degree), COEFFICIENT_BITS)
 
 
 def _in_radians(value: object) -> Fraction:
