@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
+from math import floor, inf, log10
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -11,16 +12,16 @@ from msgspec import Meta
 
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.json_text import Count, Size, converted, finite, plain, read
-from taylor_verify.records.quantities import COMPLETE
+from taylor_verify.records.quantities import COMPLETE, is_conserved
 from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
-from taylor_verify.records.sentence import Row
+from taylor_verify.records.sentence import sentence
 from taylor_verify.records.status import Status
 
 Study = TypeVar("Study")
 
 
 @dataclass(frozen=True)
-class Verdict(Row):
+class Verdict:
     """One compared quantity of one run.
 
     A number that does not exist, or is not finite, is None. ``bound`` and ``attainable`` hold at the time
@@ -125,6 +126,34 @@ class Verdict(Row):
         Meta(description="Of the run, all its quantities together; in files it stands apart."),
     ] = None
     provenance: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def sentence(self) -> str:
+        """The digits that are right, the kind of error that is left, and since when, in one line."""
+        return sentence(self)
+
+    @property
+    def digits(self) -> int | None:
+        """The decimal digits that are right at every sample, at most those that the rung has.
+
+        None where nothing was compared, where the truth is too wide to tell, and where an error is no
+        finite number. A radian counts as a whole.
+        """
+        if self.verdict is Status.UNDECIDED or self.max is None or not 0 <= self.max < inf:
+            return None
+        # The zeros behind the point, of the error and of the roundoff.
+        found = [max(floor(-log10(size)), 0) for size in (self.max, self.roundoff) if size]
+        return min(found, default=None)
+
+    @property
+    def is_conserved(self) -> bool:
+        """True for the row of a conserved quantity."""
+        return is_conserved(self.quantity)
+
+    @property
+    def is_compared(self) -> bool:
+        """True if a comparison was made: a run that never came to one has no time of an error."""
+        return self.at is not None
 
     @property
     def because(self) -> str:
