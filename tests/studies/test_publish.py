@@ -233,7 +233,7 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     ("text", "fault"),
     [
         ("{", "expected a JSON document"),
-        ("[]", "expected a JSON object, got list"),
+        ("[]", "expected an object, got a list"),
         ("{}", "expected verdicts"),
         ('{"versions": {}, "verdicts": [{"scene": "a"}]}', "expected verdicts"),
     ],
