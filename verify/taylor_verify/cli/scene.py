@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from taylor_verify.cli.answer import PASS, Answer
+from taylor_verify.cli.answer import PASS, Answer, WrongCall
 from taylor_verify.cli.folders import unwritable
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.imported import import_scene
@@ -14,6 +14,8 @@ from taylor_verify.scenes.reading.reader import read
 
 def answer(options: argparse.Namespace) -> Answer:
     """Write a scene from a URDF, SDF or MJCF file, to be read and edited."""
+    if options.source != "from":
+        raise WrongCall(f"expected the word `from`, got {options.source!r} @ scene")
     found = import_scene(Path(options.file), options.link)
     warnings = read(found.text, options.file).warnings
     document = {
