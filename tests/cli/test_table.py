@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from rich.text import Text
 
-from taylor_verify.cli.console import EscapingConsole
-from taylor_verify.cli.table import print_table
+from taylor_verify.cli.console import EscapingConsole, print_table
 
 HEADINGS = (
     *("scene", "rung", "verdict", ">error", ">at t", ">allowed", ">/floor", ">steps", "unit"),

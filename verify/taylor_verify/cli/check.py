@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+
+from rich.text import Text
 
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
-from taylor_verify.cli.answers_text import check_text, files_text
 from taylor_verify.cli.ci import outputs, tell
+from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.inputs import (
     known_rungs,
@@ -20,6 +22,14 @@ from taylor_verify.cli.inputs import (
     require_matplotlib,
 )
 from taylor_verify.cli.progress import working
+from taylor_verify.cli.sentences import (
+    figure,
+    print_arithmetic,
+    print_cause,
+    print_end,
+    print_sentence,
+    status_text,
+)
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import (
     FilesJudgement,
@@ -29,12 +39,18 @@ from taylor_verify.judge.series.files import (
     repeated,
     steps_of,
 )
-from taylor_verify.records.verdict import exit_status
+from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.showing import counts
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
+
+_NUMBERS: Final = (
+    *("quantity", "verdict", ">error", ">at t", ">allowed", ">/floor", ">since t", "unit"),
+)
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -55,10 +71,10 @@ def answer(options: argparse.Namespace) -> Answer:
     text: Callable[[], str]
     if isinstance(judged, FileJudgement):
         said = (scene.name, options.rung, to_ci.stated_status, options.explain)
-        text = partial(check_text, judged, *said)
+        text = partial(_text_of_one, judged, *said)
     else:
         messages += _drawn(judged, picture)
-        text = partial(files_text, judged, scene.name, options.rung)
+        text = partial(_text_of_several, judged, scene.name, options.rung)
     return Answer(to_ci.status, document, to_ci.closing(text), messages)
 
 
@@ -146,3 +162,127 @@ def _drawn(judged: FilesJudgement, path: Path | None) -> list[str]:
     verdict = judged.verdicts[0]
     save_as(order.picture(f"{verdict.scene} on {verdict.rung}", judged.order), path)
     return [f"wrote {path}"]
+
+
+# The text about a file.
+
+
+def _text_of_one(
+    judged: FileJudgement, scene: str, rung: str, status: int | None, explained: bool = False
+) -> str:
+    """Return the sentence for each quantity, the likely causes, the numbers, and the counts.
+
+    The conventions of the file come first. With ``explained`` the arithmetic of the bounds is there too.
+    """
+    page = Page()
+    times = judged.file.times
+    extent = f"{len(times)} row{'s' * (len(times) > 1)}"
+    span = f"from t = {float(times[0]):g} to t = {float(times[-1]):g}"
+    page.line(bold(judged.file.name), f": {extent} {span}")
+    page.line(f"judged as an answer to {scene} in {rung} arithmetic")
+    _print_conventions(page, judged)
+    page.line()
+    for verdict in judged.verdicts:
+        print_sentence(page, verdict)
+    for cause in judged.causes:
+        print_cause(page, cause)
+    for note in judged.notes:
+        page.line(Text("note", "yellow"), f": {note}")
+    page.line()
+    if any(verdict.is_compared for verdict in judged.verdicts):
+        _print_numbers(page, judged.verdicts)
+        page.line()
+        if explained:
+            print_arithmetic(page, judged.verdicts)
+            page.line()
+    print_end(page, judged.verdicts, counts(judged.verdicts), status, explained)
+    return page.text()
+
+
+def _print_conventions(page: Page, judged: FileJudgement) -> None:
+    if not judged.conventions:
+        return
+    is_certain = any(finding.is_certain for finding in judged.conventions)
+    if not is_certain:
+        how = " in a way that this motion cannot tell"
+    else:
+        how = ", and was corrected" if judged.accepted else ", and was judged as it stands"
+    page.line()
+    page.line(bold(f"the file departs from the scene's conventions{how}", "yellow"))
+    page.indented("  ", *(finding.sentence for finding in judged.conventions))
+    if is_certain and not judged.accepted:
+        page.line("  (--accept-conventions corrects this and judges the rest)")
+
+
+def _print_numbers(page: Page, verdicts: Sequence[Verdict]) -> None:
+    """Print the numbers of all quantities, and what stands in the columns."""
+    print_table(page.console, _NUMBERS, [_cells(verdict) for verdict in verdicts], keys=1)
+    page.line()
+    by_tolerance = any(verdict.tolerance is not None for verdict in verdicts)
+    asked = "the tolerance that was asked for, where there is one; else " if by_tolerance else ""
+    allowed = f"{asked}{GATE_FACTOR} times the roundoff floor, which perfect rounding would leave"
+    page.indented("", f"allowed: {allowed}; /floor: the largest error over that floor")
+
+
+def _cells(v: Verdict) -> list[str | Text]:
+    since = "" if v.since is None else figure(v.since)
+    numbers = (v.max, v.at, v.bound, v.ratio)
+    figures = [figure(number) if v.is_compared else "" for number in numbers]
+    return [v.quantity, status_text(v.verdict.value), *figures, since, v.unit]
+
+
+# The text about several files.
+
+
+def _text_of_several(judged: FilesJudgement, scene: str, rung: str) -> str:
+    """Return the order of each quantity, a line for each file, and what is peculiar to a file."""
+    page = Page()
+    page.line(
+        bold(f"{len(judged.files)} files"), f": judged as answers to {scene} in {rung} arithmetic"
+    )
+    page.indented("  ", *(order.sentence for order in judged.order))
+    first, *others = judged.files
+    common = [note for note in first.notes if all(note in one.notes for one in others)]
+    for note in (*judged.notes, *common):
+        page.line(Text("note", "yellow"), f"  {note}")
+    page.line()
+    _print_files(page, judged)
+    for one in judged.files:
+        _print_peculiar(page, one, common)
+    page.line(f"\n{counts(judged.verdicts)}; `check` of one file alone says the reasons")
+    return page.text()
+
+
+def _print_files(page: Page, judged: FilesJudgement) -> None:
+    """Print the largest error of each state quantity in each file, the largest step first."""
+    compared = {v.quantity for v in judged.verdicts if v.is_compared}
+    states = [name for name in STATES if name in compared]
+    headings = ["file", ">step", ">rows", *(f">{name}" for name in states), "verdicts"]
+    pairs = zip(judged.files, judged.steps, strict=True)
+    rows = []
+    for one, step in sorted(pairs, key=lambda pair: -pair[1].value if pair[1] else 0.0):
+        errors = {v.quantity: v.max for v in one.verdicts if v.is_compared}
+        begin = [one.file.name, f"{step.value:g}" if step else "", str(len(one.file.times))]
+        rows.append([*begin, *(figure(errors.get(name)) for name in states), counts(one.verdicts)])
+    print_table(page.console, headings, rows, keys=1)
+
+
+def _print_peculiar(page: Page, one: FileJudgement, common: Sequence[str]) -> None:
+    lines = [line for line in _peculiar(one) if line not in common]
+    if lines:
+        page.line()
+        page.line(bold(one.file.name))
+        page.indented("  ", *lines)
+
+
+def _peculiar(one: FileJudgement) -> Iterator[str]:
+    """Return the conventions, the causes and the notes of a file, and why something was not compared."""
+    for finding in one.conventions:
+        yield finding.sentence
+    for cause in one.causes:
+        yield cause.line
+    yield from one.notes
+    for verdict in one.verdicts:
+        if not verdict.is_compared:
+            status = status_text(verdict.verdict.value).plain
+            yield f"{status}: {verdict.quantity}: {verdict.because}"

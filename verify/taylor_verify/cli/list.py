@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 from taylor_verify.cli.answer import PASS, Answer
-from taylor_verify.cli.scene_text import names_text
+from taylor_verify.cli.console import Page, bold
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes.library import EXTREMES, GUIDE, WORST, names
 from taylor_verify.scenes.reading.reader import load
@@ -26,5 +27,22 @@ def answer(options: argparse.Namespace) -> Answer:
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    text = partial(names_text, found, {**titles, **remarks(), **formats}, GUIDE)
+    text = partial(_text, found, {**titles, **remarks(), **formats}, GUIDE)
     return Answer(PASS, {**found, "guide": dict(GUIDE)}, text)
+
+
+def _text(
+    found: Mapping[str, Sequence[str]], titles: Mapping[str, str], guide: Mapping[str, str]
+) -> str:
+    """Return everything that has a name, and first which scene tells what."""
+    page = Page()
+    page.line(bold("which scene tells what"))
+    guide_width = max(map(len, guide), default=0)
+    for name, purpose in guide.items():
+        page.line(f"  {name:{guide_width}}  {purpose}")
+    width = max(map(len, titles), default=0)
+    for heading, entries in found.items():
+        page.line(bold(heading))
+        for entry in entries:
+            page.line(f"  {entry:{width}}  {titles.get(entry, '')}".rstrip())
+    return page.text()

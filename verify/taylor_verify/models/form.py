@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from taylor_verify.models.algebra import ABSENT, is_absent
 from taylor_verify.models.frame import attitude_rate, centre_rate
@@ -40,15 +40,6 @@ class Named(dict[str, Any]):
 Equations = Callable[[Named], Mapping[str, Any]]
 
 
-@runtime_checkable
-class Abbreviated(Protocol):
-    """Equations that are too long to be read as they are, and have names for parts of themselves."""
-
-    def lines(self, n: Named) -> Mapping[str, Any]:
-        """What to write for each name on a left side, a rate (``H1'``) or a part (``M1``)."""
-        ...
-
-
 @dataclass(frozen=True)
 class Form:
     """Equations together with the names of the states and parameters that enter them.
@@ -70,9 +61,10 @@ class Form:
     def text(self) -> tuple[str, ...]:
         """Return the equations as they are built, a line for each state: what is absent is not there.
 
-        Where they are abbreviated there is a line for each of the parts as well.
+        Equations that are too long to be read as they are have a method ``lines`` with names for parts of
+        themselves: what to write for each rate (``H1'``) and each part (``M1``).
         """
-        if isinstance(self.equations, Abbreviated):
+        if hasattr(self.equations, "lines"):
             names = self.states + self.parameters
             lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
             return tuple(f"{name} = {value}" for name, value in lines.items())

@@ -69,9 +69,8 @@ def _is_positive(
 
     Sylvester: all its leading minors are positive.
     """
-    for size in range(1, len(matrix) + 1):
-        leading = tuple(row[:size] for row in matrix[:size])
-        if not tensors.is_positive_definite(leading):
+    for size, minor in enumerate(tensors.leading_minors(matrix), 1):
+        if minor <= 0:
             got = f"one whose leading {size}x{size} minor is not positive"
             table.fault(expected, got, key, mend)
             return False

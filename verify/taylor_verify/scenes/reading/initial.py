@@ -3,24 +3,34 @@
 Legend: ``linear_impulse`` x and ``angular_impulse`` y, or ``linear_velocity`` U of the origin and
 ``angular_velocity`` Omega in their place; ``attitude`` is the quaternion of R, v_space = R v_body;
 ``centre`` is the body's origin in space.
+
+A degree is pi/180 of a radian, which is irrational. It is rounded once to 400 bits, and each rate is
+an exact multiple of that one rational: zero stays zero, and 2 deg/s is minus twice -1 deg/s exactly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
 from typing import Final
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import COEFFICIENT_BITS, Body, ImmersedBody
 from taylor_verify.scenes.motion import IDENTITY, State
 from taylor_verify.scenes.parts import Shape, Value
+from taylor_verify.scenes.precision import exact_value, rounded
 from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.reading.rates import rates
-from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.reading.table import Table, exact_number, quantity
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 IMPULSES: Final = ("linear_impulse", "angular_impulse")
 VELOCITIES: Final = ("linear_velocity", "angular_velocity")
+_RADIANS: Final = "rad/s"
+# A turn a minute is 360 degrees in 60 seconds.
+_DEGREES: Final = {"deg/s": 1, "rpm": 6}
+_UNITS: Final = f"{_RADIANS}, {' or '.join(_DEGREES)}"
+_GUARD_BITS: Final = 40
 
 
 def state(
@@ -49,7 +59,7 @@ def place(table: Table, kind: type[State]) -> Mapping[str, Value] | None:
 def turning(table: Table, body: Body | None) -> Vector | None:
     """Return omega of a rigid body, whatever the body; None beside a fault."""
     del body
-    return rates(table, "omega")
+    return _rates(table, "omega")
 
 
 def impulses(table: Table, body: Body | None) -> Vector | None:
@@ -72,7 +82,7 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
             expected = f"both `{VELOCITIES[0]}` and `{VELOCITIES[1]}`"
             table.fault(expected, f"`{by_velocity[0]}` alone", key, f"add the key `{key}`")
     velocity = table.vector(VELOCITIES[0]) if VELOCITIES[0] in by_velocity else None
-    spin = rates(table, VELOCITIES[1]) if VELOCITIES[1] in by_velocity else None
+    spin = _rates(table, VELOCITIES[1]) if VELOCITIES[1] in by_velocity else None
     if velocity is None or spin is None or not isinstance(body, ImmersedBody):
         return None
     shape = f", of coefficients rounded to {COEFFICIENT_BITS} bits" if body.ellipsoid else ""
@@ -94,3 +104,49 @@ def _attitude(table: Table) -> Vector | None:
         table.fault("a quaternion that is not zero", shown(list(entries)), "attitude")
         return None
     return entries
+
+
+# Angular velocities: bare numbers, or text with a unit such as "2 deg/s".
+
+
+def _rates(table: Table, key: str) -> Vector | None:
+    """Return an angular velocity in radians per unit of time; None beside a fault.
+
+    Where one entry has a unit, each of the others has one or is 0. A note says what was converted.
+    """
+    # Each unit once, in the order written.
+    units = dict.fromkeys(unit for _, unit in filter(None, map(quantity, table.peek(key))))
+    if not units:
+        return table.vector(key)
+    vector = table.vector(key, number=_in_radians)
+    if any(unit in _DEGREES for unit in units):
+        table.note(
+            f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. "
+            f"pi/180 is rounded to {COEFFICIENT_BITS} bits (120 digits), and each component is an exact "
+            "multiple of that rational: ratios of components are those written."
+        )
+    return vector
+
+
+@cache
+def degree() -> Fraction:
+    """Return pi/180, rounded once to 400 bits."""
+    from mpmath import mp
+
+    with mp.workprec(COEFFICIENT_BITS + _GUARD_BITS):
+        return rounded(exact_value(+mp.degree), COEFFICIENT_BITS)
+
+
+def _in_radians(value: object) -> Fraction:
+    parts = quantity(value)
+    if parts is None:
+        number = exact_number(value)
+        if number:
+            raise ValueError(f"a unit, as its neighbours have one ({_UNITS})")
+        return number
+    text, unit = parts
+    if unit == _RADIANS:
+        return exact_number(text)
+    if unit in _DEGREES:
+        return exact_number(text) * _DEGREES[unit] * degree()
+    raise ValueError(f"an angular velocity in {_UNITS}")
