@@ -19,7 +19,7 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.cli.tradeoff_text import tradeoff_text
+from taylor_verify.cli.tradeoff import tradeoff_text
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.precision import Rung, rung

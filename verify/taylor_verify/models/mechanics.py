@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar, Generic, TypeVar
 
@@ -23,7 +23,7 @@ from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Part, Shape, Value
 from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
+from taylor_verify.scenes.tensors import Matrix, Vector
 
 B = TypeVar("B", bound=Body)
 S = TypeVar("S", bound=State)
@@ -46,37 +46,26 @@ def components(letter: Part, value: Value) -> dict[str, Fraction]:
 
 @dataclass(frozen=True)
 class Change:
-    """The momenta by the moving part of a state, z: matrix z + shift; z itself without a matrix."""
+    """The momenta by the moving part of a state, z: matrix z, or z itself without a matrix."""
 
     matrix: Matrix | None = None
     inverse: Matrix = ()
-    shift: Vector = ZERO_VECTOR
 
     def momentum(self, moving: Vector) -> Vector:
         """Return the momenta, one after the other."""
-        if self.matrix is None:
-            return moving
-        return tensors.plus(tensors.apply(self.matrix, moving), self.shift)
+        return moving if self.matrix is None else tensors.apply(self.matrix, moving)
 
     def moving(self, momentum: Vector) -> Vector:
         """Return the moving part of the state that has these momenta."""
-        if self.matrix is None:
-            return momentum
-        return tensors.apply(self.inverse, tensors.minus(momentum, self.shift))
+        return momentum if self.matrix is None else tensors.apply(self.inverse, momentum)
 
     def motion_of_momenta(self, motion: Manufactured) -> Manufactured:
         """Return the motion of the momenta, of one of the state."""
-        if self.matrix is None:
-            return motion
-        mapped = motion.mapped(self.matrix)
-        return replace(mapped, constant=tensors.plus(mapped.constant, self.shift))
+        return motion if self.matrix is None else motion.mapped(self.matrix)
 
     def motion_of_state(self, motion: Manufactured) -> Manufactured:
         """Return the motion of the state, of one of the momenta."""
-        if self.matrix is None:
-            return motion
-        constant = tensors.minus(motion.constant, self.shift)
-        return replace(motion, constant=constant).mapped(self.inverse)
+        return motion if self.matrix is None else motion.mapped(self.inverse)
 
 
 class Mechanics(ABC, Generic[B, S]):
