@@ -105,9 +105,9 @@ def _washboard(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
 
 def _circle(spin: LoadedSpin) -> list[Element]:
     """Of the one motion under a moment that recurs: the spin is constant, the rest turns evenly."""
-    if spin.regime is not MomentRegime.TRANSVERSE or not spin.turning:
+    if spin.regime is not MomentRegime.TRANSVERSE or not spin.free.turning:
         return []
-    rate = mp.convert(abs(spin.turning)) / mp.sqrt(mp.convert(spin.axis_squared))
+    rate = mp.convert(abs(spin.free.turning)) / mp.sqrt(mp.convert(spin.free.axis_squared))
     body = "(Js - Jd)(e.omega)/Jd"
     return [
         Element("period", 2 * mp.pi / rate, "time", "omega recurs in body axes", body),

@@ -1,0 +1,143 @@
+"""The motion of a rigid body by either route: omega in body axes, and R from an attitude at the start.
+
+A course is one motion that is set up at one precision, and good only there. It is kept for the times that
+are asked for next: working precisions are multiples of a step, so that calls share their courses.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final, Protocol, final
+
+import numpy as np
+from flint import arb, ctx
+from mpmath import mp, mpf
+
+from taylor_verify.exact.balls import Enclosed, Enclosure
+from taylor_verify.exact.euler import quaternion
+from taylor_verify.exact.euler.quaternion import Quaternion
+from taylor_verify.exact.frames import Frame, product, start_frame
+from taylor_verify.exact.rotation import product as multiplied
+from taylor_verify.exact.rotation import rotation_rows
+from taylor_verify.exact.solution import Quantities, Settled
+from taylor_verify.scenes import motion
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.precision import floor_log2
+
+_STEP_BITS: Final = 32
+# Less than SETTLING_STEP_DIGITS: two evaluations that are compared never share a course.
+_STEP_DIGITS: Final = 10
+
+
+class CourseBalls(Protocol):
+    """A course at a precision of flint."""
+
+    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
+        """omega, and the turn since the start as a unit quaternion in body axes, empty unless asked for.
+
+        The quaternion is 1 at the start, and its sign never jumps.
+        """
+        ...
+
+
+@final
+class RotationBalls(Enclosed):
+    """omega(t) and R(t) in balls; ``answer`` is what an attitude is told as, and how."""
+
+    def __init__(
+        self,
+        regime: str,
+        course: Callable[[], CourseBalls],
+        attitude: motion.Quaternion | None = None,
+        by_quadrature: bool = False,
+        answer: tuple[str, Callable[[Quaternion], Any]] = ("attitude", rotation_rows),
+    ) -> None:
+        self.regime, self.by_quadrature = regime, by_quadrature
+        self._course, self._attitude, self._answer = course, attitude, answer
+        self._courses: dict[int, CourseBalls] = {}
+
+    def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
+        """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
+        with ctx.workprec(-(-bits // _STEP_BITS) * _STEP_BITS):
+            course = self.course()
+            if self._attitude is None:
+                return {"omega": [course.at(t, False)[0] for t in elapsed]}
+            start, (name, told) = quaternion.unit(self._attitude), self._answer
+            rows = [course.at(t, True) for t in elapsed]
+            return {
+                "omega": [omega for omega, _ in rows],
+                name: [told(multiplied(start, turn)) for _, turn in rows],
+            }
+
+    def course(self) -> CourseBalls:
+        """The course at the ambient precision of flint."""
+        if ctx.prec not in self._courses:
+            self._courses[ctx.prec] = self._course()
+        return self._courses[ctx.prec]
+
+    def quaternion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """``quaternion`` (n, 4) for ``attitude``: scalar first, of unit length, with a proven radius.
+
+        It starts as the scene's own over its norm; its sign follows the motion without a jump.
+        """
+        answer = "quaternion", list
+        other = RotationBalls(self.regime, self._course, self._attitude, answer=answer)
+        return other.motion(elapsed, digits)
+
+
+class CourseFloats(Protocol):
+    """A course at a precision of mpmath."""
+
+    def at(self, t: Fraction, turned: bool) -> tuple[Sequence[mpf], Frame]:
+        """omega, and the rotation since the start in body axes, empty unless asked for."""
+        ...
+
+
+@final
+class Rotation(Settled):
+    """omega(t) and R(t) in mpmath.
+
+    ``lost`` bounds the decimal digits that a course loses up to a time, its attitude included or not.
+    """
+
+    route = "mpmath"
+
+    def __init__(
+        self,
+        regime: str,
+        course: Callable[[], CourseFloats],
+        lost: Callable[[Fraction, bool], float],
+        attitude: motion.Quaternion | None = None,
+        by_quadrature: bool = False,
+    ) -> None:
+        self.regime, self.by_quadrature = regime, by_quadrature
+        self._course, self._lost, self._attitude = course, lost, attitude
+        self._courses: dict[int, CourseFloats] = {}
+
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """``omega`` (n, 3) and ``attitude`` (n, 3, 3), to about ``digits`` significant digits."""
+        attitude, longest = self._attitude, max(map(abs, elapsed), default=Fraction(0))
+        lost = self._lost(longest, attitude is not None)
+        working = math.ceil((digits + lost) / _STEP_DIGITS) * _STEP_DIGITS
+        with mp.workdps(working):
+            if working not in self._courses:
+                self._courses[working] = self._course()
+            rows = [self._courses[working].at(t, attitude is not None) for t in elapsed]
+            found: Mapping[str, np.ndarray[Any, Any]] = {"omega": _array([w for w, _ in rows], 3)}
+            if attitude is not None:
+                start = start_frame(attitude)
+                frames = [product(start, turn) for _, turn in rows]
+                found = {**found, "attitude": _array(frames, 3, 3)}
+        with mp.workdps(digits):
+            return {name: +values for name, values in found.items()}
+
+
+def decades(ratio: Fraction) -> float:
+    """An upper bound of log10(ratio), for a positive ratio of any size."""
+    return (floor_log2(ratio) + 1) * math.log10(2)
+
+
+def _array(rows: Sequence[Any], *shape: int) -> np.ndarray[Any, Any]:
+    return np.array(rows, dtype=object).reshape(-1, *shape)
