@@ -7,7 +7,7 @@ sign, a branch) when the balls exclude the other answer; until then the precisio
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import ceil, log2
@@ -163,7 +163,7 @@ def ball(value: Fraction | int) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def balls(vector: Sequence[Fraction]) -> list[arb]:
+def balls(vector: Iterable[Fraction]) -> list[arb]:
     return [ball(entry) for entry in vector]
 
 

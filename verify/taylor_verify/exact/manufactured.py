@@ -19,9 +19,11 @@ from fractions import Fraction
 from typing import Any, Final, final
 
 import numpy as np
+from flint import arb_mat
 from mpmath import libmp, mp, mpf
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.balls import Enclosed, Enclosure, balls
+from taylor_verify.exact.clocks import balls_at, swing
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.solution import NoClosedForm, Quantities, Settled
 from taylor_verify.scenes.manufactured import Manufactured
@@ -71,16 +73,9 @@ class EnclosedPolynomial(Enclosed):
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         del bits  # set already
-        constant = balls(self.polynomial.constant)
-        waves = [(w.frequency, balls(w.cosine), balls(w.sine)) for w in self.polynomial.waves]
-        rows = []
-        for t in elapsed:
-            row = list(constant)
-            for frequency, cosine, sine in waves:
-                s, c = ball(frequency * t).sin_cos()
-                row = [z + a * c + b * s for z, a, b in zip(row, cosine, sine, strict=True)]
-            rows.append(row)
-        return _parts(self.scene, rows)
+        coefficients = arb_mat([balls(row) for row in swing(self.polynomial)[0]])
+        clocks = ([[c] for c in balls_at(self.polynomial, t)] for t in elapsed)
+        return _parts(self.scene, [(coefficients * arb_mat(w)).entries() for w in clocks])
 
 
 @final

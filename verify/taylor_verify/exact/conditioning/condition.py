@@ -22,8 +22,9 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
-from taylor_verify.exact.conditioning.flow import Floats, Flow, Steps, products
+from taylor_verify.exact.conditioning.flow import Flow, Steps, products
 from taylor_verify.exact.conditioning.inputs import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
@@ -113,7 +114,7 @@ class Path:
         places = {name: self._place(name) for name in self.blocks}
         columns = self._since(since)[:, :, places[into]]
         if out == "omega" and "momentum" in places:
-            rows = self.flow.omega @ columns[:, places["momentum"]]
+            rows = self.flow.equations.spin @ columns[:, places["momentum"]]
         else:
             rows = columns[:, places[out]]
         return _ldexp(_spectral_norms(rows), self.units[out] / self.units[into])
@@ -148,7 +149,7 @@ class Path:
     def _sizes(self, factor: Floats) -> dict[str, float]:
         names = {name: factor[self._place(name)] for name in self.blocks}
         if "momentum" in names:
-            names["omega"] = self.flow.omega @ names["momentum"]
+            names["omega"] = self.flow.equations.spin @ names["momentum"]
         sizes = {name: float(np.linalg.norm(rows)) for name, rows in names.items()}
         return {name: size if size == size else np.inf for name, size in sizes.items()}
 

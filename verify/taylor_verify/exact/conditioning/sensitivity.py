@@ -243,13 +243,14 @@ def _places(motion: Quantities) -> list[str]:
 
 def _flow(scene: Scene, motion: Quantities) -> dict[str, Array]:
     """The right-hand sides of the equations of motion, R omega for the turning, and R U."""
-    system = posed_exactly(scene)
+    equations = posed_exactly(scene).equations
     moving = [name for name in motion if name not in ("attitude", "centre")]
     z = np.concatenate([motion[name] for name in moving], axis=1)
     products = (z[:, :, None] * z[:, None, :]).reshape(len(z), -1)
-    rate = real((system.constant,)) + products @ real(system.forms.hessian).T / 2
+    hessian = equations.hessian.reshape(len(equations.hessian), -1)
+    rate = real([equations.constant]) + products @ real(hessian).T / 2
     found = {name: rate[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
-    for name, form in (("attitude", system.forms.spin), ("centre", system.forms.velocity)):
+    for name, form in (("attitude", equations.spin), ("centre", equations.velocity)):
         if name in motion:
             found[name] = turned(motion["attitude"], z @ real(form).T)
     return found

@@ -18,8 +18,8 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact import clocks
+from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import (
-    Floats,
     Flow,
     Steps,
     applied,
@@ -110,7 +110,7 @@ def _steps(flow: Flow, samples: _Samples, times: Floats) -> Floats | None:
     reached = _followed(flow, arcs, np.diff(times))
     if reached is None or not _arrive(reached, samples.momentum[1:]):
         return None
-    d = len(flow.constant)
+    d = len(flow.equations.constant)
     steps = np.tile(np.eye(d + 6), (len(times) - 1, 1, 1))
     parts = (reached.by_momentum, reached.turn, reached.shift)
     steps[:, :, :d] = np.concatenate(parts, axis=1)
@@ -202,16 +202,16 @@ def _step(flow: Flow, at: _Arcs, h: Floats) -> _Arcs:
 
 def _rates(flow: Flow, at: _Arcs) -> _Arcs:
     jacobian, R = flow.jacobian(at.momentum), at.attitude
-    turn = R @ (flow.omega @ at.by_momentum)
-    if flow.velocity is None:
+    turn = R @ (flow.equations.spin @ at.by_momentum)
+    if not len(flow.equations.velocity):
         shift = np.zeros_like(turn)
     else:
-        speed = applied(R, at.momentum @ flow.velocity.T)
-        shift = R @ (flow.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
+        speed = applied(R, at.momentum @ flow.equations.velocity.T)
+        shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
-        clock=at.clock @ flow.swing.turning.T,
+        clock=at.clock @ flow.turning.T,
         momentum=flow.load(at.clock) + applied(jacobian, at.momentum) / 2,
-        attitude=R @ cross_matrices(at.momentum @ flow.omega.T),
+        attitude=R @ cross_matrices(at.momentum @ flow.equations.spin.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,
         shift=shift,

@@ -14,7 +14,7 @@ from typing import Final
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.enclosure.series import Series, value
-from taylor_verify.exact.enclosure.system import Balls, Bounds, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
     Tube,
@@ -80,7 +80,7 @@ class Flow:
 
 
 def flow(
-    system: Balls, bounds: Bounds, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
+    system: Balls, bounds: Balls, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
 ) -> Flow:
     """The derivative of the state by the one at the beginning, for every path within the tube.
 
@@ -93,7 +93,7 @@ def flow(
 
 
 def flow_defect(
-    bounds: Bounds, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
+    bounds: Balls, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
 ) -> arb_mat:
     """A bound of how far V may be from its polynomial: what that leaves out, accumulated in the tube."""
     order = len(terms) - 1

@@ -23,7 +23,7 @@ from taylor_verify.exact.enclosure.series import (
     state_series,
     value,
 )
-from taylor_verify.exact.enclosure.system import Balls, Bounds, System, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, System, column, magnitudes
 from taylor_verify.exact.enclosure.tube import (
     BOUND_BITS,
     StepTooLong,
@@ -111,7 +111,7 @@ class Course:
 
     system: System
     balls: Balls
-    bounds: Bounds
+    bounds: Balls
     start: Sequence[arb]
     place: Place | None
     bits: int
@@ -126,7 +126,7 @@ class Course:
         """The course of a system, at the ambient precision of ``bits`` bits."""
         held = Balls.of(system)
         with ctx.workprec(BOUND_BITS):
-            bounds = Bounds.of(held)
+            bounds = held.magnitudes()
         return cls(system, held, bounds, start, place, bits, most_bits)
 
     @property

@@ -35,7 +35,7 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box, Flow
 from taylor_verify.exact.enclosure.series import Series, value
-from taylor_verify.exact.enclosure.system import Balls, Bounds, column, magnitudes
+from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.scenes.tensors import Matrix, Vector
 
@@ -121,7 +121,7 @@ class Leg:
 
 def leg(
     system: Balls,
-    bounds: Bounds,
+    bounds: Balls,
     state: Series,
     frame: Series,
     h: arb,
@@ -138,8 +138,7 @@ def leg(
         left_out = _left_out([norm(row[:4]) for row in frame], spins) * size
         turn_error = ((left_out + turned) / 2).abs_upper()
         path_error = arb(0)
-        if system.velocity is not None and len(frame[0]) > 4:
-            assert bounds.velocity is not None
+        if len(frame[0]) > 4:
             ways = [norm(row[4:]) for row in frame]
             path_error = _left_out(ways, spins) * size + turned * sum(ways, arb(0))
             path_error += norm((system.velocity * column(state[-1])).entries()) * size
