@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -28,6 +28,15 @@ class Element:
     meaning: str
     source: str = ""
     size: mpf | int = 0
+
+
+def described(table: str, values: Iterable[mpf]) -> list[Element]:
+    """The values with a row each of ``name :: unit :: meaning :: formula``; no unit for a pure number."""
+    rows = (row.split("::") for row in table.strip().splitlines())
+    return [
+        Element(name.strip(), value, unit.strip(), meaning.strip(), formula.strip())
+        for (name, unit, meaning, formula), value in zip(rows, values, strict=True)
+    ]
 
 
 @dataclass(frozen=True)
