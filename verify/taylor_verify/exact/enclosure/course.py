@@ -189,7 +189,7 @@ class Course:
         state = within(box, step.state, step.tube, step.flow, s)
         if place is None or step.leg is None:
             return Row(state, [], None, largest)
-        turn, centre = step.leg.within(place, s)
+        turn, centre = step.leg.place(place, s).balls()
         return Row(state, turn, centre, largest)
 
     # One step.
