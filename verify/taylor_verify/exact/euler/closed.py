@@ -10,10 +10,17 @@ from collections.abc import Callable
 from taylor_verify.exact.euler.moments.regime import LoadedSpin
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.solution import NoClosedForm, Solution
-from taylor_verify.scenes.motion import Quaternion
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
+
+
+def top(scene: Scene) -> tuple[RigidBody, Spin]:
+    """Return a scene's rigid body and its spin; raises TypeError for another model."""
+    if isinstance(scene.body, RigidBody) and isinstance(scene.initial, Spin):
+        return scene.body, scene.initial
+    raise TypeError(f"expected a scene of the model euler, got {scene.model} @ {scene.name}")
 
 
 def enclosed(scene: Scene) -> Solution:

@@ -14,10 +14,12 @@ from typing import Final
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, described, settled
+from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
+from taylor_verify.exact.euler.moments.washboard.board import Washboard
+from taylor_verify.exact.euler.moments.washboard.elements import elements as washboard
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.euler.top import top
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes import tensors
@@ -82,7 +84,7 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Under a constant moment T' = M.omega and nothing of the free orbit is left."""
     try:
         if FreeSpin(body.inertia, omega).discriminant:
-            return _washboard(body, omega, digits)
+            return washboard(Washboard(body.inertia, body.moment, omega), digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
         story = (
@@ -92,14 +94,6 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
         return Elements(NO_CLOSED_FORM, (), (story, _WORK))
     found = settled(lambda _: _circle(spin), digits)
     return Elements(spin.regime.value, found, (_LOADED_STORY[spin.regime], _WORK))
-
-
-def _washboard(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
-    """Three different moments; raises NoClosedForm where M is along none of their axes."""
-    from taylor_verify.exact.euler.moments.washboard.board import Washboard
-    from taylor_verify.exact.euler.moments.washboard.elements import elements
-
-    return elements(Washboard(body.inertia, body.moment, omega), digits)
 
 
 # The numbers of each regime, at the ambient precision.

@@ -9,7 +9,7 @@ from taylor_verify.exact.euler.attitude import Triaxial
 from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisFloats
 from taylor_verify.exact.euler.orbit import Precession
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import CourseFloats, Rotation, decades
+from taylor_verify.exact.euler.rotations import Course, Rotation, decades
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Quaternion
 
@@ -20,7 +20,7 @@ _OWN_GUARD_DIGITS: Final = 8
 def free_rotation(spin: FreeSpin, attitude: Quaternion | None = None) -> Rotation:
     """The torque-free motion of any rigid body, and R from an attitude at the start."""
 
-    def course() -> CourseFloats:
+    def course() -> Course:
         if spin.regime in CONSTANT:
             return FixedAxisFloats(spin.omega)
         return Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Triaxial(spin)

@@ -12,13 +12,13 @@ from fractions import Fraction
 from typing import Any, Final, Protocol, final
 
 import numpy as np
-from flint import arb, ctx
-from mpmath import mp, mpf
+from flint import ctx
+from mpmath import mp
 
 from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.quaternion import Quaternion
-from taylor_verify.exact.frames import Frame, product, start_frame
+from taylor_verify.exact.frames import product, start_frame
 from taylor_verify.exact.rotation import product as multiplied
 from taylor_verify.exact.rotation import rotation_rows
 from taylor_verify.exact.solution import Quantities, Settled
@@ -31,13 +31,14 @@ _STEP_BITS: Final = 32
 _STEP_DIGITS: Final = 10
 
 
-class CourseBalls(Protocol):
-    """A course at a precision of flint."""
+class Course(Protocol):
+    """A motion at one precision: numbers of flint, or of mpmath."""
 
-    def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
-        """omega, and the turn since the start as a unit quaternion in body axes, empty unless asked for.
+    def at(self, t: Fraction, turned: bool) -> tuple[list[Any], list[Any]]:
+        """omega, and the turn since the start in body axes, empty unless it is asked for.
 
-        The quaternion is 1 at the start, and its sign never jumps.
+        The turn is a unit quaternion in balls, which is 1 at the start and whose sign never jumps; or the
+        rows of a rotation matrix in mpmath.
         """
         ...
 
@@ -49,14 +50,14 @@ class RotationBalls(Enclosed):
     def __init__(
         self,
         regime: str,
-        course: Callable[[], CourseBalls],
+        course: Callable[[], Course],
         attitude: motion.Quaternion | None = None,
         by_quadrature: bool = False,
         answer: tuple[str, Callable[[Quaternion], Any]] = ("attitude", rotation_rows),
     ) -> None:
         self.regime, self.by_quadrature = regime, by_quadrature
         self._course, self._attitude, self._answer = course, attitude, answer
-        self._courses: dict[int, CourseBalls] = {}
+        self._courses: dict[int, Course] = {}
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
@@ -71,7 +72,7 @@ class RotationBalls(Enclosed):
                 name: [told(multiplied(start, turn)) for _, turn in rows],
             }
 
-    def course(self) -> CourseBalls:
+    def course(self) -> Course:
         """The course at the ambient precision of flint."""
         if ctx.prec not in self._courses:
             self._courses[ctx.prec] = self._course()
@@ -87,14 +88,6 @@ class RotationBalls(Enclosed):
         return other.motion(elapsed, digits)
 
 
-class CourseFloats(Protocol):
-    """A course at a precision of mpmath."""
-
-    def at(self, t: Fraction, turned: bool) -> tuple[Sequence[mpf], Frame]:
-        """omega, and the rotation since the start in body axes, empty unless asked for."""
-        ...
-
-
 @final
 class Rotation(Settled):
     """omega(t) and R(t) in mpmath.
@@ -107,14 +100,14 @@ class Rotation(Settled):
     def __init__(
         self,
         regime: str,
-        course: Callable[[], CourseFloats],
+        course: Callable[[], Course],
         lost: Callable[[Fraction, bool], float],
         attitude: motion.Quaternion | None = None,
         by_quadrature: bool = False,
     ) -> None:
         self.regime, self.by_quadrature = regime, by_quadrature
         self._course, self._lost, self._attitude = course, lost, attitude
-        self._courses: dict[int, CourseFloats] = {}
+        self._courses: dict[int, Course] = {}
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """``omega`` (n, 3) and ``attitude`` (n, 3, 3), to about ``digits`` significant digits."""

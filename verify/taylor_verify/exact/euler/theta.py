@@ -15,7 +15,7 @@ from taylor_verify.exact.euler import quaternion
 from taylor_verify.exact.euler.fixed_axis import FixedAxisBalls
 from taylor_verify.exact.euler.quaternion import Quaternion
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import CourseBalls, RotationBalls
+from taylor_verify.exact.euler.rotations import Course, RotationBalls
 from taylor_verify.exact.euler.tumbling import Tumbling
 from taylor_verify.exact.rotation import product
 from taylor_verify.scenes import motion, tensors
@@ -26,7 +26,7 @@ def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> 
     return RotationBalls(spin.regime.value, lambda: _course(spin), attitude)
 
 
-def _course(spin: FreeSpin) -> CourseBalls:
+def _course(spin: FreeSpin) -> Course:
     """The motion set up at the ambient precision of flint."""
     if spin.regime in CONSTANT:
         return FixedAxisBalls(spin.omega)
