@@ -164,7 +164,8 @@ def _column(base: _Base, by: Input, j: int, digits: int) -> Column:
 
 def _attempt(base: _Base, by: Input, j: int, exponent: int, working: int) -> Column:
     """The difference with a step of 10^-exponent units, and the estimate of its error."""
-    step = _nearby_power_of_two(exponent) * by.units[j]
+    # A power of two, so that perturbed data stay short.
+    step = power_of_two(floor_log2(Fraction(1, 10**exponent))) * by.units[j]
     h, here = mp.convert(step), base.at(working)
     # Each is a smooth function of the step, zero at zero; so is a small turn away from here.
     behind, ahead, wide = (
@@ -182,13 +183,8 @@ def _attempt(base: _Base, by: Input, j: int, exponent: int, working: int) -> Col
     return column
 
 
-def _nearby_power_of_two(exponent: int) -> Fraction:
-    """The largest power of two below 10^-exponent: perturbed data stay short."""
-    return power_of_two(floor_log2(Fraction(1, 10**exponent)))
-
-
 def _is_settled(column: Array, error: Array, floor: Array, digits: int) -> bool:
-    """Whether the error at every time is small beside the column or the floor; NaN never is."""
+    """Return True if every error is small beside the column or the floor; NaN never is."""
     tolerance = mpf(10) ** -digits
     return all(
         e <= tolerance * max(length, f)
