@@ -94,7 +94,7 @@ class Speed(ABC):
         """v in body axes."""
 
 
-def speed(board: Washboard) -> Speed:
+def speed(board: Washboard) -> Swinging | Growing:
     """At the ambient precision of flint."""
     return Swinging(board) if board.kappa < 0 else Growing(board)
 
@@ -102,6 +102,12 @@ def speed(board: Washboard) -> Speed:
 @final
 class Swinging(Speed):
     """kappa < 0: the moment is along the axis of greatest or least inertia."""
+
+    @property
+    def swing(self) -> arb:
+        """R = (4 |kappa| P^2 + Q^2)^(1/2)."""
+        sine = 2 * self.rate * self.even
+        return (sine * sine + self.odd * self.odd).sqrt()
 
     def squared(self, sigma: Number) -> Number:
         sin, cos = (2 * self.rate * sigma).sin_cos()
