@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact import balls
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball
-from taylor_verify.exact.euler import closed, fixed_axis, phase, quaternion, theta, tumbling
+from taylor_verify.exact.euler import closed, fixed_axis, phase, quaternion, theta
 from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.orbit import Orbit
@@ -27,7 +27,6 @@ from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import RotationBalls
 from taylor_verify.exact.euler.theta import free_rotation
-from taylor_verify.exact.euler.tumbling import Tumbling
 from taylor_verify.exact.rotation import conjugate, product, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
@@ -301,7 +300,7 @@ class Coarse(Enclosed):
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         course, spread = self._rotation.course(), arb(0, ball(self._spread))
         with pytest.MonkeyPatch.context() as patch:
-            for module in (fixed_axis, theta, tumbling):
+            for module in (fixed_axis, theta):
                 patch.setattr(module, "ball", lambda number: ball(number) + spread)
             found = [course.at(t, True) for t in elapsed]
         if self._name == "omega":
@@ -375,13 +374,13 @@ def _axes_exchanged(patch: pytest.MonkeyPatch) -> None:
 
 
 def _transposed(patch: pytest.MonkeyPatch) -> None:
-    right = Tumbling.at
+    right = theta.Tumbling.at
 
-    def wrong(self: Tumbling, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
+    def wrong(self: theta.Tumbling, t: Fraction, turned: bool) -> tuple[list[arb], list[arb]]:
         omega, turn = right(self, t, turned)
         return omega, conjugate(turn)
 
-    patch.setattr(Tumbling, "at", wrong)
+    patch.setattr(theta.Tumbling, "at", wrong)
 
 
 def _turns_forgotten(patch: pytest.MonkeyPatch) -> None:
