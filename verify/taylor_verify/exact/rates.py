@@ -56,14 +56,12 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     values = {
         name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
     }
-    blocks = [values[name] for name in moving]
-    manufactured = scene.body.manufactured
-    if manufactured is not None:
+    state = np.concatenate([values[name] for name in moving], axis=1)
+    if scene.body.manufactured is not None:
         times = scene.clock.elapsed if elapsed is None else elapsed
-        blocks.append(clocks.floats(manufactured, times))
+        state = np.hstack([state, clocks.floats(scene.body.manufactured, times)])
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
-        found = _derivatives(_flow(scene), np.concatenate(blocks, axis=1), values.get("attitude"))
-    velocity, acceleration = (_by_name(derivatives, moving) for derivatives in found)
+        velocity, acceleration = _derivatives(_flow(scene), moving, state, values.get("attitude"))
     return Rates(
         velocity={name: velocity[name] for name in values},
         acceleration={name: acceleration[name] for name in values},
@@ -72,39 +70,34 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     )
 
 
-def _by_name(derivatives: Sequence[Floats], moving: Sequence[str]) -> dict[str, Floats]:
-    """The derivatives of the state apart, by block; then those of the frame, as far as it is tracked."""
-    state, *frame = derivatives
-    blocks = {name: state[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
-    return blocks | dict(zip(("attitude", "centre"), frame, strict=False))
-
-
 def _units(scene: Scene) -> Units:
     kind = kind_of(scene.body)
     return kind.units(scene.body, kind.state(scene.initial))
 
 
 def _derivatives(
-    flow: Scaled, z: Floats, attitude: Floats | None
-) -> tuple[list[Floats], list[Floats]]:
-    """First and second derivatives of the state, then of the attitude and of the centre.
+    flow: Scaled, moving: Sequence[str], z: Floats, attitude: Floats | None
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """First and second derivatives of every quantity by name.
 
     ``z`` has the shape (times, n), ``attitude`` (times, 3, 3); without it there is the state alone.
     """
     rate = flow.constant + np.einsum("iab,ta,tb->ti", flow.hessian, z, z) / 2
-    firsts, seconds = [rate], [np.einsum("iab,ta,tb->ti", flow.hessian, z, rate)]
+    second = np.einsum("iab,ta,tb->ti", flow.hessian, z, rate)
+    firsts, seconds = (
+        {name: rows[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
+        for rows in (rate, second)
+    )
     if attitude is None:
         return firsts, seconds
     spin, spun = cross_matrices(z @ flow.spin.T), cross_matrices(rate @ flow.spin.T)
     turning = attitude @ spin
-    firsts.append(turning)
-    seconds.append(turning @ spin + attitude @ spun)
+    firsts["attitude"], seconds["attitude"] = turning, turning @ spin + attitude @ spun
     if len(flow.velocity):
         speed, pushed = z @ flow.velocity.T, rate @ flow.velocity.T
-        firsts.append(np.einsum("tij,tj->ti", attitude, speed))
-        seconds.append(
-            np.einsum("tij,tj->ti", turning, speed) + np.einsum("tij,tj->ti", attitude, pushed)
-        )
+        firsts["centre"] = np.einsum("tij,tj->ti", attitude, speed)
+        carried = np.einsum("tij,tj->ti", turning, speed)
+        seconds["centre"] = carried + np.einsum("tij,tj->ti", attitude, pushed)
     return firsts, seconds
 
 

@@ -24,7 +24,7 @@ from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.system import System, posed
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.exact.solution import NO_CLOSED_FORM, Quantities, Solution, Unsettled
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.scene import Scene
 
@@ -107,11 +107,6 @@ class _Enclosing(Solution):
         if doubts:
             raise Unsettled("; ".join(doubts), motion if places else None, places)
         return motion
-
-    @final
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The midpoints of the motion."""
-        return self.motion(elapsed, digits).quantities
 
     def _prove(
         self, proven: dict[int, _Proven], times: Times, target: int, bits: int, most_bits: int

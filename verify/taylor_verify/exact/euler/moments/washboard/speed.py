@@ -49,17 +49,19 @@ class Speed(ABC):
         self._across = balls(board.across)
         self._ahead = [entry / self.rate for entry in balls(board.ahead)]
 
-    @abstractmethod
+    @final
     def squared(self, sigma: Number) -> Number:
         """F."""
+        return self._start + self.slope * sigma - self._wave(sigma, 0)
 
-    @abstractmethod
+    @final
     def derivative(self, sigma: Number) -> Number:
         """F'."""
+        return self.slope - self._wave(sigma, 1)
 
     @abstractmethod
-    def bend(self, sigma: acb) -> acb:
-        """F''."""
+    def _wave(self, sigma: Number, order: int) -> Number:
+        """What swings or grows in F, 0 at the start, or its derivative of this order."""
 
     @final
     def quotient(self, end: arb) -> Quotient:
@@ -83,7 +85,7 @@ class Speed(ABC):
     def spread(self, middle: acb, d: acb) -> acb:
         """F(middle + d) for a wide d, by Taylor's formula: what is small by its second order stays so."""
         found = self.squared(middle) + self.derivative(middle) * d
-        return found + self.bend(middle + d) * d * d / 2
+        return found - self._wave(middle + d, 2) * d * d / 2
 
     @abstractmethod
     def _quotient(self, end: arb) -> Quotient:
@@ -109,24 +111,16 @@ class Swinging(Speed):
         sine = 2 * self.rate * self.even
         return (sine * sine + self.odd * self.odd).sqrt()
 
-    def squared(self, sigma: Number) -> Number:
+    def _wave(self, sigma: Number, order: int) -> Number:
         sin, cos = (2 * self.rate * sigma).sin_cos()
-        swing = self.even * (cos - 1) + self.odd * sin / (2 * self.rate)
-        return self._start + self.slope * sigma - swing
-
-    def derivative(self, sigma: Number) -> Number:
-        sin, cos = (2 * self.rate * sigma).sin_cos()
-        return self.slope + 2 * self.rate * self.even * sin - self.odd * cos
-
-    def bend(self, sigma: acb) -> acb:
-        sin, cos = (2 * self.rate * sigma).sin_cos()
-        return 2 * self.rate * (2 * self.rate * self.even * cos + self.odd * sin)
+        a, b = self.even, self.odd / (2 * self.rate)
+        for _ in range(order):
+            a, b = 2 * self.rate * b, -2 * self.rate * a
+        return a * (cos if order else cos - 1) + b * sin
 
     def _quotient(self, end: arb) -> Quotient:
         rate, slope = self.rate, self.slope
-        sin, cos = (2 * rate * end).sin_cos()
-        first = 2 * rate * self.even * sin - self.odd * cos
-        second = rate * (2 * rate * self.even * cos + self.odd * sin)
+        first, second = -self._wave(end, 1), -self._wave(end, 2) / 2
 
         def of(z: acb) -> acb:
             x = rate * z
@@ -151,18 +145,13 @@ class Growing(Speed):
         self.growing = arb(0) if board.never_climbs else self.even / 2 + half
         self.falling = self.even / 2 - half
 
-    def squared(self, sigma: Number) -> Number:
+    def _wave(self, sigma: Number, order: int) -> Number:
         up, down = self._powers(2 * sigma)
-        kept = self._start + self.slope * sigma + self.even
-        return kept - self.growing * up - self.falling * down
-
-    def derivative(self, sigma: Number) -> Number:
-        up, down = self._powers(2 * sigma)
-        return self.slope - 2 * self.rate * (self.growing * up - self.falling * down)
-
-    def bend(self, sigma: acb) -> acb:
-        up, down = self._powers(2 * sigma)
-        return -4 * self.rate * self.rate * (self.growing * up + self.falling * down)
+        p, q = self.growing, self.falling
+        for _ in range(order):
+            p, q = 2 * self.rate * p, -2 * self.rate * q
+        grown = p * up + q * down
+        return grown if order else grown - self.even
 
     def _quotient(self, end: arb) -> Quotient:
         rate, slope = self.rate, self.slope
