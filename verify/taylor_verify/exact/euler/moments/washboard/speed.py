@@ -45,6 +45,7 @@ class Speed(ABC):
         self.board = board
         self.slope, self.even, self.odd = (ball(e) for e in (board.slope, board.even, board.odd))
         self.rate = ball(abs(board.kappa)).sqrt()
+        self._odd = self.odd / (2 * self.rate)
         self._start = ball(board.nu**2)
         self._across = balls(board.across)
         self._ahead = [entry / self.rate for entry in balls(board.ahead)]
@@ -113,7 +114,7 @@ class Swinging(Speed):
 
     def _wave(self, sigma: Number, order: int) -> Number:
         sin, cos = (2 * self.rate * sigma).sin_cos()
-        a, b = self.even, self.odd / (2 * self.rate)
+        a, b = self.even, self._odd
         for _ in range(order):
             a, b = 2 * self.rate * b, -2 * self.rate * a
         return a * (cos if order else cos - 1) + b * sin
@@ -141,9 +142,8 @@ class Growing(Speed):
 
     def __init__(self, board: Washboard) -> None:
         super().__init__(board)
-        half = self.odd / (4 * self.rate)
-        self.growing = arb(0) if board.never_climbs else self.even / 2 + half
-        self.falling = self.even / 2 - half
+        self.growing = arb(0) if board.never_climbs else (self.even + self._odd) / 2
+        self.falling = (self.even - self._odd) / 2
 
     def _wave(self, sigma: Number, order: int) -> Number:
         up, down = self._powers(2 * sigma)
