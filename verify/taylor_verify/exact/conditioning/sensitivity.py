@@ -14,9 +14,10 @@ Omega = B^T x + C y; M, X, L the loads; theta a small turn in space axes, R -> e
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache, partial
 from math import ceil
 from typing import Any, Final
 
@@ -101,7 +102,8 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
     working, scene = digits + _GUARD_DIGITS, _from_origin(scene)
     motion = solution(scene).motion(elapsed, working)
     with mp.workdps(working):
-        base = _Base(scene, elapsed, _sizes(motion.quantities), {})
+        evaluate = cache(partial(solution(scene).evaluate, elapsed))
+        base = _Base(scene.name, elapsed, _sizes(motion.quantities), evaluate)
         found = dict(_by_place(motion.quantities, working))
         flow = _flow(scene, motion.quantities)
     inputs = [*start_inputs(scene), body_input(scene)]
@@ -130,15 +132,10 @@ def sensitivity(scene: Scene, times_elapsed: Sequence[Fraction], digits: int = 1
 class _Base:
     """The scene as it is: its motion at any precision, and the sizes that errors are measured by."""
 
-    scene: Scene
+    name: str
     elapsed: tuple[Fraction, ...]
     sizes: Mapping[str, Array]
-    kept: dict[int, Quantities]
-
-    def at(self, working: int) -> Quantities:
-        if working not in self.kept:
-            self.kept[working] = solution(self.scene).evaluate(self.elapsed, working)
-        return self.kept[working]
+    at: Callable[[int], Quantities]
 
 
 Column = dict[str, tuple[Array, Array]]
@@ -157,7 +154,7 @@ def _column(base: _Base, by: Input, j: int, digits: int) -> Column:
                 return column
         exponent *= 2
     raise Unsettled(
-        f"differences of the exact solution do not agree to {digits} digits on how {base.scene.name} "
+        f"differences of the exact solution do not agree to {digits} digits on how {base.name} "
         f"depends on {by.name} {by.components[j]}: ask for earlier times or fewer digits"
     )
 
@@ -194,16 +191,14 @@ def _is_settled(column: Array, error: Array, floor: Array, digits: int) -> bool:
 
 def _lengths(vectors: Array) -> Array:
     """The Euclidean length of every row, shape (n,)."""
-    lengths = np.empty(len(vectors), dtype=object)
-    lengths[:] = [mp.norm(list(row.flat)) for row in vectors]
-    return lengths
+    return np.array([mp.norm(list(row.flat)) for row in vectors], dtype=object)
 
 
 def _sizes(motion: Quantities) -> dict[str, Array]:
     """What an error of each quantity is measured against at each time, shape (n,)."""
     sizes = {name: _lengths(rows) for name, rows in motion.items()}
     if "attitude" in sizes:
-        sizes["attitude"] = np.array([mpf(1)] * len(sizes["attitude"]), dtype=object)
+        sizes["attitude"] = np.full(len(sizes["attitude"]), mpf(1), dtype=object)
     return sizes
 
 

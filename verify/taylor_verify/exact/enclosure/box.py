@@ -88,7 +88,22 @@ def flow(
 
         sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
     """
-    terms, spread = _flow_terms(system, box, state, h)
+    n = len(state[0])
+    second = system.second * h
+    jacobians: list[arb_mat] = []
+    terms, spread = [identity(n)], [box.apart]
+    moved = box.apart
+    for k, z in enumerate(state[:-1]):
+        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
+        total = jacobians[k] * terms[0]
+        for j in range(1, k + 1):
+            total = total + jacobians[k - j] * terms[j]
+        terms.append(total * (1 / arb(k + 1)))
+        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
+        # Up to a term that hardly moves the box.
+        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
+            break
+        moved = moved + spread[-1]
     return Flow(terms, spread, flow_defect(bounds, terms, sizes, h, tube))
 
 
@@ -107,28 +122,6 @@ def flow_defect(
         left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
     left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
     return accumulated(tube.growth, magnitudes(left), 1)
-
-
-def _flow_terms(
-    system: Balls, box: Box, state: Series, h: arb
-) -> tuple[list[arb_mat], list[arb_mat]]:
-    """The terms of V up to one that hardly moves the box, and how far each moves it."""
-    n = len(state[0])
-    second = system.second * h
-    jacobians: list[arb_mat] = []
-    terms, spread = [identity(n)], [box.apart]
-    moved = box.apart
-    for k, z in enumerate(state[:-1]):
-        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
-        total = jacobians[k] * terms[0]
-        for j in range(1, k + 1):
-            total = total + jacobians[k - j] * terms[j]
-        terms.append(total * (1 / arb(k + 1)))
-        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
-        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
-            break
-        moved = moved + spread[-1]
-    return terms, spread
 
 
 def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:

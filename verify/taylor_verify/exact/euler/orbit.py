@@ -10,8 +10,8 @@ the motion is w_a : w_b : w_c = dn u : sn u : cn u, u = lam t + u_0, each times 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 from mpmath import mp, mpf
 
@@ -53,12 +53,11 @@ class Precession:
         return omega, product(about_momentum, turn(self.axis, -self.rate * time))
 
 
-@dataclass(frozen=True)
-class PrincipalFrame:
+class PrincipalFrame(NamedTuple):
     """Moments J1 > J2 > J3, their axes (unit vectors of either sign), and J1 - J2, J2 - J3."""
 
-    moments: tuple[mpf, mpf, mpf]
-    axes: tuple[list[mpf], list[mpf], list[mpf]]
+    moments: list[mpf]
+    axes: list[list[mpf]]
     upper_gap: mpf
     lower_gap: mpf
 
@@ -153,28 +152,17 @@ def principal_frame(spin: FreeSpin) -> PrincipalFrame:
     mean, radius = mp.convert(spin.trace / 3), mp.sqrt(mp.convert(spin.spread))
     turns = (third, third - 2 * mp.pi / 3, third + 2 * mp.pi / 3)
     moments = [mean + radius * mp.cos(turn) * 2 / 3 for turn in turns]
-    return PrincipalFrame(
-        moments=(moments[0], moments[1], moments[2]),
-        axes=(
-            _eigenvector(spin.inertia, moments[0]),
-            _eigenvector(spin.inertia, moments[1]),
-            _eigenvector(spin.inertia, moments[2]),
-        ),
-        upper_gap=radius * mp.sin(rest) * 2 / mp.sqrt(3),
-        lower_gap=radius * mp.sin(third) * 2 / mp.sqrt(3),
-    )
+    upper, lower = (radius * mp.sin(angle) * 2 / mp.sqrt(3) for angle in (rest, third))
+    axes = [_eigenvector(spin.inertia, moment) for moment in moments]
+    return PrincipalFrame(moments, axes, upper, lower)
 
 
 def _sorted_frame(diagonal: tensors.Vector) -> PrincipalFrame:
     """The axes of a diagonal tensor, which are exact."""
-    i, j, k = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
-    unit = [[mpf(int(row == column)) for column in range(3)] for row in range(3)]
-    return PrincipalFrame(
-        moments=(mp.convert(diagonal[i]), mp.convert(diagonal[j]), mp.convert(diagonal[k])),
-        axes=(unit[i], unit[j], unit[k]),
-        upper_gap=mp.convert(diagonal[i] - diagonal[j]),
-        lower_gap=mp.convert(diagonal[j] - diagonal[k]),
-    )
+    order = sorted(range(3), key=lambda n: diagonal[n], reverse=True)
+    J1, J2, J3 = (diagonal[n] for n in order)
+    axes = [[mpf(int(row == column)) for column in range(3)] for row in order]
+    return PrincipalFrame(converted((J1, J2, J3)), axes, *converted((J1 - J2, J2 - J3)))
 
 
 def _eigenvector(matrix: tensors.Matrix, eigenvalue: mpf) -> list[mpf]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Final, Protocol, final
 
@@ -44,28 +45,24 @@ class Course(Protocol):
 
 
 @final
+@dataclass(eq=False)
 class RotationBalls(Enclosed):
     """omega(t) and R(t) in balls; ``answer`` is what an attitude is told as, and how."""
 
-    def __init__(
-        self,
-        regime: str,
-        course: Callable[[], Course],
-        attitude: motion.Quaternion | None = None,
-        by_quadrature: bool = False,
-        answer: tuple[str, Callable[[Quaternion], Any]] = ("attitude", rotation_rows),
-    ) -> None:
-        self.regime, self.by_quadrature = regime, by_quadrature
-        self._course, self._attitude, self._answer = course, attitude, answer
-        self._courses: dict[int, Course] = {}
+    regime: str
+    set_up: Callable[[], Course]
+    attitude: motion.Quaternion | None = None
+    by_quadrature: bool = False
+    answer: tuple[str, Callable[[Quaternion], Any]] = ("attitude", rotation_rows)
+    _courses: dict[int, Course] = field(default_factory=dict, init=False)
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
         """``omega``, rows of 3, and ``attitude``, rows of 3x3, where it is tracked."""
         with ctx.workprec(-(-bits // _STEP_BITS) * _STEP_BITS):
             course = self.course()
-            if self._attitude is None:
+            if self.attitude is None:
                 return {"omega": [course.at(t, False)[0] for t in elapsed]}
-            start, (name, told) = quaternion.unit(self._attitude), self._answer
+            start, (name, told) = quaternion.unit(self.attitude), self.answer
             rows = [course.at(t, True) for t in elapsed]
             return {
                 "omega": [omega for omega, _ in rows],
@@ -75,7 +72,7 @@ class RotationBalls(Enclosed):
     def course(self) -> Course:
         """The course at the ambient precision of flint."""
         if ctx.prec not in self._courses:
-            self._courses[ctx.prec] = self._course()
+            self._courses[ctx.prec] = self.set_up()
         return self._courses[ctx.prec]
 
     def quaternion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
@@ -83,40 +80,34 @@ class RotationBalls(Enclosed):
 
         It starts as the scene's own over its norm; its sign follows the motion without a jump.
         """
-        answer = "quaternion", list
-        other = RotationBalls(self.regime, self._course, self._attitude, answer=answer)
-        return other.motion(elapsed, digits)
+        return replace(self, answer=("quaternion", list)).motion(elapsed, digits)
 
 
 @final
+@dataclass(eq=False)
 class Rotation(Settled):
     """omega(t) and R(t) in mpmath.
 
     ``lost`` bounds the decimal digits that a course loses up to a time, its attitude included or not.
     """
 
-    route = "mpmath"
+    regime: str
+    set_up: Callable[[], Course]
+    lost: Callable[[Fraction, bool], float]
+    attitude: motion.Quaternion | None = None
+    by_quadrature: bool = False
+    _courses: dict[int, Course] = field(default_factory=dict, init=False)
 
-    def __init__(
-        self,
-        regime: str,
-        course: Callable[[], Course],
-        lost: Callable[[Fraction, bool], float],
-        attitude: motion.Quaternion | None = None,
-        by_quadrature: bool = False,
-    ) -> None:
-        self.regime, self.by_quadrature = regime, by_quadrature
-        self._course, self._lost, self._attitude = course, lost, attitude
-        self._courses: dict[int, Course] = {}
+    route = "mpmath"
 
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """``omega`` (n, 3) and ``attitude`` (n, 3, 3), to about ``digits`` significant digits."""
-        attitude, longest = self._attitude, max(map(abs, elapsed), default=Fraction(0))
-        lost = self._lost(longest, attitude is not None)
+        attitude, longest = self.attitude, max(map(abs, elapsed), default=Fraction(0))
+        lost = self.lost(longest, attitude is not None)
         working = math.ceil((digits + lost) / _STEP_DIGITS) * _STEP_DIGITS
         with mp.workdps(working):
             if working not in self._courses:
-                self._courses[working] = self._course()
+                self._courses[working] = self.set_up()
             rows = [self._courses[working].at(t, attitude is not None) for t in elapsed]
             found: Mapping[str, np.ndarray[Any, Any]] = {"omega": _array([w for w, _ in rows], 3)}
             if attitude is not None:

@@ -69,16 +69,6 @@ class Line:
     def across(self) -> Vector:
         return tensors.minus(self.a, tensors.scaled(self.lead, self.b))
 
-    @property
-    def turns_squared(self) -> Fraction:
-        """The square of |across|^2/8|b|, the size of Kummer's parameter."""
-        return tensors.dot(self.across, self.across) ** 2 / (64 * tensors.dot(self.b, self.b))
-
-    @property
-    def angle_squared(self) -> Fraction:
-        """The square of |b| lead^2/2, the size of Kummer's argument at t = 0."""
-        return tensors.dot(self.b, self.b) * self.lead**4 / 4
-
 
 @dataclass(frozen=True)
 class LoadedSpin:
@@ -96,7 +86,11 @@ class LoadedSpin:
             raise ValueError("expected a moment that is not zero, got 0 0 0 @ body.moment")
         if self.free.discriminant != 0:
             raise NoClosedForm("a moment acts on a body with three different moments of inertia")
-        if not self.angle_squared <= _LARGEST_ANGLE**2:
+        # The square of phi between t = 0 and the instant without spin, where that comes.
+        if self.regime is MomentRegime.OBLIQUE and not (
+            self.free.turning**4
+            <= 16 * self.bending**2 * self.free.axis_squared * _LARGEST_ANGLE**2
+        ):
             raise NoClosedForm("the part of the moment along the axis is too weak beside the spin")
 
     @cached_property
@@ -140,13 +134,6 @@ class LoadedSpin:
         gained = tensors.scaled(t / self.free.simple_moment, self.moment)
         return self.free.along(tensors.plus(self.omega, gained))
 
-    @property
-    def angle_squared(self) -> Fraction:
-        """The square of phi between t = 0 and the instant without spin; 0 where that never comes."""
-        if not self.bending or self.regime is not MomentRegime.OBLIQUE:
-            return Fraction(0)
-        return self.free.turning**4 / (16 * self.bending**2 * self.free.axis_squared)
-
     @cached_property
     def line(self) -> Line:
         """The straight line a + b t that omega is for the frame A.
@@ -161,10 +148,12 @@ class LoadedSpin:
         gyration = tensors.scaled(free.ratio, free.along(self.omega))
         b = tensors.scaled(1 / free.double_moment, self.moment)
         found = Line(tensors.plus(self.omega, gyration), b)
-        if not found.turns_squared <= _MOST_TURNS**2:
+        across, pace = tensors.dot(found.across, found.across), tensors.dot(found.b, found.b)
+        # Squares of |across|^2/8|b|, the size of Kummer's parameter, and of |b| lead^2/2, his argument's.
+        if not across**2 <= _MOST_TURNS**2 * 64 * pace:
             raise NoClosedForm(
                 f"Kummer's parameter of the attitude exceeds {_MOST_TURNS}: the moment is too weak"
             )
-        if not found.angle_squared <= _LARGEST_ANGLE**2:
+        if not pace * found.lead**4 <= 4 * _LARGEST_ANGLE**2:
             raise NoClosedForm("the attitude under a moment that is too weak beside omega")
         return found

@@ -117,7 +117,7 @@ class Turn:
         for _ in range(_STEPS_PER_BIT * ctx.prec):
             missing = (t - self._time(y)).mid()
             step = (missing * self._root(y) / 2).mid()
-            if abs(step) <= y * _arrived():
+            if abs(step) <= y * arb(2) ** (_ARRIVED_BITS - ctx.prec):
                 return y
             low, high = (y, high) if missing > 0 else (low, y)
             ahead = (y + step).mid()
@@ -239,8 +239,3 @@ class Course:
         if abs(since).mid() <= self._rise.mid():
             return self._lower, since
         return self._upper, since - self._half if since.mid() > 0 else since + self._half
-
-
-def _arrived() -> arb:
-    """The relative size of a step that leads no nearer."""
-    return arb(2) ** (_ARRIVED_BITS - ctx.prec)
