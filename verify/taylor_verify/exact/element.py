@@ -70,11 +70,12 @@ def settled(evaluate: Callable[[int], Sequence[Element]], digits: int) -> tuple[
     when a dozen rises of the precision do not suffice.
     """
     working = digits + _GUARD_DIGITS
-    poorer = _at(evaluate, working)
+    with mp.workdps(working):
+        poorer = evaluate(working)
     for attempt in range(_ATTEMPTS):
         working += SETTLING_STEP_DIGITS << attempt // 2
-        better = _at(evaluate, working)
         with mp.workdps(working):
+            better = evaluate(working)
             agreed = _agree(poorer, better, mpf(10) ** -digits)
         if agreed:
             with mp.workdps(digits):
@@ -83,13 +84,8 @@ def settled(evaluate: Callable[[int], Sequence[Element]], digits: int) -> tuple[
     raise Unsettled(f"the elements of the orbit do not settle to {digits} digits")
 
 
-def _at(evaluate: Callable[[int], Sequence[Element]], working: int) -> Sequence[Element]:
-    with mp.workdps(working):
-        return evaluate(working)
-
-
 def _agree(poorer: Sequence[Element], better: Sequence[Element], tolerance: mpf) -> bool:
-    """Whether the same numbers were found; NaN agrees with nothing."""
+    """Return True if both have the same numbers; NaN agrees with nothing."""
     if [p.name for p in poorer] != [b.name for b in better]:
         return False
     return all(

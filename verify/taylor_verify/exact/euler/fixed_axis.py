@@ -52,29 +52,23 @@ class FixedAxis:
 class FixedAxisBalls:
     """The course in balls."""
 
-    def __init__(self, omega: Vector, gain: Vector = ZERO_VECTOR) -> None:
-        self._exact = exact = FixedAxis(omega, gain)
-        self._length = ball(exact.axis_squared or 1).sqrt()
+    def __init__(self, exact: FixedAxis) -> None:
+        self._exact, self._length = exact, ball(exact.axis_squared or 1).sqrt()
         self._axis = [entry / self._length for entry in balls(exact.axis)]
 
     def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Quaternion]:
-        omega = balls(self._exact.omega(t))
-        if not turned:
-            return omega, []
-        return omega, quaternion.turn(self._axis, ball(self._exact.turned(t)) / (2 * self._length))
+        omega, angle = balls(self._exact.omega(t)), ball(self._exact.turned(t)) / self._length
+        return omega, quaternion.turn(self._axis, angle / 2) if turned else []
 
 
 @final
 class FixedAxisFloats:
     """The course in mpmath."""
 
-    def __init__(self, omega: Vector, gain: Vector = ZERO_VECTOR) -> None:
-        self._exact = exact = FixedAxis(omega, gain)
-        self._length = mp.sqrt(mp.convert(exact.axis_squared or 1))
+    def __init__(self, exact: FixedAxis) -> None:
+        self._exact, self._length = exact, mp.sqrt(mp.convert(exact.axis_squared or 1))
         self._axis = converted(exact.axis)
 
     def at(self, t: Fraction, turned: bool) -> tuple[list[mpf], Frame]:
-        omega = converted(self._exact.omega(t))
-        if not turned:
-            return omega, []
-        return omega, turn(self._axis, mp.convert(self._exact.turned(t)) / self._length)
+        omega, angle = converted(self._exact.omega(t)), mp.convert(self._exact.turned(t))
+        return omega, turn(self._axis, angle / self._length) if turned else []

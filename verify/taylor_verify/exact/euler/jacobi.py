@@ -22,14 +22,14 @@ def free_rotation(spin: FreeSpin, attitude: Quaternion | None = None) -> Rotatio
 
     def course() -> Course:
         if spin.regime in CONSTANT:
-            return FixedAxisFloats(spin.omega)
+            return FixedAxisFloats(FixedAxis(spin.omega))
         return Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Triaxial(spin)
 
     return Rotation(spin.regime.value, course, lambda *until: lost_digits(spin, *until), attitude)
 
 
 def lost_digits(spin: FreeSpin, longest: Fraction, turned: bool) -> float:
-    """How many decimal digits the closed form may lose up to the time ``longest``.
+    """The decimal digits that the closed form may lose up to the time ``longest``.
 
     Each term is an upper bound from exact rationals; of a constant omega nothing is lost. Being
     close to the separatrix has no term of its own, because m' comes from an exact difference.
@@ -50,18 +50,12 @@ def lost_digits(spin: FreeSpin, longest: Fraction, turned: bool) -> float:
         # An eigenvector is a vector product of size gap gap', with an error of an ulp of tr^2; the
         # product of all three gaps is disc^(1/2), and the third is below tr.
         lost += decades(tr**6 / spin.discriminant) / 2
-    return _OWN_GUARD_DIGITS + lost + (_turning_digits(spin, longest) if turned else 0)
-
-
-def _turning_digits(spin: FreeSpin, longest: Fraction) -> float:
-    """How many digits more the attitude may lose: those of the angle turned, and of R_J.
-
-    The angle is |omega| t at most. Beside the separatrix cn^2 in R_J is small and known to an ulp of
-    one; a quarter of the digits of m' is what that was seen to cost, and the rest is the settling's.
-    """
-    turned = tensors.dot(spin.omega, spin.omega) * longest**2
-    lost = decades(1 + turned) / 2
-    if spin.regime in (Regime.MIN_AXIS, Regime.MAX_AXIS):
+    if turned:
+        # The angle is |omega| t at most.
+        lost += decades(1 + tensors.dot(spin.omega, spin.omega) * longest**2) / 2
+    if turned and spin.regime in (Regime.MIN_AXIS, Regime.MAX_AXIS):
+        # Beside the separatrix cn^2 in R_J is small and known to an ulp of one; a quarter of the digits
+        # of m' is what that was seen to cost, and the rest is the settling's.
         closeness = abs(spin.separation) / (spin.twice_energy * spin.trace) ** 3
         lost += decades(1 + 1 / closeness) / 4
-    return lost
+    return _OWN_GUARD_DIGITS + lost

@@ -18,7 +18,7 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler import quaternion
-from taylor_verify.exact.euler.fixed_axis import FixedAxisBalls
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
 from taylor_verify.exact.euler.quaternion import Quaternion
@@ -36,7 +36,7 @@ def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> 
 def _course(spin: FreeSpin) -> Course:
     """The motion set up at the ambient precision of flint."""
     if spin.regime in CONSTANT:
-        return FixedAxisBalls(spin.omega)
+        return FixedAxisBalls(FixedAxis(spin.omega))
     return _Precession(spin) if spin.regime is Regime.AXISYMMETRIC else Tumbling(spin)
 
 

@@ -21,7 +21,7 @@ from typing import Final
 from flint import acb, arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, balls
-from taylor_verify.exact.euler.fixed_axis import FixedAxisBalls
+from taylor_verify.exact.euler.fixed_axis import FixedAxis, FixedAxisBalls
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.speed import Speed, Swinging, speed
 from taylor_verify.exact.euler.moments.washboard.teeth import FarTeeth
@@ -48,7 +48,9 @@ def motion(board: Washboard, attitude: Quaternion | None = None) -> RotationBall
     """The motion of a triaxial body under a moment, and R from a start where omega keeps its axis."""
     kind = regime(board).value
     if board.keeps_axis:
-        return RotationBalls(kind, lambda: FixedAxisBalls(board.omega, board.gain), attitude)
+        return RotationBalls(
+            kind, lambda: FixedAxisBalls(FixedAxis(board.omega, board.gain)), attitude
+        )
     return RotationBalls(kind, lambda: Course(board), by_quadrature=True)
 
 

@@ -50,8 +50,8 @@ def motion(board: Washboard, attitude: Quaternion | None = None) -> Rotation:
     """The motion of a triaxial body under a moment, and R from a start where omega keeps its axis."""
     kind = regime(board).value
     if board.keeps_axis:
-        axis = board.omega, board.gain
-        return Rotation(kind, lambda: FixedAxisFloats(*axis), FixedAxis(*axis).lost, attitude)
+        axis = FixedAxis(board.omega, board.gain)
+        return Rotation(kind, lambda: FixedAxisFloats(axis), axis.lost, attitude)
     ends = located(board)
 
     def lost(longest: Fraction, turned: bool) -> float:
