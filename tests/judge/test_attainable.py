@@ -188,7 +188,7 @@ def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
     times, flow = path(asked).elapsed, Flow.of(asked)
     found = integrated(asked, flow, times)
     assert found is not None
-    routes = sharp(asked, flow, times), Path.of(asked, flow, times, found)
+    routes = sharp(asked, flow, times), Path(asked, flow, times, found)
     draw = np.random.default_rng(1)
     errors = draw.uniform(0, 1, (len(times), 3 * len(routes[0].blocks)))
     one, other = (_in_scene_units(route, errors) for route in routes)

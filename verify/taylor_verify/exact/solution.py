@@ -88,16 +88,20 @@ class Solution(ABC):
         Raises Unsettled where that cannot be had at every time.
         """
 
-    @abstractmethod
     def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
         """The tracked quantities at these times, to about ``digits`` digits and without a claim.
 
-        Object arrays of mpf shaped as in Motion.
+        Object arrays of mpf shaped as in Motion. Those of the motion, unless stated.
         """
+        return self.motion(elapsed, digits).quantities
 
 
 class Settled(Solution):
     """A solution that is believed when two evaluations at different precisions agree."""
+
+    @abstractmethod
+    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
+        """The tracked quantities at one precision."""
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:

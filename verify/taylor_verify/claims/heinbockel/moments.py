@@ -130,7 +130,7 @@ _TIMES: Final = tuple(Fraction(k) for k in (1, 5, 20))
 
 def jacobi(moment: int = 0) -> Residual:
     """Jacobi's functions against a trajectory: the closed form of the free body with full tensor."""
-    from taylor_verify.exact.euler.jacobi import closed_form
+    from taylor_verify.exact.euler.closed import closed_form
 
     half, zero = Fraction(1, 2), Fraction(0)
     inertia = ((Fraction(3), half, zero), (half, Fraction(2), zero), (zero, zero, Fraction(4)))

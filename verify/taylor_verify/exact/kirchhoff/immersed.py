@@ -9,8 +9,10 @@ from dataclasses import fields, replace
 from fractions import Fraction
 from typing import Final, final
 
+import numpy as np
+
 from taylor_verify.exact import clocks
-from taylor_verify.exact.equations import Equations, cross, total
+from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
@@ -51,9 +53,8 @@ class Immersed(Kind[ImmersedBody, Impulse]):
 
     def equations(self, body: ImmersedBody) -> Equations:
         U, Omega = body.energy_matrix[:3], body.energy_matrix[3:]
-        turned = zip(cross(_Y, Omega), cross(_X, U), strict=True)
-        rates = cross(_X, Omega) + [total(p, q) for p, q in turned]
-        return Equations(body.force + body.couple, rates, Omega, U)
+        hessian = np.concatenate([cross(_X, Omega), cross(_Y, Omega) + cross(_X, U)])
+        return Equations(exact(body.force + body.couple), hessian, exact(Omega), exact(U))
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Each block by its size, or by what the loads, and x x U, make of it in the unit of time."""
