@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from taylor_verify.exact.kirchhoff.displaced import centred, displaced
-from taylor_verify.exact.kirchhoff.plane import plane, regime
-from taylor_verify.exact.kirchhoff.turned import Turned, upright
+from taylor_verify.exact.kirchhoff.carried import carried
+from taylor_verify.exact.kirchhoff.displaced import centred, moved_back
+from taylor_verify.exact.kirchhoff.plane import in_plane, of_revolution, plane, regime
+from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.kirchhoff.turned import put_back, upright
 from taylor_verify.exact.kirchhoff.weber.curve import curve
 from taylor_verify.exact.solution import Solution
 from taylor_verify.scenes.scene import Scene
@@ -20,7 +22,6 @@ from taylor_verify.scenes.scene import Scene
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm, with the reason, where it has none."""
     from taylor_verify.exact.kirchhoff import weierstrass
-    from taylor_verify.exact.kirchhoff.planar import LikeRevolution, of_revolution
     from taylor_verify.exact.kirchhoff.weber.enclosure import WeberBalls
 
     genus_two = curve(scene)
@@ -30,7 +31,7 @@ def enclosed(scene: Scene) -> Solution:
     if place is None:
         return _of_revolution(scene, weierstrass.enclosed)
     alike = _of_revolution(of_revolution(scene, place), weierstrass.enclosed)
-    return LikeRevolution(place, alike)
+    return carried(alike, in_plane(place), regime(place))
 
 
 def closed_form(scene: Scene) -> Solution:
@@ -54,5 +55,5 @@ def _of_revolution(scene: Scene, solve: Callable[[Scene], Solution]) -> Solution
     moved, distance = centred(named_anew)
     found = solve(moved)
     if distance:
-        found = displaced(found, distance, named_anew)
-    return found if axis == 3 else Turned(found, axis)
+        found = carried(found, moved_back(distance, solid(named_anew)[1]))
+    return found if axis == 3 else carried(found, put_back(axis))

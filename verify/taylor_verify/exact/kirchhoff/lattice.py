@@ -218,9 +218,7 @@ class Elementary(Lattice):
             return (across * quotient).arg() - across.arg()
         # sin v is a constant times e^{-i v}(1 - e^{2 i v}) for Im v > 0; below, the conjugate.
         kappa, side = self._rho.imag, sign((-w).imag)
-        there, start = (
-            v if side > 0 else v.conjugate() for v in (kappa * (u - w), kappa * -w)
-        )
+        there, start = (v if side > 0 else v.conjugate() for v in (kappa * (u - w), kappa * -w))
         bend = (1 - (2 * _I * there).exp()).arg() - (1 - (2 * _I * start).exp()).arg()
         return side * (bend - kappa * u)
 

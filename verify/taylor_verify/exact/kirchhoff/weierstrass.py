@@ -20,11 +20,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import prod
 from typing import Any, Final, final
 
-from flint import acb, arb
+from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, balls
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.course import Front, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
@@ -60,6 +61,7 @@ class NutatingBody(Enclosed):
     ) -> None:
         self.regime = kind
         self._nutation, self._start, self._track = nutation, start, track
+        self._names = ("linear_impulse", "angular_impulse", *sorted(track))
         self._orbits: dict[int, Orbit] = {}
 
     def enclose(self, elapsed: Sequence[Fraction], bits: int) -> Enclosure:
@@ -68,7 +70,7 @@ class NutatingBody(Enclosed):
             self._orbits[bits] = Orbit(self._nutation, self._start, self._track, heteroclinic)
         orbit = self._orbits[bits]
         rows = [orbit.at(ball(t)) for t in elapsed]
-        return {name: [row[name] for row in rows] for name in orbit.names}
+        return {name: [row[name] for row in rows] for name in self._names}
 
 
 @dataclass(frozen=True)
@@ -85,9 +87,6 @@ class Factor:
             return cls(lattice, None, acb(1))
         order = int(argument.is_zero())
         return cls(lattice, argument, lattice.jet(-argument, order)[order])
-
-    def at(self, u: arb) -> acb:
-        return self.jet(u, 0)[0]
 
     def jet(self, u: arb, order: int) -> list[acb]:
         """N and, for order 1, its derivative."""
@@ -110,7 +109,6 @@ class Orbit:
     def __init__(
         self, nutation: Nutation, start: Impulse, track: frozenset[str], heteroclinic: bool
     ) -> None:
-        self.names = ("linear_impulse", "angular_impulse", *sorted(track))
         self._nutation, self._track = nutation, track
         body = nutation.body
         self._F, self._y3, self._r = ball(nutation.F2).sqrt(), ball(nutation.y3), ball(body.r)
@@ -121,21 +119,27 @@ class Orbit:
         self._find_factors(heteroclinic)
         self._find_rates()
         self._find_amplitudes(start)
-        # Told exactly: a centre or a y that is zero has no other narrow ball.
-        self._at_start = _as_told(start, track)
+        # The start as given: a centre or a y that is zero has no other narrow ball.
+        attitude = ball_matrix(rotation_matrix(start.attitude))
+        self._at_start: dict[str, Any] = {
+            "linear_impulse": balls(start.linear),
+            "angular_impulse": balls(start.angular),
+            "attitude": attitude.tolist(),
+            "centre": balls(start.centre),
+        }
         if track:
-            self._find_space(start)
+            self._find_space(attitude)
 
     def at(self, u: arb) -> dict[str, Any]:
-        """Every tracked quantity at the time u since the start."""
+        """At least every tracked quantity, at the time u since the start."""
         if u.is_zero():
             return self._at_start
         z, speed = self._course.at(u)
         poles = self._pole_jets(u, self._pole_order)
         along = self._course.integral(u, speed, poles) if self._needs_integral else arb(0)
         screw = (_I * self._screw * along).exp()
-        above = self._alpha.at(u), self._beta.at(u)
-        below = _product([value for value, *_ in poles]) ** self._course.order
+        above = self._alpha.jet(u, 0)[0], self._beta.jet(u, 0)[0]
+        below = prod((value for value, *_ in poles), start=acb(1)) ** self._course.order
         turn = self._xi * (self._xi_rate * u).exp() / (below * screw)
         xi = turn * above[0].conjugate() * above[1]
         if self._front is not None:
@@ -152,11 +156,12 @@ class Orbit:
             one = self._one * above[0] ** 2 * (self._one_rate * u).exp() * screw / below
             two = self._two * above[1] ** 2 * (self._two_rate * u).exp() / (screw * below)
             frame = self._frame(one, two, xi, z)
-            found["attitude"] = _matrix_product(self._to_space, frame)
+            found["attitude"] = (self._to_space * frame).tolist()
             if "centre" in self._track:
                 path = self._path(u, self._sideways(frame, eta), poles, along)
-                moved = _applied(self._to_space, path)
-                found["centre"] = [c + v for c, v in zip(self._centre, moved, strict=True)]
+                moved = (self._to_space * arb_mat(3, 1, path)).entries()
+                start = self._at_start["centre"]
+                found["centre"] = [c + v for c, v in zip(start, moved, strict=True)]
         return found
 
     # What is found once.
@@ -225,16 +230,13 @@ class Orbit:
             self._one = -(self._xi.conjugate() ** 2) / (F * (F - z))
             self._two = acb((F - z) / F)
 
-    def _find_space(self, start: Impulse) -> None:
+    def _find_space(self, attitude: arb_mat) -> None:
         """The scene's space axes, in which R and the centre begin as it says."""
-        nothing = acb(0)
-        one = nothing if self._starts_on_axis(-1) else self._one
-        two = nothing if self._starts_on_axis(1) else self._two
+        one = acb(0) if self._starts_on_axis(-1) else self._one
+        two = acb(0) if self._starts_on_axis(1) else self._two
         frame = self._frame(one, two, self._start_xi, self._course.z)
-        attitude = [balls(row) for row in rotation_matrix(start.attitude)]
-        self._to_space = _matrix_product(attitude, [list(row) for row in zip(*frame, strict=True)])
+        self._to_space = attitude * frame.transpose()
         self._start_sideways = self._sideways(frame, self._start_eta)
-        self._centre = balls(start.centre)
         body, F2 = self._nutation.body, self._nutation.F2
         self._ahead = ball(body.p * F2 + body.q * self._nutation.FG)
         self._ahead_by_square = ball(body.p_prime - body.p)
@@ -267,23 +269,24 @@ class Orbit:
         change = turn * growth + pull * xi
         return (change / _I + (self._spin + self._screw * z) * xi) / (self._r * z)
 
-    def _frame(self, one: acb, two: acb, xi: acb, z: arb) -> list[list[arb]]:
+    def _frame(self, one: acb, two: acb, xi: acb, z: arb) -> arb_mat:
         """R with the space axis Z along the impulse, row by row, from D1, D2, xi and z."""
         F = self._F
         # sin(theta) e^{i psi} by the larger of 1 + cos theta and 1 - cos theta
         lean = one * xi / (_I * (F + z)) if z.mid() >= 0 else two * xi.conjugate() / (_I * (z - F))
         total, rest = (one + two) / 2, (one - two) / 2
-        return [
-            [total.real, -rest.imag, lean.imag],
-            [total.imag, rest.real, -lean.real],
-            [xi.real / F, xi.imag / F, z / F],
-        ]
+        return arb_mat(
+            [
+                [total.real, -rest.imag, lean.imag],
+                [total.imag, rest.real, -lean.real],
+                [xi.real / F, xi.imag / F, z / F],
+            ]
+        )
 
-    def _sideways(self, frame: list[list[arb]], eta: acb) -> tuple[arb, arb]:
+    def _sideways(self, frame: arb_mat, eta: acb) -> tuple[arb, arb]:
         """(X, Y) of R y."""
-        y = [eta.real, eta.imag, self._y3]
-        across, up, _ = _applied(frame, y)
-        return across, up
+        y = frame * arb_mat(3, 1, [eta.real, eta.imag, self._y3])
+        return y[0, 0], y[1, 0]
 
     def _path(
         self, u: arb, sideways: tuple[arb, arb], poles: list[list[acb]], along: arb
@@ -299,31 +302,3 @@ class Orbit:
         X, Y = sideways
         X0, Y0 = self._start_sideways
         return [(Y - Y0) / self._F, (X0 - X) / self._F, advance / self._F]
-
-
-def _as_told(start: Impulse, track: frozenset[str]) -> dict[str, Any]:
-    """The tracked quantities of the initial state."""
-    found: dict[str, Any] = {
-        "linear_impulse": balls(start.linear),
-        "angular_impulse": balls(start.angular),
-        "attitude": [balls(row) for row in rotation_matrix(start.attitude)],
-        "centre": balls(start.centre),
-    }
-    return {name: found[name] for name in ("linear_impulse", "angular_impulse", *sorted(track))}
-
-
-def _product(factors: Sequence[acb]) -> acb:
-    found = acb(1)
-    for factor in factors:
-        found *= factor
-    return found
-
-
-def _matrix_product(p: list[list[arb]], q: list[list[arb]]) -> list[list[arb]]:
-    columns = list(zip(*q, strict=True))
-    return [[a * x + b * y + c * z for x, y, z in columns] for a, b, c in p]
-
-
-def _applied(matrix: list[list[arb]], v: Sequence[arb]) -> list[arb]:
-    x, y, z = v
-    return [a * x + b * y + c * z for a, b, c in matrix]
