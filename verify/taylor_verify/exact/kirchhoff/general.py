@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from mpmath import mp, mpf
 
@@ -18,18 +18,13 @@ from taylor_verify.exact.kirchhoff.conserved import conserved
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.pendulum import Pendulum
 from taylor_verify.exact.kirchhoff.plane import Plane, plane, regime
+from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
-
-if TYPE_CHECKING:
-    from taylor_verify.exact.kirchhoff.screws import Screw
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
@@ -96,7 +91,7 @@ def elements_of(scene: Scene, digits: int) -> Elements:
         told.append(
             f"Conserved too: {fourth.name}, the fourth integral of {_FAMILIES[fourth.name]}."
         )
-    return Elements(kind, numbers, (*told, *_told_of_screws(body, start)))
+    return Elements(kind, numbers, (*told, *_screw_story(scene)))
 
 
 def _of_plane(found: Plane | None, alone: Scene, working: int) -> list[Element]:
@@ -143,39 +138,18 @@ def _of_curve(found: Curve | None, working: int) -> list[Element]:
     ]
 
 
-# The steady screws beside the motion.
-
-
-def screws_beside(scene: Scene) -> tuple[Screw, ...]:
-    """The steady screws with the F of the scene that turn about it as fast as its start does.
-
-    None for a body of revolution, under loads, without linear impulse, and where they are not
-    three.
-    """
-    from taylor_verify.exact.kirchhoff.screws import screws, turn_of
-
-    body, start = scene.body, scene.initial
-    if not (isinstance(body, ImmersedBody) and isinstance(start, Impulse)):
-        return ()
-    if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
-        return ()
-    return screws(body, tensors.dot(start.linear, start.linear), turn_of(body, start))
-
-
-def _told_of_screws(body: ImmersedBody, start: Impulse) -> list[str]:
-    """Which of the three are stable, and whether the start is one of them."""
-    from taylor_verify.exact.kirchhoff.screws import is_steady, screws, turn_of
-
+def _screw_story(scene: Scene) -> list[str]:
+    """The stability of the three screws beside the motion, and whether the start is one of them."""
+    body, start = solid(scene)
     if not any(start.linear):
         return []
-    turn = turn_of(body, start)
-    found = screws(body, tensors.dot(start.linear, start.linear), turn)
     told = ["The start is itself a steady screw."] if is_steady(body, start) else []
+    found = screws_beside(scene)
     if not found:
         return [*told, _NOT_THREE]
     told.append(
         "Steady screws with this F that turn about it as the start does, lambda = Omega.x/F^2 = "
-        f"{float_text(turn)}: three, by rising mu."
+        f"{float_text(found[0].turn)}: three, by rising mu."
     )
     for number, screw in enumerate(found, 1):
         axis = ", ".join(f"{float(entry.mid()):.3g}" for entry in screw.axis())
@@ -188,8 +162,6 @@ def _told_of_screws(body: ImmersedBody, start: Impulse) -> list[str]:
 
 def _pace(screw: Screw) -> str:
     """The rates that go with the statement."""
-    from taylor_verify.exact.kirchhoff.screws import Stability
-
     if screw.stability is Stability.UNDECIDED:
         return ""
     if screw.stability is Stability.UNSTABLE:
