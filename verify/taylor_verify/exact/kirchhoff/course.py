@@ -17,7 +17,7 @@ from flint import acb, arb
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.kirchhoff.lattice import Lattice, lattice
-from taylor_verify.exact.kirchhoff.quartic import Nutation
+from taylor_verify.exact.kirchhoff.quartic import Nutation, invariants
 
 _I: Final = acb(0, 1)
 
@@ -38,8 +38,7 @@ class Course(ABC):
         self._about_start = _about(nutation.f, nutation.z)
         self.z, self.speed = ball(nutation.z), ball(nutation.speed)
         a0, b1, b2, b3, b4 = self._about_start
-        g2 = a0 * b4 - 4 * b1 * b3 + 3 * b2**2
-        g3 = a0 * b2 * b4 + 2 * b1 * b2 * b3 - b2**3 - a0 * b3**2 - b1**2 * b4
+        g2, g3 = invariants(nutation.f)
         self.lattice: Lattice = lattice(g2, g3)
         self._half_b2, self._twice_b3, self._half_g2 = ball(b2 / 2), ball(2 * b3), ball(g2 / 2)
         self._b4_b1, self._half_b4_a0 = ball(b4 * b1), ball(b4 * a0 / 2)

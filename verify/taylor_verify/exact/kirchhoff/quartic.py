@@ -106,6 +106,15 @@ def derivative(polynomial: Polynomial) -> Polynomial:
     return tuple((degree - k) * c for k, c in enumerate(polynomial[:-1]))
 
 
+def invariants(polynomial: Polynomial) -> tuple[Fraction, Fraction]:
+    """g2 and g3 of a quartic, or of a polynomial of lower degree as one; a translation leaves them."""
+    a0, a1, a2, a3, a4 = (Fraction(0),) * (5 - len(polynomial)) + polynomial
+    a1, a2, a3 = a1 / 4, a2 / 6, a3 / 4
+    g2 = a0 * a4 - 4 * a1 * a3 + 3 * a2**2
+    g3 = a0 * a2 * a4 + 2 * a1 * a2 * a3 - a2**3 - a0 * a3**2 - a1**2 * a4
+    return g2, g3
+
+
 def remainder(a: Polynomial, b: Polynomial) -> Polynomial:
     rest = list(a)
     while len(rest) >= len(b):
