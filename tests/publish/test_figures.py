@@ -80,7 +80,7 @@ def _over_periods(model: str, body: object, initial: object) -> Scene:
     scene = Scene("drawn", "drawn", model, frozenset(), body, initial, start)
     exact = solution(scene, "mpmath")
     assert isinstance(exact, FreeRotation | NutatingBody)
-    span = PERIODS * Fraction(str(float(exact.period(20))))
+    span = PERIODS * Fraction(str(float(exact.elements(20)["period"])))
     clock = Clock(Fraction(0), tuple(span * k / 100 for k in range(101)))
     return Scene("drawn", "drawn", model, frozenset(), body, initial, clock)
 

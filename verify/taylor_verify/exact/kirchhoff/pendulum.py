@@ -25,7 +25,6 @@ from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.frames import start_frame
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.zeta import SquaredSine
 from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes.scene import Scene
 
@@ -179,7 +178,6 @@ class Elliptic:
         )
         self._m, self._m_prime = (mp.convert(ratio) for ratio in ratios)
         self._landen = Landen(self._m, self._m_prime)
-        self._sine = SquaredSine(self._m, self._m_prime)
         # Squares of sn, cn and dn at the start, rational; alpha' says which way.
         sine2, cosine2, rate2 = place.x[1] ** 2, place.x[0] ** 2, place.rate**2
         if self._swings:
@@ -196,12 +194,12 @@ class Elliptic:
         u0 = sn * mp.elliprf(mp.convert(cn2), mp.convert(dn2), 1)
         K = self._landen.quarter_period
         self._u0 = u0 if onward else 2 * K - u0
-        self._first = self._squares(self._u0)
+        self._first = self._landen.squared_sine(self._u0)
 
     def at(self, t: Fraction) -> Swept:
         u = self._u0 + self._speed * mp.convert(t)
         sn, cn, dn = self._landen.jacobi(u)
-        squares = (self._squares(u) - self._first) / self._speed
+        squares = (self._landen.squared_sine(u) - self._first) / self._speed
         if self._swings:
             k = mp.sqrt(self._m)
             rate = self._sign * k * self._speed * cn
@@ -213,11 +211,6 @@ class Elliptic:
         rate = abs(self._speed)
         period = 4 * self._landen.quarter_period / rate
         return {"period": period, "rate": rate, "m": self._m, "m_prime": self._m_prime}
-
-    def _squares(self, u: mpf) -> mpf:
-        """m int_0^u sn^2 du."""
-        K = self._landen.quarter_period
-        return self._sine.at(u, u - 2 * mp.nint(u / (2 * K)) * K)
 
 
 def _course(kind: str, place: Plane) -> Even | Front | Elliptic:

@@ -80,6 +80,13 @@ class Nutation:
         pull = body.r * (self.FG * z - self.F2 * self.y3) / (self.F2 - z**2)
         return (body.r - body.r_prime) * self.y3 - (body.q_prime - body.q) * z + pull
 
+    def drift(self, z: Fraction) -> Fraction:
+        """r F Z' where x3 = z, with Z the way of the centre along F: Hydromechanics 49 (20)."""
+        body = self.body
+        steady = body.p * self.F2 + body.q * self.FG
+        screw = (body.q_prime - body.q) * self.y3
+        return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z)
+
     def touches_pole(self, side: int) -> bool:
         """Whether f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
         same_size = self.F2 * self.y3**2 == self.FG**2
