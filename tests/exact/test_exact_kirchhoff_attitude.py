@@ -13,7 +13,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.kirchhoff import orbit
-from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
+from taylor_verify.exact.kirchhoff.closed import closed_form
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import turning_points
 from taylor_verify.exact.kirchhoff.space import CayleyKlein

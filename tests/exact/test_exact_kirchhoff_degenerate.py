@@ -24,7 +24,8 @@ from builders.clebsch import (
 from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 
-from taylor_verify.exact.kirchhoff.jacobi import NutatingBody, closed_form
+from taylor_verify.exact.kirchhoff.closed import closed_form
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import Nutation, Polynomial, repeated_root, value
 from taylor_verify.exact.kirchhoff.regime import regime
 from taylor_verify.exact.solution import Quantities

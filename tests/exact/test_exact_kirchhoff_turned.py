@@ -11,9 +11,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
-from taylor_verify.exact.kirchhoff.jacobi import closed_form
+from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.turned import upright
-from taylor_verify.exact.kirchhoff.weierstrass import enclosed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution

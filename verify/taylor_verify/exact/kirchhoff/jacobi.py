@@ -14,14 +14,12 @@ from taylor_verify.exact.frames import Frame, applied, product, start_frame, tur
 from taylor_verify.exact.kirchhoff.degenerate import ElementaryOrbit, Front
 from taylor_verify.exact.kirchhoff.orbit import EllipticOrbit, Orbit
 from taylor_verify.exact.kirchhoff.quartic import Nutation
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.kirchhoff.space import Axial, transverse
-from taylor_verify.exact.solution import Quantities, Settled, Solution
+from taylor_verify.exact.solution import Quantities, Settled
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.precision import floor_log2
-from taylor_verify.scenes.scene import Scene
 
 _GUARD_DIGITS: Final = 12
 _ROUGH_DIGITS: Final = 20
@@ -32,18 +30,6 @@ _ORBITS: Final[Mapping[str, type[ElementaryOrbit | Front]]] = {
     "algebraic": ElementaryOrbit,
     "heteroclinic": Front,
 }
-
-
-def closed_form(scene: Scene) -> Solution:
-    """The closed form of a scene with Clebsch's energy and no loads.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    nutation, start = nutation_of(scene)
-    kind = regime(nutation)
-    if kind in ("rest", "steady", "euler-top"):
-        return Screw(kind, nutation, start, scene.track)
-    return NutatingBody(kind, nutation, start, scene.track)
 
 
 @final

@@ -29,27 +29,12 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, ba
 from taylor_verify.exact.kirchhoff.course import Front, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
-from taylor_verify.exact.kirchhoff.turning import TurningBody
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.scene import Scene
 
 _I: Final = acb(0, 1)
 # Where |xi|^2 is a smaller part of F^2, eta is not found by a division by it.
 _NEAR_POLE: Final = 2.0**-6
-
-
-def enclosed(scene: Scene) -> Enclosed:
-    """The closed form of a scene with Clebsch's energy and no loads.
-
-    Raises NoClosedForm, with the reason, for every other scene.
-    """
-    nutation, start = nutation_of(scene)
-    kind = regime(nutation)
-    if kind in ("rest", "steady", "euler-top"):
-        return TurningBody(kind, nutation, start, scene.track)
-    return NutatingBody(kind, nutation, start, scene.track)
 
 
 @final
