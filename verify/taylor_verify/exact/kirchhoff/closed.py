@@ -7,7 +7,7 @@ share no formula.
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
 
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.carried import carried
@@ -27,13 +27,8 @@ from taylor_verify.exact.solution import Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-
-class Maker(Protocol):
-    """A solution of Clebsch's body by its regime."""
-
-    def __call__(
-        self, kind: str, nutation: Nutation, start: Impulse, track: frozenset[str]
-    ) -> Solution: ...
+Maker = Callable[[str, Nutation, Impulse, frozenset[str]], Solution]
+"""A solution of Clebsch's body, from its regime, its constants, its start and what is tracked."""
 
 
 def enclosed(scene: Scene) -> Solution:

@@ -18,7 +18,6 @@ exponential of a linear function of u and of i (q' - q) int z.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import Any, Final, final
@@ -26,7 +25,7 @@ from typing import Any, Final, final
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, balls
-from taylor_verify.exact.kirchhoff.course import Front, QuarticCourse, course
+from taylor_verify.exact.kirchhoff.course import QuarticCourse, course
 from taylor_verify.exact.kirchhoff.lattice import Lattice
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.rotation import rotation_matrix
@@ -58,30 +57,25 @@ class NutatingBody(Enclosed):
         return {name: [row[name] for row in rows] for name in self._names}
 
 
-@dataclass(frozen=True)
+@final
 class Factor:
     """N(u; a) = s(u - a)/s(-a); s(u)/s'(0) for the argument 0, and 1 for one at a double point."""
 
-    lattice: Lattice
-    argument: acb | None
-    scale: acb
-
-    @classmethod
-    def of(cls, lattice: Lattice, argument: acb | None) -> Factor:
-        if argument is None:
-            return cls(lattice, None, acb(1))
-        order = int(argument.is_zero())
-        return cls(lattice, argument, lattice.jet(-argument, order)[order])
+    def __init__(self, lattice: Lattice, argument: acb | None) -> None:
+        self._lattice, self._argument = lattice, argument
+        if argument is not None:
+            order = int(argument.is_zero())
+            self._scale = lattice.jet(-argument, order)[order]
 
     def jet(self, u: arb, order: int) -> list[acb]:
         """N and, for order 1, its derivative."""
-        if self.argument is None:
+        if self._argument is None:
             return [acb(1), acb(0)][: order + 1]
-        return [value / self.scale for value in self.lattice.jet(u - self.argument, order)]
+        return [value / self._scale for value in self._lattice.jet(u - self._argument, order)]
 
     def start_rate(self) -> acb:
         """N'/N at the start, or its constant term, zero, for a factor that vanishes there."""
-        if self.argument is None or self.argument.is_zero():
+        if self._argument is None or self._argument.is_zero():
             return acb(0)
         value, slope = self.jet(arb(0), 1)
         return slope / value
@@ -100,8 +94,7 @@ class Orbit:
         self._FG, self._screw = ball(nutation.FG), ball(body.q_prime - body.q)
         self._spin = ball(body.r_prime * nutation.y3)
         self._course = course(nutation, heteroclinic)
-        self._front = self._front_ratio() if heteroclinic else None
-        self._find_factors(heteroclinic)
+        self._find_factors()
         self._find_rates()
         self._find_amplitudes(start)
         # The start as given: a centre or a y that is zero has no other narrow ball.
@@ -127,8 +120,10 @@ class Orbit:
         below = prod((value for value, *_ in poles), start=acb(1)) ** self._course.order
         turn = self._xi * (self._xi_rate * u).exp() / (below * screw)
         xi = turn * above[0].conjugate() * above[1]
-        if self._front is not None:
-            eta = self._front * xi
+        front = self._course.front
+        if front is not None:
+            # G = y3 = 0, and y keeps its digits where z' = c (F^2 - z^2) has none left.
+            eta = _I * front.c / self._r * xi
         elif abs(xi).mid() < _NEAR_POLE * self._F.mid():
             eta = self._eta_near_pole(u, z, xi, turn, above)
         else:
@@ -151,32 +146,24 @@ class Orbit:
 
     # What is found once.
 
-    def _front_ratio(self) -> acb:
-        """eta/xi where f is a square: G = y3 = 0 then, and eta = i (c/r) xi with z' = c (F^2 - z^2).
-
-        So y keeps its digits where both fall off as e^{-|c| F t}, and z' has none left.
-        """
-        return _I * Front(self._nutation).c / self._r
-
-    def _find_factors(self, heteroclinic: bool) -> None:
+    def _find_factors(self) -> None:
         """alpha where (z, z') = (-F, s-), beta where it is (F, -s+), and the poles of z."""
         lattice, F = self._course.lattice, self._F
         pull = self._r * (self._FG + F * self._y3), self._r * (self._FG - F * self._y3)
         # Where a pole is a root of f the pull is zero, which no ball can say.
         self._s_minus = acb(0, arb(0) if self._nutation.touches_pole(-1) else pull[0])
         self._s_plus = acb(0, arb(0) if self._nutation.touches_pole(1) else pull[1])
-        self._alpha = Factor.of(lattice, self._zero(-1, self._s_minus, heteroclinic))
-        self._beta = Factor.of(lattice, self._zero(1, -self._s_plus, heteroclinic))
-        self._poles = [Factor.of(lattice, w) for w in self._course.poles]
+        self._alpha = Factor(lattice, self._zero(-1, self._s_minus))
+        self._beta = Factor(lattice, self._zero(1, -self._s_plus))
+        self._poles = [Factor(lattice, w) for w in self._course.poles]
 
-    def _zero(self, side: int, s: acb, heteroclinic: bool) -> acb | None:
+    def _zero(self, side: int, s: acb) -> acb | None:
         """The argument of (side F, s): 0 for a start there, None if f has a double root there."""
-        nutation = self._nutation
         if self._starts_on_axis(side):
             return acb(0)
-        double = repeated_root(nutation.f)
-        is_double = double is not None and double**2 == nutation.F2 and side * double > 0
-        if heteroclinic or is_double:
+        double = repeated_root(self._nutation.f)
+        is_double = double is not None and double**2 == self._nutation.F2 and side * double > 0
+        if self._course.front is not None or is_double:
             return None
         return self._course.argument(side * self._F, s)
 
