@@ -19,6 +19,7 @@ from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.tensors import Matrix
 
 # Quantity by name; for each time a row of balls, nested as the quantity is shaped.
 Enclosure = Mapping[str, Sequence[Any]]
@@ -155,6 +156,11 @@ def ball(value: Fraction | int) -> arb:
 
 def balls(vector: Iterable[Fraction]) -> list[arb]:
     return [ball(entry) for entry in vector]
+
+
+def ball_matrix(matrix: Matrix) -> arb_mat:
+    """Return a matrix of rationals in balls."""
+    return arb_mat([balls(row) for row in matrix])
 
 
 def midpoint(value: arb) -> mpf:

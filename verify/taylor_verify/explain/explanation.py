@@ -12,8 +12,7 @@ from mpmath import mp
 from taylor_verify.exact import ellipsoid
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elements import Element, Elements, elements
-from taylor_verify.exact.kirchhoff.general import screws_beside
-from taylor_verify.exact.kirchhoff.screws import Screw
+from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.partial import partial_judgement

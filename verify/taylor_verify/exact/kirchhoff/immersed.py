@@ -16,7 +16,7 @@ from taylor_verify.exact.equations import Equations, cross, exact
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
-from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy, fourth
+from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, axial, energy
 from taylor_verify.exact.parameters import Block, Parameters, entries
 from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
@@ -90,9 +90,9 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         found = [energy(body), F2, FG]
         if body.axis_of_symmetry is not None:
             found.append(axial(body.axis_of_symmetry))
-        integral = fourth_integral(scene)
-        if integral is not None:
-            found.append(fourth(integral))
+        fourth = fourth_integral(scene)
+        if fourth is not None:
+            found.append(Invariant(fourth.name, fourth.value, fourth.scale, fourth.sensitivity))
         if "attitude" in scene.track:
             found.append(X_SPACE)
         if "centre" in scene.track:
