@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Sequence
 from datetime import datetime
 from decimal import Decimal
@@ -17,6 +18,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.scenes.precision import held_exactly
+from taylor_verify.scenes.reading.faults import cut
 from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
 
 # A rational, or the NaN or infinity that the file has in its place.
@@ -73,6 +75,15 @@ def is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the object of a JSON document; ValueError for a key that it has twice."""
+    document = dict(pairs)
+    if len(document) < len(pairs):
+        (twice, _), *_ = Counter(name for name, _ in pairs).most_common(1)
+        raise ValueError(f"the key {cut(repr(twice))} twice")
+    return document
 
 
 def held(rows: Sequence[Sequence[Value]], bits: int) -> np.ndarray[Any, Any]:
