@@ -31,14 +31,13 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.precision import Rung, exact_value
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.geometric.fixed_step import Body
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.scipy import unavailable
-from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
+from taylor_verify.solvers.solver import Solver, raised
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
-PREFIX: Final = "closed-form:"
 METHODS: Final = ("ellipj",)
 
 Floats = np.ndarray[Any, Any]
@@ -59,14 +58,15 @@ class ClosedForm(Solver):
         body = problem.given.body
         if not isinstance(body, RigidBody):
             return f"{self.name} is made for Euler's equations, got {problem.scene.model}"
-        if not body.is_free:
-            return f"{self.name} is made for a body without a moment"
         if "attitude" in problem.scene.track:
             return f"{self.name} gives omega and no attitude"
-        if not any(problem.initial_momenta):
-            return f"{self.name} is made for a body that turns"
-        if not _has_distinct_moments(body.inverse_inertia):
-            return f"{self.name} is made for three distinct principal moments"
+        for fits, made_for in (
+            (body.is_free, "a body without a moment"),
+            (any(problem.initial_momenta), "a body that turns"),
+            (_has_distinct_moments(body.inverse_inertia), "three distinct principal moments"),
+        ):
+            if not fits:
+                return f"{self.name} is made for {made_for}"
         return ""
 
     def solve(self, problem: Problem) -> Trajectory:
@@ -77,25 +77,18 @@ class ClosedForm(Solver):
         began = perf_counter()
         try:
             with np.errstate(all="ignore"):
-                momenta = _momenta(problem)
+                rows = _momenta(problem).tolist()
         except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            return Trajectory(Outcome.RAISED, detail=f"{type(error).__name__}: {error}")
+            return raised(error)
+        # Each sample is found for itself: no step is taken, and nothing adds up.
         seconds = perf_counter() - began
-        if not np.isfinite(momenta).all():
-            return Trajectory(Outcome.NON_FINITE, seconds=seconds)
-        rows = momenta.tolist()
-        return Trajectory(
-            Outcome.FINISHED,
-            Postponed(problem, lambda: [[exact_value(v) for v in row] for row in rows]),
-            # Each sample is found for itself: no step is taken, and nothing adds up.
-            steps=len(rows),
-            seconds=seconds,
-            compile_seconds=began - asked,
+        return of_rows(
+            problem, rows, steps=len(rows), seconds=seconds, compile_seconds=began - asked
         )
 
 
 def _momenta(problem: Problem) -> Floats:
-    """The momentum in body axes at each of the problem's times, in its units."""
+    """Return the momentum in body axes at each of the problem's times, in its units."""
     from scipy.special import ellipj, ellipkinc
 
     k, axes = _principal(np.array(Body.of(problem).K))
@@ -114,7 +107,7 @@ def _momenta(problem: Problem) -> Floats:
 
 
 def _principal(K: Floats) -> tuple[Floats, Floats]:
-    """The principal values in rising order and the axes as columns; exact where K is diagonal."""
+    """Return the principal values in rising order and the axes as columns; exact where K is diagonal."""
     if np.count_nonzero(K - np.diag(np.diag(K))):
         values, vectors = np.linalg.eigh(K)
         return values, vectors
@@ -123,7 +116,7 @@ def _principal(K: Floats) -> tuple[Floats, Floats]:
 
 
 def _encircles_last(k: Floats, h: Floats) -> bool:
-    """Whether the orbit is about the axis of the largest k, the least moment: 2T > k_b |H|^2."""
+    """Return True for an orbit about the axis of the largest k, the least moment: 2T > k_b |H|^2."""
     return bool((k[2] - k[1]) * h[2] ** 2 > (k[1] - k[0]) * h[0] ** 2)
 
 
@@ -160,7 +153,7 @@ class _Orbit:
 
     @property
     def amplitudes(self) -> tuple[float, float, float]:
-        """Of h_a, h_b, h_c: what stands before dn, sn and cn."""
+        """The amplitudes of h_a, h_b, h_c, which stand before dn, sn and cn."""
         side = copysign(1.0, self.h_a)
         turn = copysign(1.0, self.k_a - self.k_c)
         across = abs(self.k_c - self.k_a)
@@ -178,7 +171,7 @@ class _Orbit:
 
 
 def _has_distinct_moments(K: tensors.Matrix) -> bool:
-    """Whether the characteristic polynomial has no double root: its discriminant, in rationals."""
+    """Return True if the characteristic polynomial has no double root: its discriminant, in rationals."""
     trace = K[0][0] + K[1][1] + K[2][2]
     square = tensors.product(K, K)
     minors = (trace**2 - sum((square[i][i] for i in range(3)), Fraction(0))) / 2
@@ -194,6 +187,6 @@ def _has_distinct_moments(K: tensors.Matrix) -> bool:
 
 
 def named(name: str) -> ClosedForm:
-    """The closed form of that name; ValueError for one that there is not, and for any setting."""
+    """Return the closed form of that name; ValueError for one that there is not, and for any setting."""
     options(name, METHODS, [])
     return ClosedForm(name)
