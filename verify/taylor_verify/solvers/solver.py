@@ -116,6 +116,12 @@ def float64_alone(name: str, rung: Rung) -> str:
     return "" if rung.name == "f64" else f"{name} is made in float64: f64 alone"
 
 
+def not_started(reason: str) -> Trajectory:
+    """Return the trajectory of a solver that is not started, with the outcome of what it lacks."""
+    outcome = reason.outcome if isinstance(reason, Lack) else Outcome.NOT_STARTED
+    return Trajectory(outcome, detail=str(reason))
+
+
 def raised(error: BaseException) -> Trajectory:
     """Return the trajectory of a solver that ended with an error, a `sys.exit` included."""
     detail = f"{type(error).__name__}: {error}".removesuffix(": ")
