@@ -49,7 +49,7 @@ _LARGEST_STRAIGHT_LINE: Final = 6
 
 @dataclass(frozen=True)
 class Lane:
-    """Where one start has come to: its state at ``time``, both in the units of its problem.
+    """One start on its way: its state at ``time``, both in the units of its problem.
 
     ``fastest`` is the fastest linear rate that it has met, on which its longest step rests. FINISHED
     means that it has come as far as it was asked to; any other ``outcome`` is where it ended, and
@@ -90,31 +90,31 @@ class Ensemble:
         self._is_batch = width > 1
 
     def start(self) -> tuple[Lane, ...]:
-        """Every lane at its initial state."""
+        """Return every lane at its initial state."""
         return tuple(Lane(Fraction(0), problem.initial_momenta) for problem in self.problems)
 
     def advance(self, lanes: Sequence[Lane], until: Sequence[Fraction]) -> tuple[Lane, ...]:
-        """Every lane that goes on, at its time in ``until``: numbers of the rung, in its own units.
+        """Return every lane that goes on at its time in ``until``: numbers of the rung, in its own units.
 
         A lane that does not get there is left where it was, with an outcome that says why.
         """
-        pairs = [
-            self._prepared(i, lane, t) for i, (lane, t) in enumerate(zip(lanes, until, strict=True))
-        ]
+        ready = [self._prepared(*each) for each in zip(self._linearised, lanes, until, strict=True)]
         # heyoka steps without the interpreter: threads are as good as processes.
         with ThreadPoolExecutor(_processors()) as pool:
-            work = zip(self._groups, self._steppers, strict=True)
             jobs = [
-                pool.submit(self._run, stepper, group, [pairs[i] for i in group], until)
-                for group, stepper in work
+                pool.submit(
+                    self._run, stepper, group, [ready[i] for i in group], [until[i] for i in group]
+                )
+                for group, stepper in zip(self._groups, self._steppers, strict=True)
             ]
             return tuple(lane for job in jobs for lane in job.result())
 
-    def _prepared(self, i: int, lane: Lane, until: Fraction) -> Lane:
-        """The lane with the rate that it steps by, or taken out where that is not finite."""
+    @staticmethod
+    def _prepared(linearised: Linearised, lane: Lane, until: Fraction) -> Lane:
+        """Return the lane with the rate that it steps by, or taken out where that is not finite."""
         if not lane.goes_on:
             return lane
-        rate = max(lane.fastest, self._linearised[i].fastest([_double(v) for v in lane.state]))
+        rate = max(lane.fastest, linearised.fastest([_double(v) for v in lane.state]))
         if not isfinite(rate):
             return replace(lane, outcome=Outcome.NON_FINITE)
         if not rate * abs(float(until - lane.time)) <= MOST_RADIANS:
@@ -122,9 +122,8 @@ class Ensemble:
         return replace(lane, fastest=rate)
 
     def _run(
-        self, stepper: Any, group: Sequence[int], lanes: list[Lane], until: Sequence[Fraction]
+        self, stepper: Any, group: Sequence[int], lanes: list[Lane], targets: Sequence[Fraction]
     ) -> list[Lane]:
-        targets = [until[i] for i in group]
         if not any(lane.goes_on for lane in lanes):
             return lanes
         if not self._is_batch:
@@ -136,8 +135,7 @@ class Ensemble:
 
     def _run_alone(self, integrator: Any, i: int, lane: Lane, target: Fraction) -> Lane:
         numbers = self._numbers
-        time, end = numbers.array([lane.time, target])
-        integrator.time = time
+        integrator.time, end = numbers.array([lane.time, target])
         integrator.state[:] = numbers.array(lane.state)
         integrator.pars[:] = numbers.array(self.problems[i].parameters)
         status, _, _, steps, *_ = integrator.propagate_until(
@@ -145,18 +143,18 @@ class Ensemble:
             max_delta_t=numbers.double(LONGEST_STEP / lane.fastest),
             max_steps=most_steps(lane, target),
         )
-        outcome = outcome_of(status)
-        return self._reached(lane, target, outcome, int(steps), integrator.state)
+        return self._reached(lane, target, outcome_of(status), int(steps), integrator.state)
 
     def _reached(
         self, lane: Lane, target: Fraction, outcome: Outcome, steps: int, state: Array
     ) -> Lane:
+        lane = replace(lane, steps=lane.steps + steps)
         if outcome is Outcome.FINISHED and not np.isfinite(state).all():
             outcome = Outcome.NON_FINITE
         if outcome is not Outcome.FINISHED:
-            return replace(lane, outcome=outcome, steps=lane.steps + steps)
+            return replace(lane, outcome=outcome)
         exact = tuple(self._numbers.exact(value) for value in state)
-        return replace(lane, time=target, state=exact, steps=lane.steps + steps)
+        return replace(lane, time=target, state=exact)
 
 
 class _Stretch:
@@ -189,7 +187,7 @@ class _Stretch:
         self._steps = np.zeros(width, dtype=int)
 
     def step(self) -> bool:
-        """As far as the batch goes; whether there are lanes that still have to go on."""
+        """Step as far as the batch goes; True if there are lanes that still have to go on."""
         going = [k for k, lane in enumerate(self.lanes) if lane.goes_on]
         if not going:
             return False
@@ -199,22 +197,19 @@ class _Stretch:
         integrator.state[:], integrator.pars[:] = self._state, self._parameters
         most = max(most_steps(self.lanes[k], self._targets[k]) for k in going)
         integrator.propagate_until(self._end, max_delta_t=self._longest, max_steps=most)
-        found = integrator.propagate_res
-        self._steps += [int(result[3]) for result in found]
+        results = integrator.propagate_res
+        self._steps += [int(result[3]) for result in results]
         finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
         lost = [k for k in going if not finite[k]]
-        if not lost:
-            for k in going:
-                self._settle(k, outcome_of(found[k][0]), integrator.state[:, k])
-            return False
+        for k in lost or going:
+            outcome = Outcome.NON_FINITE if lost else outcome_of(results[k][0])
+            self._settle(k, outcome, integrator.state[:, k])
         # The others have been stopped where they are, not at their targets: they go on from there.
-        for k in lost:
-            self._settle(k, Outcome.NON_FINITE, integrator.state[:, k])
         self._time, self._state = integrator.time.copy(), integrator.state.copy()
-        return True
+        return bool(lost)
 
     def _fill_empty_places(self, going: Sequence[int]) -> None:
-        """A place without a lane that goes on holds another's numbers, and is where it should be."""
+        """Give a place without a lane that goes on another's numbers; it is where it should be."""
         for k in set(range(len(self._end))) - set(going):
             self._state[:, k] = self._state[:, going[0]]
             self._parameters[:, k] = self._parameters[:, going[0]]
@@ -227,7 +222,7 @@ class _Stretch:
 
 
 def batch_width(rung: Rung) -> int:
-    """How many lanes this processor steps at once; 1 where heyoka has no batch for the rung."""
+    """Return the lanes that this processor steps at once; 1 where heyoka has no batch for the rung."""
     import heyoka as hy
 
     kind = _BATCHED.get(rung.name)
@@ -235,12 +230,12 @@ def batch_width(rung: Rung) -> int:
 
 
 def most_steps(lane: Lane, target: Fraction) -> int:
-    """A bound that no regular orbit comes near: what needs more has gone astray."""
+    """Return a bound that no regular orbit comes near: what needs more has gone astray."""
     return LEAST_STEPS + int(STEPS_PER_RADIAN * lane.fastest * abs(float(target - lane.time)))
 
 
 def _processors() -> int:
-    """How many this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -266,7 +261,7 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 @lru_cache(maxsize=32)
 def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
-    """One compiled integrator of so many lanes."""
+    """Return one compiled integrator of so many lanes."""
     if width == 1:
         return compiled(form, rung, tolerance)
     import heyoka as hy
@@ -291,7 +286,7 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
 
 
 def _double(value: Fraction) -> float:
-    """Infinite beyond a double: nothing that is to be stepped is so large in units of its own size."""
+    """Return a double, infinite beyond its range: nothing to be stepped is so large in its own units."""
     try:
         return float(value)
     except OverflowError:
@@ -299,6 +294,6 @@ def _double(value: Fraction) -> float:
 
 
 def _padded(values: Array, width: int) -> Array:
-    """The last axis with zeros up to so many places."""
+    """Return the values with zeros behind the last axis up to so many places."""
     missing = width - values.shape[-1]
     return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, missing)])
