@@ -20,13 +20,13 @@ middle axis     a body that turns about it has u0 infinite, and the answer is no
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from importlib import import_module
 from math import atan2, copysign, sqrt
 from time import perf_counter
 from typing import Any, Final, final
 
 import numpy as np
+from flint import fmpq, fmpq_mat
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes import tensors
@@ -171,19 +171,10 @@ class _Orbit:
 
 
 def _has_distinct_moments(K: tensors.Matrix) -> bool:
-    """Return True if the characteristic polynomial has no double root: its discriminant, in rationals."""
-    trace = K[0][0] + K[1][1] + K[2][2]
-    square = tensors.product(K, K)
-    minors = (trace**2 - sum((square[i][i] for i in range(3)), Fraction(0))) / 2
-    a, b, c = K
-    determinant = tensors.dot(a, tensors.cross(b, c))
-    return (
-        trace**2 * minors**2
-        - 4 * minors**3
-        - 4 * trace**3 * determinant
-        + 18 * trace * minors * determinant
-        - 27 * determinant**2
-    ) != 0
+    """Return True if the characteristic polynomial, in rationals, shares no root with its derivative."""
+    entries = [fmpq(entry.numerator, entry.denominator) for row in K for entry in row]
+    polynomial = fmpq_mat(3, 3, entries).charpoly()
+    return bool(polynomial.gcd(polynomial.derivative()).degree() == 0)
 
 
 def named(name: str) -> ClosedForm:

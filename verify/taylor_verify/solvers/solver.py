@@ -16,8 +16,9 @@ from mpmath import mp
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import COLUMNS, state_groups
-from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.solvers.values import Value, exact, held
 
 _RATIONAL_BITS = 4000
 
@@ -100,12 +101,12 @@ class Callback(Solver):
             detail = f"expected states of shape {expected}, got {states.shape}"
             return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
         try:
-            held = np.array([[_held(v) for v in row] for row in states], dtype=object)
+            numbers = np.array([[_held(v) for v in row] for row in states], dtype=object)
         except TypeError as error:
             return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
         ends = list(accumulate((width for _, width in layout), initial=0))
         quantities = {
-            name: held[:, left:right]
+            name: numbers[:, left:right]
             for (name, _), (left, right) in zip(layout, pairwise(ends), strict=True)
         }
         return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
@@ -162,15 +163,10 @@ def _held(value: Any) -> Any:
     """
     if isinstance(value, mp.mpf):
         return value
-    if isinstance(value, np.floating | float) and not np.isfinite(value):
-        return mp.mpf(float(value))
     if isinstance(value, Rational) and not isinstance(value, bool):
-        numerator, denominator = int(value.numerator), int(value.denominator)
+        number: Value = Fraction(int(value.numerator), int(value.denominator))
     elif isinstance(value, np.floating | float):
-        numerator, denominator = value.as_integer_ratio()
+        number = exact(value)
     else:
         raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
-    if denominator & (denominator - 1):
-        with mp.workprec(_RATIONAL_BITS):
-            return mp.mpf(numerator) / denominator
-    return held_exactly(Fraction(numerator, denominator))
+    return held(number, _RATIONAL_BITS)

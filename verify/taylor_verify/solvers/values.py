@@ -15,7 +15,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
-from mpmath import mp
+from mpmath import libmp, mp
 
 from taylor_verify.scenes.precision import held_exactly
 from taylor_verify.scenes.reading.faults import cut
@@ -86,15 +86,11 @@ def named_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
     return document
 
 
-def held(rows: Sequence[Sequence[Value]], bits: int) -> np.ndarray[Any, Any]:
-    """Rows of values as an array of mpf: exact where a number has at most so many bits."""
-    with mp.workprec(bits):
-        return np.array([[_held(value) for value in row] for row in rows], dtype=object)
-
-
-def _held(value: Value) -> Any:
+def held(value: Value, bits: int) -> Any:
+    """Return a value as an mpf: exact where it has at most so many bits."""
     if not isinstance(value, Fraction):
         return mp.mpf(value)
     if value.denominator & (value.denominator - 1):
-        return mp.mpf(value.numerator) / value.denominator
+        ratio = (value.numerator, value.denominator)
+        return mp.make_mpf(libmp.from_rational(*ratio, bits, libmp.round_nearest))
     return held_exactly(value)

@@ -151,13 +151,14 @@ def _doubles(values: Raw) -> Floats:
 
 
 def _held(values: Raw, bits: int) -> Array:
-    if _is_double(values):
-        numbers = [mp.mpf(value) for value in np.asarray(values, dtype=np.float64).tolist()]
-        return np.fromiter(numbers, dtype=object, count=len(numbers))
     if _is_short(values):
         with gmpy2.context(precision=bits):
             return to_mpf(np.array([gmpy2.mpfr(text) for text in values], dtype=object))
-    return held([list(_exact(values))], bits)[0] if len(values) else np.empty(0, object)
+    if _is_double(values):
+        numbers = list(map(mp.mpf, np.asarray(values, dtype=np.float64).tolist()))
+    else:
+        numbers = [held(value, bits) for value in _exact(values)]
+    return np.fromiter(numbers, dtype=object, count=len(numbers))
 
 
 # What is read of a file.
