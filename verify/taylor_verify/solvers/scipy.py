@@ -52,7 +52,7 @@ def unavailable(name: str, rung: Rung) -> str:
 @final
 @dataclass(frozen=True)
 class SciPy(Solver):
-    """One method of `solve_ivp` at one pair of tolerances; atol counts in the problem's units."""
+    """A method of `solve_ivp` at one pair of tolerances; atol counts in the problem's units."""
 
     method: str
     name: str
@@ -105,7 +105,7 @@ class _NotFinite(Exception):
 
 
 class _Run:
-    """One call of solve_ivp, its steps and evaluations counted."""
+    """A call of solve_ivp, its steps and evaluations counted."""
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.steps = problem, 0

@@ -132,7 +132,7 @@ class FixedStep(Solver):
 
 
 class _Run:
-    """One run, its steps and evaluations counted."""
+    """A run, its steps and evaluations counted."""
 
     def __init__(self, solver: FixedStep) -> None:
         self.solver = solver

@@ -31,7 +31,7 @@ Settings = SimpleNamespace
 
 @dataclass(frozen=True)
 class Question:
-    """One problem; see equations.py for the order of ``state`` and ``parameters``.
+    """A problem; see equations.py for the order of ``state`` and ``parameters``.
 
     ``instants`` are the absolute times since the start that are asked for, from 0 on and strictly
     rising; ``columns`` the names that the answer needs besides t, and ``times`` is its column t.

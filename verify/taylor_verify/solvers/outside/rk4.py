@@ -146,7 +146,7 @@ def loads_of(
 
 
 def step(rates: Rates, t: float, state: Vector, h: float) -> Vector:
-    """One step of the classical Runge-Kutta method."""
+    """Take one step of the classical Runge-Kutta method."""
 
     def moved(k: Vector, by: float) -> Vector:
         return [s + by * r for s, r in zip(state, k, strict=True)]

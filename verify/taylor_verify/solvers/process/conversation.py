@@ -1,4 +1,4 @@
-"""One run of a program that may do anything: it is asked, heard, and ended with all that it started.
+"""A run of a program that may do anything: it is asked, heard, and ended with all that it started.
 
 supervisor.py stands between the program and this process. psutil could not do its work: it finds a
 process by its parent, and an orphan that has left the session has another one.

@@ -64,7 +64,7 @@ def _adopt_orphans() -> bool:
 
 
 def _deaths() -> int:
-    """A pipe that can be read from as soon as a child has ended."""
+    """Return a pipe that can be read from as soon as a child has ended."""
     reading, writing = os.pipe()
     os.set_blocking(reading, False)
     os.set_blocking(writing, False)
@@ -143,7 +143,7 @@ def _end_descendants(deaths: int) -> str:
 
 
 def _descendants() -> list[int]:
-    """The processes below this one, from /proc: the kernel has no other list."""
+    """Return the processes below this one, from /proc: the kernel has no other list."""
     children: dict[int, list[int]] = {}
     for name in _numbers():
         parent = _parent(name)
@@ -164,7 +164,7 @@ def _numbers() -> list[str]:
 
 
 def _parent(pid: str) -> int | None:
-    """The parent of a process that has not ended; its own name may hold spaces and brackets."""
+    """Return the parent of a process that has not ended; its own name may hold spaces and brackets."""
     try:
         with open(f"/proc/{pid}/stat", "rb") as file:
             state, parent = file.read().rpartition(b")")[2].split()[:2]

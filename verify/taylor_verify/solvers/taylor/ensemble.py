@@ -49,7 +49,7 @@ _LARGEST_STRAIGHT_LINE: Final = 6
 
 @dataclass(frozen=True)
 class Lane:
-    """One start on its way: its state at ``time``, both in the units of its problem.
+    """A start on its way: its state at ``time``, both in the units of its problem.
 
     ``fastest`` is the fastest linear rate that it has met, on which its longest step rests. FINISHED
     means that it has come as far as it was asked to; any other ``outcome`` is where it ended, and
@@ -158,7 +158,7 @@ class Ensemble:
 
 
 class _Stretch:
-    """One batch on its way to the targets of its lanes."""
+    """A batch on its way to the targets of its lanes."""
 
     def __init__(
         self,

@@ -83,7 +83,7 @@ class Candidates:
 
     @cached_property
     def cells(self) -> Mapping[tuple[Spelling, str], Cells]:
-        """By spelling and path: of each component the names that may be it."""
+        """The names that may be each component, by spelling and path."""
         cells: dict[tuple[Spelling, str], dict[int, list[tuple[Name, Unit | None]]]] = {}
         for name in self.free:
             for reading in name.readings:

@@ -85,7 +85,7 @@ def _columns(lines: _Lines, path: Path) -> list[Column]:
 
 
 def _rows(lines: _Lines) -> Iterator[list[str]]:
-    """The cells of each line, by the separator of the first one."""
+    """Return the cells of each line, by the separator of the first one."""
     each = iter(lines)
     first = next(each, "")
     separator = next((mark for mark in ",;\t" if mark in first), None)

@@ -33,7 +33,7 @@ def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Tabl
 
 
 def _arrays(content: Any, path: Path) -> Iterator[Array]:
-    """The datasets of the file; the fields of a table stand beside it, or below its name."""
+    """Yield the datasets of the file; the fields of a table stand beside it, or below its name."""
     for name, dataset in datasets(content, path):
         if dataset.dtype.names is None:
             yield _array(name, dataset, path)

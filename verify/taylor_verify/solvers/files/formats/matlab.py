@@ -130,7 +130,7 @@ class _Reader:
         return memoryview(unpacked)
 
     def _elements(self, data: memoryview) -> Iterator[_Element]:
-        """The elements in a row; a small one has its number of bytes in the upper half of its tag."""
+        """Yield the elements in a row; a small one has its number of bytes in the upper half of its tag."""
         place = 0
         while place < len(data):
             kind, size = struct.unpack_from(f"{self.order}II", data, place)
@@ -146,7 +146,7 @@ class _Reader:
     def _matrix(
         self, element: _Element, group: str = "", name: str = "", depth: int = 0
     ) -> Iterator[Array]:
-        """The array in an element, or the arrays of the struct in it; other elements hold none."""
+        """Yield the array in an element, or the arrays of the struct in it; other elements hold none."""
         if element.kind != _MATRIX or not len(element.data):
             return
         self.count += 1
