@@ -269,7 +269,7 @@ def test_a_file_tells_which_rows_are_numbers(tmp_path: Path) -> None:
     few = file.at([3, 5])
     assert few.times == (Fraction(repr(columns["t"][3])), Fraction(repr(columns["t"][5])))
     assert few.groups["omega"][1][0] == Fraction(repr(columns["w1"][5]))
-    assert few.rows["omega"].doubles()[0, 2] == columns["w3"][3]
+    assert few.groups["omega"].doubles()[0, 2] == columns["w3"][3]
 
 
 MEMORY = """

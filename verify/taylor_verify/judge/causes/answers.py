@@ -72,7 +72,7 @@ def _of_file(
         return None
     attitudes = _attitudes(file, given, found)
     values = {name: _read(file, name, found, attitudes) for name in _momenta(file, given)}
-    columns = [file.rows[name].doubles() for name in values]
+    columns = [file.groups[name].doubles() for name in values]
     if not values and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
         own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
         values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
@@ -124,7 +124,7 @@ def _momenta(file: TrajectoryFile, given: Scene) -> list[str]:
 
 def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
     """A group of vectors in body axes; from space axes they are taken by the file's own attitude."""
-    rows, reading = file.rows[name].doubles(), found.readings.get(name)
+    rows, reading = file.groups[name].doubles(), found.readings.get(name)
     if reading is None:
         return rows
     R = attitudes if attitudes is not None else np.full((len(rows), 3, 3), np.nan)
@@ -136,7 +136,7 @@ def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats
     for group in ("quaternion", "attitude"):
         if group in file.groups:
             reading = found.readings.get(group, readings(group)[0])
-            read = reading.read(file.rows[group].doubles(), np.empty(0))
+            read = reading.read(file.groups[group].doubles(), np.empty(0))
             return rotations(read) if group == "quaternion" else read
     if not found.readings:
         return None

@@ -36,7 +36,6 @@ from taylor_verify.solvers.files.rows import Rows, check_numbers, written_digits
 from taylor_verify.solvers.files.step import FileStep, step_inside
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.solvers.values import Value
 
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING_BITS: Final = 18
@@ -65,29 +64,23 @@ class Recorded(Solver):
 class TrajectoryFile:
     """A trajectory file: strictly monotonic times and whole groups of columns, all of one length.
 
-    ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at
-    (rows.py); ``digits`` is the largest number of significant decimals that any value is written
-    with, None where one is binary or a fraction. ``notes`` say how the
-    format was read, which columns were taken for which, and which were ignored.
-    ``step`` is the integrator's step, where the file states it.
+    ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at.
+    ``digits`` is the largest number of significant decimals that any value is written with, None where
+    one is binary or a fraction. ``notes`` say how the format was read, which columns were taken for
+    which, and which were ignored. ``step`` is the integrator's step, where the file states it.
     """
 
     name: str
     times: tuple[Fraction, ...]
-    groups: Mapping[str, Sequence[tuple[Value, ...]]]
+    groups: Mapping[str, Rows]
     digits: int | None = None
     notes: tuple[str, ...] = ()
     step: FileStep | None = None
 
     @cached_property
-    def rows(self) -> Mapping[str, Rows]:
-        """The groups with ways to many of their rows at once."""
-        return {name: Rows.of(group) for name, group in self.groups.items()}
-
-    @cached_property
     def is_single_precision(self) -> bool:
         """True if every finite number is one of float32, and not by chance."""
-        values = np.concatenate([rows.doubles().ravel() for rows in self.rows.values()])
+        values = np.concatenate([rows.doubles().ravel() for rows in self.groups.values()])
         doubles = values[np.isfinite(values)]
         with np.errstate(over="ignore"):
             is_single = np.array_equal(doubles.astype(np.float32).astype(np.float64), doubles)
@@ -99,13 +92,13 @@ class TrajectoryFile:
     def finite(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """The rows of which every number is finite."""
         finite = np.ones(len(self.times), dtype=bool)
-        for rows in self.rows.values():
+        for rows in self.groups.values():
             finite &= rows.finite
         return finite
 
     def at(self, places: Sequence[int]) -> TrajectoryFile:
         """Return some of the rows as a file of their own."""
-        groups = {name: tuple(group[k] for k in places) for name, group in self.groups.items()}
+        groups = {name: rows.at(places) for name, rows in self.groups.items()}
         return replace(self, times=tuple(self.times[k] for k in places), groups=groups)
 
 

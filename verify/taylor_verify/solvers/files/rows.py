@@ -52,14 +52,6 @@ class Rows(Sequence[tuple[Value, ...]]):
         self._count = len(self._columns[0])
         self.finite: Flags = np.ones(self._count, dtype=bool) if finite is None else finite
 
-    @classmethod
-    def of(cls, rows: Sequence[Sequence[Value]]) -> Rows:
-        """Return rows that are formed already."""
-        if isinstance(rows, Rows):
-            return rows
-        finite = [all(isinstance(value, Fraction) for value in row) for row in rows]
-        return cls(list(zip(*rows, strict=True)), np.array(finite, dtype=bool))
-
     def __len__(self) -> int:
         return self._count
 
@@ -82,6 +74,11 @@ class Rows(Sequence[tuple[Value, ...]]):
         if not isinstance(other, Sequence):
             return NotImplemented
         return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
+
+    def at(self, places: Sequence[int]) -> Rows:
+        """Return some of the rows."""
+        columns = [_some(column, places) for column in self._columns]
+        return Rows(columns, self.finite[list(places)], self._factors)
 
     def doubles(self, places: Sequence[int] | None = None) -> Floats:
         """Return some of the rows, or all, as float64, each number rounded once."""
@@ -120,13 +117,15 @@ def _chunks(count: int) -> Iterator[range]:
 
 
 def _some(column: Raw, places: Sequence[int]) -> Any:
-    """Return the entries of a column at some places."""
+    """Return the entries of a column at some places, texts as a list."""
     if isinstance(places, range) and places and abs(places.step) == 1:
         low, high = sorted((places[0], places[-1]))
-        entries: Any = column[low : high + 1]
-        entries = entries.tolist() if _is_array(entries, "T") else entries
-        return entries if places.step == 1 else entries[::-1]
-    return [column[k] for k in places]
+        entries: Any = column[low : high + 1][:: places.step]
+    elif isinstance(column, np.ndarray):
+        entries = column[np.asarray(places, dtype=int)]
+    else:
+        return [column[k] for k in places]
+    return entries.tolist() if _is_array(entries, "T") else entries
 
 
 def _is_array(values: Raw, kind: str) -> bool:
