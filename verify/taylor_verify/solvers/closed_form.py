@@ -97,11 +97,10 @@ def _momenta(problem: Problem) -> Floats:
         k, h, axes = k[::-1], h[::-1], axes[:, ::-1]
     if np.linalg.det(axes) < 0:
         h, axes = h * [1, -1, 1], axes * [1, -1, 1]
-    orbit = _Orbit(*(float(value) for value in (*k, *h)))
+    rate, m, amplitudes, angle = _orbit(*(float(value) for value in (*k, *h)))
     times = np.array([float(t) for t in problem.times])
-    phase = ellipkinc(orbit.angle, orbit.m)
-    sn, cn, dn, _ = ellipj(orbit.rate * times + phase, orbit.m)
-    along = np.array(orbit.amplitudes)[:, None] * np.array([dn, sn, cn])
+    sn, cn, dn, _ = ellipj(rate * times + ellipkinc(angle, m), m)
+    along = amplitudes[:, None] * np.array([dn, sn, cn])
     momenta: Floats = (axes @ along).T
     return momenta
 
@@ -120,54 +119,23 @@ def _encircles_last(k: Floats, h: Floats) -> bool:
     return bool((k[2] - k[1]) * h[2] ** 2 > (k[1] - k[0]) * h[0] ** 2)
 
 
-@dataclass(frozen=True)
-class _Orbit:
-    """The constants of an orbit about axis a, which is the axis of the least or of the largest k."""
+def _orbit(
+    k_a: float, k_b: float, k_c: float, h_a: float, h_b: float, h_c: float
+) -> tuple[float, float, Floats, float]:
+    """Return lam, m, the amplitudes of h_a, h_b, h_c, and the amplitude of u0.
 
-    k_a: float
-    k_b: float
-    k_c: float
-    h_a: float
-    h_b: float
-    h_c: float
-
-    @property
-    def _A(self) -> float:
-        """| |H|^2 k_c - 2T |, a sum of positive terms."""
-        return abs(self.k_c - self.k_a) * self.h_a**2 + abs(self.k_c - self.k_b) * self.h_b**2
-
-    @property
-    def _C(self) -> float:
-        """| 2T - |H|^2 k_a |, likewise."""
-        return abs(self.k_b - self.k_a) * self.h_b**2 + abs(self.k_c - self.k_a) * self.h_c**2
-
-    @property
-    def rate(self) -> float:
-        return sqrt(abs(self.k_b - self.k_a) * self._A)
-
-    @property
-    def m(self) -> float:
-        # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
-        ratio = abs(self.k_c - self.k_b) * self._C / (abs(self.k_b - self.k_a) * self._A)
-        return min(ratio, 1.0)
-
-    @property
-    def amplitudes(self) -> tuple[float, float, float]:
-        """The amplitudes of h_a, h_b, h_c, which stand before dn, sn and cn."""
-        side = copysign(1.0, self.h_a)
-        turn = copysign(1.0, self.k_a - self.k_c)
-        across = abs(self.k_c - self.k_a)
-        return (
-            side * sqrt(self._A / across),
-            side * turn * sqrt(self._C / abs(self.k_b - self.k_a)),
-            sqrt(self._C / across),
-        )
-
-    @property
-    def angle(self) -> float:
-        """The amplitude of u0: its sine and cosine are sn and cn at the start."""
-        _, b, c = self.amplitudes
-        return atan2(self.h_b * c * copysign(1.0, b), self.h_c * abs(b))
+    The orbit is about axis a, which is the axis of the least or of the largest k.
+    """
+    ab, bc, ac = abs(k_b - k_a), abs(k_c - k_b), abs(k_c - k_a)
+    # | |H|^2 k_c - 2T | and | 2T - |H|^2 k_a |, sums of positive terms.
+    A, C = ac * h_a**2 + bc * h_b**2, ab * h_b**2 + ac * h_c**2
+    # On the separatrix rounding makes it 1 and a little, which ellipj does not take.
+    m = min(bc * C / (ab * A), 1.0)
+    side, turn = copysign(1.0, h_a), copysign(1.0, k_a - k_c)
+    a, b, c = side * sqrt(A / ac), side * turn * sqrt(C / ab), sqrt(C / ac)
+    # The sine and cosine of the amplitude of u0 are sn and cn at the start.
+    angle = atan2(h_b * c * copysign(1.0, b), h_c * abs(b))
+    return sqrt(ab * A), m, np.array([a, b, c]), angle
 
 
 def _has_distinct_moments(K: tensors.Matrix) -> bool:

@@ -21,6 +21,7 @@ import select
 import signal
 import sys
 from contextlib import suppress
+from functools import partial
 from time import monotonic
 
 _PR_SET_CHILD_SUBREAPER = 36
@@ -77,14 +78,13 @@ def _start(command: list[str]) -> int:
     """Start the program with the signals as a shell has them."""
     signals = [*_IGNORED, signal.SIGCHLD, signal.SIGPIPE]
     signals += [s for name in ("SIGXFSZ", "SIGXFZ") if (s := getattr(signal, name, None))]
+    spawn = partial(
+        os.posix_spawnp, command[0], command, os.environ, setsigdef=signals, setsigmask=()
+    )
     try:
-        return os.posix_spawnp(
-            command[0], command, os.environ, setsid=True, setsigdef=signals, setsigmask=()
-        )
+        return spawn(setsid=True)
     except NotImplementedError:
-        return os.posix_spawnp(
-            command[0], command, os.environ, setpgroup=0, setsigdef=signals, setsigmask=()
-        )
+        return spawn(setpgroup=0)
 
 
 def _let_go_of_streams() -> None:
@@ -145,22 +145,15 @@ def _end_descendants(deaths: int) -> str:
 def _descendants() -> list[int]:
     """Return the processes below this one, from /proc: the kernel has no other list."""
     children: dict[int, list[int]] = {}
-    for name in _numbers():
-        parent = _parent(name)
-        if parent is not None:
-            children.setdefault(parent, []).append(int(name))
+    with suppress(OSError):
+        for name in filter(str.isdigit, os.listdir("/proc")):
+            if (parent := _parent(name)) is not None:
+                children.setdefault(parent, []).append(int(name))
     descendants, last = [], [os.getpid()]
     while last:
         last = [child for parent in last for child in children.get(parent, ())]
         descendants += last
     return descendants
-
-
-def _numbers() -> list[str]:
-    try:
-        return [name for name in os.listdir("/proc") if name.isdigit()]
-    except OSError:
-        return []
 
 
 def _parent(pid: str) -> int | None:

@@ -128,10 +128,7 @@ class Ensemble:
             return lanes
         if not self._is_batch:
             return [self._run_alone(stepper, group[0], lanes[0], targets[0])]
-        stretch = _Stretch(self, stepper, group, lanes, targets)
-        while stretch.step():
-            pass
-        return stretch.lanes
+        return self._run_batch(stepper, group, lanes, targets)
 
     def _run_alone(self, integrator: Any, i: int, lane: Lane, target: Fraction) -> Lane:
         numbers = self._numbers
@@ -145,6 +142,43 @@ class Ensemble:
         )
         return self._reached(lane, target, outcome_of(status), int(steps), integrator.state)
 
+    def _run_batch(
+        self, integrator: Any, group: Sequence[int], lanes: list[Lane], targets: Sequence[Fraction]
+    ) -> list[Lane]:
+        numbers, width, lanes = self._numbers, integrator.batch_size, list(lanes)
+        # The last group may have fewer lanes than the batch: the places left over stay empty.
+        end = _padded(numbers.array(targets), width)
+        time = _padded(numbers.array([lane.time for lane in lanes]), width)
+        state = _padded(np.array([numbers.array(lane.state) for lane in lanes]).T, width)
+        given = [numbers.array(self.problems[i].parameters) for i in group]
+        parameters = _padded(np.array(given, dtype=numbers.fp_type).T, width)
+        rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
+        rates += rates[:1] * (width - len(lanes))
+        longest = np.array([numbers.double(LONGEST_STEP / rate) for rate in rates])
+        steps = np.zeros(width, dtype=int)
+        while going := [k for k, lane in enumerate(lanes) if lane.goes_on]:
+            # A place without a lane that goes on holds another's numbers, and is where it should be.
+            for k in set(range(width)) - set(going):
+                state[:, k], parameters[:, k] = state[:, going[0]], parameters[:, going[0]]
+                time[k] = end[k] = end[going[0]]
+            integrator.set_time(time)
+            integrator.state[:], integrator.pars[:] = state, parameters
+            most = max(most_steps(lanes[k], targets[k]) for k in going)
+            integrator.propagate_until(end, max_delta_t=longest, max_steps=most)
+            results = integrator.propagate_res
+            steps += [int(result[3]) for result in results]
+            finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
+            lost = [k for k in going if not finite[k]]
+            for k in lost or going:
+                outcome = Outcome.NON_FINITE if lost else outcome_of(results[k][0])
+                reached = integrator.state[:, k]
+                lanes[k] = self._reached(lanes[k], targets[k], outcome, int(steps[k]), reached)
+            if not lost:
+                break
+            # The others have been stopped where they are, not at their targets: they go on from there.
+            time, state = integrator.time.copy(), integrator.state.copy()
+        return lanes
+
     def _reached(
         self, lane: Lane, target: Fraction, outcome: Outcome, steps: int, state: Array
     ) -> Lane:
@@ -155,70 +189,6 @@ class Ensemble:
             return replace(lane, outcome=outcome)
         exact = tuple(self._numbers.exact(value) for value in state)
         return replace(lane, time=target, state=exact)
-
-
-class _Stretch:
-    """A batch on its way to the targets of its lanes."""
-
-    def __init__(
-        self,
-        ensemble: Ensemble,
-        integrator: Any,
-        group: Sequence[int],
-        lanes: list[Lane],
-        targets: Sequence[Fraction],
-    ) -> None:
-        self._ensemble, self._integrator = ensemble, integrator
-        self.lanes, self._targets = list(lanes), targets
-        numbers = ensemble._numbers
-        width, problems = integrator.batch_size, ensemble.problems
-        # The last group may have fewer lanes than the batch: the places left over stay empty.
-        self._end = _padded(numbers.array(targets), width)
-        self._time = _padded(numbers.array([lane.time for lane in lanes]), width)
-        self._state = _padded(
-            np.array([numbers.array(lane.state) for lane in lanes], dtype=numbers.fp_type).T, width
-        )
-        parameters = [numbers.array(problems[i].parameters) for i in group]
-        self._parameters = _padded(np.array(parameters, dtype=numbers.fp_type).T, width)
-        rates = [lane.fastest if lane.goes_on else 1.0 for lane in lanes]
-        self._longest = _padded(numbers.array([]), width)
-        self._longest[: len(lanes)] = [numbers.double(LONGEST_STEP / rate) for rate in rates]
-        self._longest[len(lanes) :] = self._longest[0]
-        self._steps = np.zeros(width, dtype=int)
-
-    def step(self) -> bool:
-        """Step as far as the batch goes; True if there are lanes that still have to go on."""
-        going = [k for k, lane in enumerate(self.lanes) if lane.goes_on]
-        if not going:
-            return False
-        self._fill_empty_places(going)
-        integrator = self._integrator
-        integrator.set_time(self._time)
-        integrator.state[:], integrator.pars[:] = self._state, self._parameters
-        most = max(most_steps(self.lanes[k], self._targets[k]) for k in going)
-        integrator.propagate_until(self._end, max_delta_t=self._longest, max_steps=most)
-        results = integrator.propagate_res
-        self._steps += [int(result[3]) for result in results]
-        finite = np.isfinite(integrator.state).all(axis=0) & np.isfinite(integrator.time)
-        lost = [k for k in going if not finite[k]]
-        for k in lost or going:
-            outcome = Outcome.NON_FINITE if lost else outcome_of(results[k][0])
-            self._settle(k, outcome, integrator.state[:, k])
-        # The others have been stopped where they are, not at their targets: they go on from there.
-        self._time, self._state = integrator.time.copy(), integrator.state.copy()
-        return bool(lost)
-
-    def _fill_empty_places(self, going: Sequence[int]) -> None:
-        """Give a place without a lane that goes on another's numbers; it is where it should be."""
-        for k in set(range(len(self._end))) - set(going):
-            self._state[:, k] = self._state[:, going[0]]
-            self._parameters[:, k] = self._parameters[:, going[0]]
-            self._time[k] = self._end[k] = self._end[going[0]]
-
-    def _settle(self, k: int, outcome: Outcome, state: Array) -> None:
-        self.lanes[k] = self._ensemble._reached(
-            self.lanes[k], self._targets[k], outcome, int(self._steps[k]), state
-        )
 
 
 def batch_width(rung: Rung) -> int:
