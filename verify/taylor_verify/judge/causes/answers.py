@@ -69,7 +69,7 @@ def _of_file(
     attitudes = _attitudes(file, given, found)
     groups = [name for name in MOMENTA[given.model] if name in file.groups]
     values = {name: _read(file, name, found, attitudes) for name in groups}
-    columns = np.hstack([file.rows[name].doubles() for name in groups]) if groups else None
+    columns = np.hstack([file.groups[name].doubles() for name in groups]) if groups else None
     if not groups and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
         own = {name: _read(file, name, found, attitudes) for name in VELOCITIES}
         values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
@@ -115,7 +115,7 @@ def _material(
 
 def _read(file: TrajectoryFile, name: str, found: Conventions, attitudes: Floats | None) -> Floats:
     """A group of vectors in body axes; from space axes they are taken by the file's own attitude."""
-    rows, reading = file.rows[name].doubles(), found.readings.get(name)
+    rows, reading = file.groups[name].doubles(), found.readings.get(name)
     if reading is None:
         return rows
     R = attitudes if attitudes is not None else np.full((len(rows), 3, 3), np.nan)
@@ -127,7 +127,7 @@ def _attitudes(file: TrajectoryFile, given: Scene, found: Conventions) -> Floats
     for group in ("quaternion", "attitude"):
         if group in file.groups:
             reading = found.readings.get(group, readings(group)[0])
-            read = reading.read(file.rows[group].doubles(), np.empty(0))
+            read = reading.read(file.groups[group].doubles(), np.empty(0))
             return rotations(read) if group == "quaternion" else read
     if not found.readings:
         return None

@@ -125,7 +125,7 @@ class _Search:
 
     @cached_property
     def values(self) -> dict[str, Floats]:
-        return {group: rows.doubles(self.rows) for group, rows in self.file.rows.items()}
+        return {group: rows.doubles(self.rows) for group, rows in self.file.groups.items()}
 
     @cached_property
     def frames(self) -> tuple[Frames, ...]:

@@ -69,7 +69,7 @@ class FileRows(ByRows):
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
         asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
-        found = {name: rows.held(asked, bits) for name, rows in self.file.rows.items()}
+        found = {name: rows.held(asked, bits) for name, rows in self.file.groups.items()}
         if "attitude" in found:
             found["attitude"] = found["attitude"].reshape(-1, 3, 3)
         if self.readings:
@@ -124,7 +124,7 @@ def first_flaw(file: TrajectoryFile, quantity: str) -> str:
         made_of += VELOCITIES
     # What is conserved may need any of them.
     groups = [name for name in made_of or GROUPS if name in file.groups]
-    lost = {name: np.flatnonzero(~file.rows[name].finite) for name in groups}
+    lost = {name: np.flatnonzero(~file.groups[name].finite) for name in groups}
     first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
     if not first:
         return ""

@@ -11,7 +11,7 @@ from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.taylor.name import TAYLOR
+from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.numbers import unavailable
 from taylor_verify.studies.growth.document import Ensemble, GrowthStudy
 from taylor_verify.studies.growth.experiment import experiment

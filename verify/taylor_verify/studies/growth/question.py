@@ -17,7 +17,8 @@ from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.taylor.name import TAYLOR, tolerance
+from taylor_verify.solvers.registry import TAYLOR
+from taylor_verify.solvers.taylor.driver import tolerance
 from taylor_verify.studies.tradeoff.starts import nearby
 
 # A hundred periods are thousands of steps: their roundings have made a walk by then, and what swings

@@ -23,8 +23,7 @@ from taylor_verify.records.json_text import finite
 from taylor_verify.records.provenance import SceneProvenance
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.name import named_at
+from taylor_verify.solvers.taylor.driver import Taylor, at_tolerance
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices.document import (
     Interval,
@@ -166,7 +165,7 @@ def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:
 def _at_equal_error(rung: Rung) -> tuple[PriceAtEqualError, ...]:
     """Return the time over that of the barest form at one error, from a row of tolerances."""
     asked = [v for v in variants() if not v.literals]
-    solvers = [Taylor(named_at(text), tolerance=Fraction(text)) for text in _TOLERANCES]
+    solvers = [at_tolerance(text) for text in _TOLERANCES]
     benches = [_Bench.of(v, rung, solver.tolerance) for v in asked for solver in solvers]
     taken = [median(seconds) for seconds in _in_rounds(benches, 9)]
     costs = {}
