@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.console import new_console, print_indented, print_line, text_of
-from taylor_verify.studies.tradeoff.pictures.wording import label_of
+from taylor_verify.studies.tradeoff.document import label
 
 _NOT_RUN = "not run"
 _HEADINGS = {
@@ -36,7 +36,7 @@ def _print_trade(console: Console, trade: Mapping[str, Any]) -> None:
         print_line(console, f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            told = f"  {label_of(row)}: {row['because']}"
+            told = f"  {_label(row)}: {row['because']}"
             print_line(console, Text(row["standing"], "bold red"), told)
     print_line(
         console,
@@ -79,7 +79,7 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
     for heading in (*errors, *numbers):
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
-        mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
+        mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
         table.add_row(
             *(mark, Text(f"{row['solver']} {row['setting']}".rstrip()), row["rung"]),
@@ -101,8 +101,12 @@ def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
     for row in points:
         if row.get("cold"):
             cells = [*(row["cold"][part] for part in parts), row["seconds"]]
-            table.add_row(Text(label_of(row)), *(_short(value) for value in cells))
+            table.add_row(Text(_label(row)), *(_short(value) for value in cells))
     return table
+
+
+def _label(row: Mapping[str, Any]) -> str:
+    return label(row["solver"], row["setting"], row["rung"])
 
 
 def _not_run(points: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:

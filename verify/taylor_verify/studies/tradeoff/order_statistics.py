@@ -37,19 +37,19 @@ class Estimate:
 
 
 def estimate(values: Iterable[float], confidence: float = CONFIDENCE) -> Estimate:
-    """Of at least one value."""
-    found = sorted(values)
-    rank = place(len(found), confidence)
-    low, high = (found[rank - 1], found[-rank]) if rank else (None, None)
-    return Estimate(median(found), low, high, len(found), coverage(len(found), max(rank, 1)))
+    """Return the median of at least one value, with its interval."""
+    ranked = sorted(values)
+    rank = place(len(ranked), confidence)
+    low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
+    return Estimate(median(ranked), low, high, len(ranked), coverage(len(ranked), max(rank, 1)))
 
 
 def coverage(count: int, rank: int) -> float:
-    """The probability that the median lies between the rank-th smallest and largest of so many."""
+    """Return the probability that the median is between the rank-th smallest and largest of so many."""
     return 1 - 2 * sum(comb(count, i) for i in range(rank)) * 0.5**count
 
 
 def place(count: int, confidence: float) -> int:
-    """The largest rank whose interval has the confidence; 0 where not even the extremes have it."""
+    """Return the largest rank whose interval has the confidence; 0 if not even the extremes have it."""
     ranks = range(1, (count + 1) // 2 + 1)
     return max((rank for rank in ranks if coverage(count, rank) >= confidence), default=0)

@@ -17,13 +17,12 @@ from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named
+from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
 from taylor_verify.studies.tradeoff.point import point
-from taylor_verify.studies.tradeoff.setting import setting
+from taylor_verify.studies.tradeoff.setting import ELLIPJ, setting
 from taylor_verify.studies.tradeoff.timing import Timed
-from taylor_verify.studies.tradeoff.trade_off import Truths
 
-NAME: Final = "closed-form:ellipj"
 # Where a step by step solver gets in a moment, it is shown beside.
 _BESIDE: Final = "taylor"
 
@@ -43,7 +42,7 @@ class Case:
 
 
 def cases() -> Iterator[Case]:
-    """Easy orbits, long times, starts beside the middle axis, separatrices, the middle axis itself."""
+    """Yield easy orbits, long times, starts beside the middle axis, separatrices, the axis itself."""
     yield Case(load(_EASY), "far from every degeneracy")
     for digits in _LONG:
         end = Fraction(10) ** digits
@@ -70,7 +69,7 @@ def plain_doubles() -> Iterator[PlainDouble]:
     truths = Truths()
     for case in cases():
         problem = pose(case.scene, f64)
-        found = _achieved(NAME, problem, truths)
+        found = _achieved(ELLIPJ, problem, truths)
         beside = _achieved(_BESIDE, problem, truths).error if case.is_short else None
         yield PlainDouble(
             what=case.what,
@@ -94,5 +93,5 @@ def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
 
 
 def _m_prime(problem: Problem) -> float | None:
-    found = elements(problem.given)
-    return float(found["m_prime"].value) if "m_prime" in found else None
+    found = elements(problem.given).get("m_prime")
+    return None if found is None else float(found.value)

@@ -1,4 +1,4 @@
-"""How long each setting takes: in a fresh order each time, start-up apart, caches off for the cold.
+"""The times of each setting: in a fresh order each round, start-up apart, caches off for the cold.
 
 A time is the solver's own propagation, as its trajectory states it. The first solve of a setting is
 apart: it compiles, imports and fills caches. What follows is repeated in rounds, each of them in an
@@ -63,8 +63,12 @@ class Timed:
     @property
     def spread(self) -> float | None:
         """The slowest over the fastest."""
-        best = self.best
-        return max(self.seconds) / best if best else None
+        return max(self.seconds) / self.best if self.best else None
+
+
+def not_started(setting: Setting, because: str) -> Timed:
+    """Return the answer of a setting that was not asked to run."""
+    return Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=because), 0.0)
 
 
 def timed(
@@ -74,35 +78,32 @@ def timed(
     clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> list[Timed]:
-    """Every setting solved once and those that finished ``repeats`` times more, in their own order.
+    """Solve every setting once, those that finished ``repeats`` times more; return them in their order.
 
     Without repeats the first time is all there is, as for whoever is after the errors alone.
     A setting is left out where a coarser one of its family took more than ``patience`` seconds; the
     outcome says so.
     """
     firsts = _first_solves(problems, clock, patience)
-    again: dict[Setting, list[Trajectory]] = {
-        one.setting: [] for one in firsts if one.trajectory.outcome is Outcome.FINISHED
-    }
-    spent = {one.setting: one.trajectory.seconds for one in firsts}
+    finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
+    # Of each solve the seconds, and those in a compiled integrator: whole answers would fill the memory.
+    again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
+    spent = {one.setting: one.trajectory.seconds for one in finished}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
         order.shuffle(settings)
         for setting in settings:
-            # The numbers are those of the first solve; kept, they would fill the memory.
-            solved = replace(setting.solver.solve(problems[setting]), quantities={})
-            again[setting].append(solved)
+            solved = setting.solver.solve(problems[setting])
+            again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
-    return [_with_times(one, again.get(one.setting, ())) for one in firsts]
+    return [_with_times(one, again[one.setting]) if one.setting in again else one for one in firsts]
 
 
-def _with_times(one: Timed, again: Sequence[Trajectory]) -> Timed:
-    if not again and one.trajectory.outcome is Outcome.FINISHED:
-        again = (one.trajectory,)
-    best = min(again, key=lambda solved: solved.seconds, default=None)
-    inner = best.inner_seconds if best is not None else None
-    return replace(one, seconds=tuple(solved.seconds for solved in again), inner=inner)
+def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Timed:
+    solves = again or [(one.trajectory.seconds, one.trajectory.inner_seconds)]
+    _, inner = min(solves, key=lambda solve: solve[0])
+    return replace(one, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
 
 
 def _first_solves(
@@ -112,8 +113,7 @@ def _first_solves(
     dear: set[str] = set()
     for setting, problem in problems.items():
         if setting.family in dear:
-            detail = f"a coarser setting took more than {patience:g} s"
-            found.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=detail), 0.0))
+            found.append(not_started(setting, f"a coarser setting took more than {patience:g} s"))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)
@@ -125,7 +125,7 @@ def _first_solves(
 
 @contextmanager
 def cold_caches() -> Iterator[None]:
-    """What heyoka compiles within is compiled for the first time, and not kept for the next time.
+    """Give heyoka an empty cache: what compiles within does so for the first time, and is not kept.
 
     What this process has compiled before, it still has: a cold figure asks for a process of its own.
     """
@@ -135,7 +135,6 @@ def cold_caches() -> Iterator[None]:
         try:
             yield
         finally:
-            if before is None:
-                del os.environ[_HEYOKA_CACHE]
-            else:
+            del os.environ[_HEYOKA_CACHE]
+            if before is not None:
                 os.environ[_HEYOKA_CACHE] = before

@@ -1,4 +1,4 @@
-"""The trade of one scene: every setting solved, timed, compared with the truth, and the front of it."""
+"""The trade of one scene: every setting solved, timed and compared with the truth."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
-from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.json_text import finite
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.tradeoff.accuracy import Accuracy, Truth
+from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import least_error
 from taylor_verify.studies.tradeoff.front import front, front_sentences, request_sentences
 from taylor_verify.studies.tradeoff.point import Point, point
@@ -26,6 +23,7 @@ from taylor_verify.studies.tradeoff.timing import (
     WHAT_IS_TIMED,
     Clock,
     Timed,
+    not_started,
     timed,
 )
 
@@ -45,7 +43,7 @@ class TradeOff:
         return front(self.points)
 
     def document(self) -> dict[str, Any]:
-        """As JSON holds it: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
+        """Return what JSON holds: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
@@ -67,12 +65,12 @@ class TradeOff:
 
     @property
     def attainable(self) -> dict[str, float | None]:
-        """By rung, the least that rounding leaves there; None where it is not known or no number."""
+        """The least error that rounding leaves on each rung; None where it is not known or no number."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
         return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
 
     def _front_of_integrators(self) -> list[str]:
-        """The front in words without what needs no steps; empty where that is not on the front."""
+        """Return the front in words without what needs no steps; empty where that is not on the front."""
         if all(p.timed.setting.is_integrator for p in self.front):
             return []
         return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
@@ -94,8 +92,8 @@ def trade_off(
     """
     asked = settings(scene) if asked is None else asked
     posed, refused = _posed(scene, asked)
-    measured = {one.setting: one for one in timed(posed, repeats, seed, clock, patience)}
-    measured |= {one.setting: one for one in refused}
+    solved = timed(posed, repeats, seed, clock, patience)
+    measured = {one.setting: one for one in [*solved, *refused]}
     truths = Truths()
     found = [
         point(measured[setting], truths.accuracy(posed.get(setting), measured[setting].trajectory))
@@ -104,40 +102,19 @@ def trade_off(
     return TradeOff(scene, tuple(found), repeats, seed)
 
 
-class Truths:
-    """The truth of each scene and rung, found once."""
-
-    def __init__(self) -> None:
-        self._found: dict[tuple[Scene, Rung], Truth | None] = {}
-
-    def accuracy(self, problem: Problem | None, trajectory: Trajectory) -> Accuracy | None:
-        """None of a run that did not finish, and where the truth cannot be had."""
-        if problem is None or trajectory.outcome is not Outcome.FINISHED:
-            return None
-        key = problem.scene, problem.rung
-        if key not in self._found:
-            try:
-                self._found[key] = Truth(problem)
-            except Unsettled:
-                self._found[key] = None
-        truth = self._found[key]
-        return truth.accuracy(trajectory) if truth is not None else None
-
-
 def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Problem], list[Timed]]:
-    """The problem of every setting that can be begun, and the others with the reason."""
+    """Return the problem of every setting that can be begun, and the others with the reason."""
     posed: dict[Setting, Problem] = {}
     refused: list[Timed] = []
     for setting in asked:
         reason = setting.withheld or setting.solver.unavailable(setting.rung)
         if not reason:
             try:
-                problem = pose(scene, setting.rung)
-                reason = setting.solver.unsuited(problem)
+                posed[setting] = pose(scene, setting.rung)
+                reason = setting.solver.unsuited(posed[setting])
             except NotRepresentable as fault:
                 reason = str(fault)
-        if not reason:
-            posed[setting] = problem
-            continue
-        refused.append(Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=reason), 0.0))
+        if reason:
+            posed.pop(setting, None)
+            refused.append(not_started(setting, reason))
     return posed, refused

@@ -1,17 +1,30 @@
-"""The pictures of a trade-off: error against time, evaluations and steps; digits asked for and got."""
+"""The pictures of a trade-off: error against time, evaluations and steps; digits asked for and achieved."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
+from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from taylor_verify.publish.pictures.picture import Picture, save
-from taylor_verify.studies.tradeoff.pictures import (
-    digits_achieved,
-    error_against_time,
-    error_against_work,
+from taylor_verify.publish.pictures.wording import plain, stem_of
+from taylor_verify.studies.tradeoff.pictures import digits_achieved
+from taylor_verify.studies.tradeoff.pictures.diagram import Diagram, figure_of
+from taylor_verify.studies.tradeoff.pictures.series import (
+    AT_THE_BORDER,
+    Series,
+    Spot,
+    front_of,
+    panels_of,
+    series_of,
 )
+
+# The work of a solve: the key of a row, and the name that titles and files have for it. Evaluations and
+# steps are the same on every machine.
+WORKS: Final = {"seconds": "time", "evaluations": "evaluations", "steps": "steps"}
+_NOTE: Final = "An evaluation of taylor is one order of a step's series."
 
 
 def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
@@ -24,12 +37,81 @@ def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
 
 
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Every picture with its alt text; one that would be empty is left out."""
+    """Return every picture with its alt text; one that would be empty is left out."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    found = (
-        error_against_time.picture(document),
-        *(error_against_work.picture(document, work) for work in error_against_work.AXES),
-        digits_achieved.picture(document),
-    )
+    found = (*(_work_precision(document, key) for key in WORKS), digits_achieved.picture(document))
     return [one for one in found if one is not None]
+
+
+def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
+    """Return the picture of error against work; None where no sound setting has a number for it."""
+    series = [one for one in series_of(document, key) if one.sound or one.border]
+    front = front_of(series)
+    if not front:
+        return None
+    is_time, work, scene = key == "seconds", WORKS[key], document["scene"]
+    diagram = Diagram(
+        x_name=_work_name(document, key),
+        y_name=_error_name(document),
+        floors=floors_of(document),
+        bars=is_time,
+        note=_NOTE if key == "evaluations" else "",
+    )
+    alt = (
+        f"Largest error against {'time of a solve' if is_time else work} on {scene}, both "
+        f"logarithmic, for {digits_achieved.names(series)}. "
+        f"{_fastest(front) if is_time else _fewest(front, work)}{_fallen(series)}"
+    )
+    title = f"Error against {work}: {scene}"
+    return Picture(
+        stem_of(document, work), title, alt, partial(figure_of, diagram, panels_of(series))
+    )
+
+
+def _work_name(document: Mapping[str, Any], key: str) -> str:
+    """Return the name of the axis. A published time is a median of many, and the page tells of it."""
+    timing = document.get("timing")
+    best = f", best of {timing['repeats']}" if timing else ""
+    names = {"seconds": f"time of a solve{best} (s)", "evaluations": "evaluations of the equations"}
+    return names.get(key, key)
+
+
+def _error_name(document: Mapping[str, Any]) -> str:
+    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
+    return f"largest error ({unit})"
+
+
+def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
+    """Return the attainable error of each rung that has one."""
+    floors = document.get("attainable") or {}
+    return {rung: float(e) for rung, e in floors.items() if e and isfinite(e) and e > 0}
+
+
+def _fastest(front: Sequence[Spot]) -> str:
+    first, best = front[0], front[-1]
+    return (
+        f"The fastest sound setting is {first.label} with an error of {plain(first.y)}, "
+        f"the most accurate {best.label} with {plain(best.y)} in {best.x / first.x:.2g} times "
+        f"its time; {len(front)} settings are beaten by none."
+    )
+
+
+def _fewest(front: Sequence[Spot], work: str) -> str:
+    first, best = front[0], front[-1]
+    return (
+        f"The fewest {work} of a sound setting are {first.x} ({first.label}, error "
+        f"{plain(first.y)}); the smallest error is {plain(best.y)} with {best.x} ({best.label})."
+    )
+
+
+def _fallen(series: Sequence[Series]) -> str:
+    """Return the number of settings at the border, after a space; empty where all are sound."""
+    standings = [spot.row["standing"] for one in series for spot in one.spots]
+    counts = [(standings.count(name), name) for name in AT_THE_BORDER]
+    said = [f"{count} {name}{_plural(count, name)}" for count, name in counts if count]
+    return f" Marked at the border: {', '.join(said)}." if said else ""
+
+
+def _plural(count: int, name: str) -> str:
+    return "es" if count > 1 and name.endswith("success") else ""
