@@ -226,7 +226,7 @@ def test_a_number_that_is_not_finite_is_stored_as_none() -> None:
     """An ensemble is the same when it is read again; one without a finite error has no numbers."""
     found = followed("euler/about-max-axis", lanes=2)
     errors = np.full((2, len(found.steps)), np.nan)
-    nothing = growth(np.array(found.course.question.counts), errors, Law.WALK, 1e-16)
+    nothing = growth(np.array(found.question.counts), errors, Law.WALK, 1e-16)
     lost = replace(found, found=(Found("T", errors, nothing),))
     for one in (found.ensemble("a test"), lost.ensemble()):
         assert converted(complete(one), Ensemble) == one

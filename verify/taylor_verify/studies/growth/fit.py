@@ -1,4 +1,4 @@
-"""How errors grow with time over an ensemble of starts: exponent, interval, word, and a gate.
+"""The growth of errors over an ensemble of starts: exponent, interval, word, and a gate.
 
 t_k          instants, equally many to a decade        e_ik   error of lane i at t_k, signed
 p_i          slope of log |e_ik| against log t_k       n      lanes, independent of each other
@@ -92,7 +92,7 @@ class Exponent:
 
 @dataclass(frozen=True)
 class Gate:
-    """Whether the errors grow no faster than ``law`` allows.
+    """The judgement on errors: they grow no faster than ``law`` allows, or they do.
 
     ``chance`` is the probability that the law makes them grow as fast as they do, or faster; the gate
     fails where it is less than ``false_alarm``, which is therefore how often the law itself fails.
@@ -123,7 +123,7 @@ class Growth:
 
 
 def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: bool = True) -> Growth:
-    """The growth of errors of shape (lanes, instants); NaN stands for what a lane did not reach.
+    """Return the growth of errors of shape (lanes, instants); NaN is what a lane did not reach.
 
     ``times`` (instants) are since the start and increase. ``law`` is what the errors are held
     against, if they are ``signed``; ``roundoff`` is the size of one rounding in the unit of the
@@ -165,7 +165,7 @@ def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
 def exponent(
     times: Floats, errors: Floats, law: Law, roundoff: float, level: float = LEVEL
 ) -> Exponent:
-    """Student's interval of the mean of the lanes' slopes, of log |error| over log time.
+    """Return Student's interval of the mean of the lanes' slopes, of log |error| over log time.
 
     ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; ``level`` is the
     probability that the interval holds the mean, ``law`` what chooses the word for it. An error of
@@ -177,22 +177,17 @@ def exponent(
         return Exponent(nan, nan, nan, NO_WORD, count, level)
     if not whole.any():
         return Exponent(0.0, 0.0, 0.0, EXACT, count, level)
-    slopes = _slopes(np.log(times), np.log(np.where(whole == 0, roundoff, np.abs(whole))))
+    x = np.log(times) - np.mean(np.log(times))
+    # Of the least-squares line of every lane.
+    slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
     reach = student(count - 1, level) * float(np.std(slopes, ddof=1)) / sqrt(count)
     found = word(mean, max(reach, _RESOLUTION), law)
     return Exponent(mean, mean - reach, mean + reach, found, count, level)
 
 
-def _slopes(x: Floats, y: Floats) -> Floats:
-    """The slope of the least-squares line of every row of y."""
-    centred = x - np.mean(x)
-    slopes: Floats = y @ centred / (centred @ centred)
-    return slopes
-
-
 def word(value: float, reach: float, law: Law) -> str:
-    """The one word whose exponent is within reach; else that several are, or between which it is."""
+    """Return the word whose exponent is within reach; else that several are, or between which it is."""
     words, low, high = _WORDS[law], value - reach, value + reach
     inside = [name for power, name in words.items() if low <= power <= high]
     if inside:
@@ -212,7 +207,7 @@ def word(value: float, reach: float, law: Law) -> str:
 def gate(
     times: Floats, errors: Floats, law: Law, roundoff: float, false_alarm: float = FALSE_ALARM
 ) -> Gate:
-    """Whether the last two instants are further out than the law allows after those before them.
+    """Judge whether the last two instants are further out than the law allows after those before them.
 
     The law's covariance makes of the errors of a lane independent numbers z_ik of one variance (of a
     walk: its increments over the square roots of their times). With L_i and E_i the sums of squares
@@ -229,21 +224,21 @@ def gate(
     with np.errstate(all="ignore"):
         statistic = float(m * np.sum(np.log1p(late / early)))
     chance = chi_square_tail(statistic, 2 * lanes)
-    passed = false_alarm <= chance  # written so that a NaN fails
     because = (
         f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
         f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
     )
     if not isfinite(statistic):
         because = f"expected finite errors of every lane, to be held against {law.value}"
-    verdict = Status.PASS if passed else Status.FAIL
+    # Written so that a NaN fails.
+    verdict = Status.PASS if false_alarm <= chance else Status.FAIL
     return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)
 
 
 def early_and_late(
     times: Floats, errors: Floats, law: Law, roundoff: float
 ) -> tuple[Floats, Floats]:
-    """E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
+    """Return E_i and L_i of every lane; E_i counts at least one rounding at the first instant."""
     covariance = covariance_of(law, times)
     spread = np.sqrt(np.diag(covariance))
     # In units of their own spread the instants have a covariance that is far from singular.
@@ -254,7 +249,9 @@ def early_and_late(
 
 
 def covariance_of(law: Law, times: Floats) -> Floats:
-    """Of unit walk W: E W(s) W(t) = min(s, t); of its integral s^2 (3 t - s)/6 for s <= t.
+    """Return the covariance of unit walk W, E W(s) W(t) = min(s, t), or of its integral.
+
+    That of the integral is s^2 (3 t - s)/6 for s <= t.
 
     Times count the last one, which leaves both laws as they are but for their size.
     """
@@ -268,7 +265,7 @@ def covariance_of(law: Law, times: Floats) -> Floats:
 
 
 def chi_square_tail(value: float, freedom: int) -> float:
-    """P(chi-square > value); NaN for a value that is none."""
+    """Return P(chi-square > value); NaN for a value that is none."""
     if not value >= 0:
         return nan
     return float(mpmath.gammainc(freedom / 2, value / 2, regularized=True))
@@ -276,7 +273,10 @@ def chi_square_tail(value: float, freedom: int) -> float:
 
 @cache
 def student(freedom: int, level: float) -> float:
-    """The t for which Student's variable is between -t and t with probability ``level``."""
+    """Return the t for which Student's variable is between -t and t with probability ``level``.
+
+    It is not SciPy's, which is no dependency of what judges.
+    """
 
     def excess(theta: mpmath.mpf) -> mpmath.mpf:
         within = mpmath.betainc(0.5, freedom / 2, 0, mpmath.sin(theta) ** 2, regularized=True)

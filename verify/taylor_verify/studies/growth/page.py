@@ -1,4 +1,4 @@
-"""How errors grow over decades of time: the stored ensembles, and the page and picture made of them.
+"""The page of errors that grow over decades of time, made of the stored ensembles.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
 growth-long.json   the same of the long run, where somebody has made it
@@ -112,21 +112,19 @@ def _gates(runs: Iterable[Ensemble]) -> str:
     """Return how many gates passed, and the names of those that did not."""
     judged = [(run, row, row.gate) for run in runs for row in run.quantities if row.gate]
     failed = [f"{code(row.quantity)} of {_name(run)}" for run, row, gate in judged if _fails(gate)]
-    told = f"{len(judged) - len(failed)} of {len(judged)} gates passed."
-    return f"{told} Worse than a random walk: {'; '.join(failed)}." if failed else told
+    counts = f"{len(judged) - len(failed)} of {len(judged)} gates passed."
+    return f"{counts} Worse than a random walk: {'; '.join(failed)}." if failed else counts
 
 
 def _section(run: Ensemble) -> list[str]:
     lost = bold(f" {run.lost} of them did not reach the end.") if run.lost else ""
-    told = (
-        f"{run.lanes} starts from {_count(run.counts[0])} to {_count(run.counts[-1])} periods of "
-        f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}"
-    )
+    first, last = (f"{count:.3g}".replace("e+0", "e") for count in (run.counts[0], run.counts[-1]))
     numbers = ("rms, first:", "rms, last:", "walks:", "exponent:")
     columns = ["quantity", *numbers, "word", "late", "no worse than a walk"]
     return [
         f"## {_name(run)}",
-        f"{prose(run.why.capitalize())}. {told}",
+        f"{prose(run.why.capitalize())}. {run.lanes} starts from {first} to {last} periods of "
+        f"{figure(run.period)} each, {figure(run.steps[-1])} steps.{lost}",
         table(columns, [_cells(row) for row in run.quantities]),
     ]
 
@@ -192,11 +190,6 @@ def _name(run: Ensemble) -> str:
     return f"{run.scene} on {run.rung}, {run.solver}"
 
 
-def _count(periods: float) -> str:
-    """Half-decades: 100, 3.16e3, 1e6."""
-    return f"{periods:.3g}".replace("e+0", "e")
-
-
 # The sheet.
 
 
@@ -215,10 +208,9 @@ def sheet(study: GrowthStudy) -> str:
 
 def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
     late, late_low, late_high = row.late
-    shared = ("scene", "solver", "rung", "lost", "period")
     return {
+        **complete(run),
         **complete(row),
-        **{name: getattr(run, name) for name in shared},
         "starts": run.lanes,
         "periods_first": run.counts[0],
         "periods_last": run.counts[-1],
