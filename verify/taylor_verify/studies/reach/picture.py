@@ -6,9 +6,10 @@ digits, its lightness the class that the legend explains, so that the map reads 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise, product
 from math import floor, log10
 from typing import TYPE_CHECKING, Any, Final
 
@@ -106,23 +107,17 @@ class _Map:
 
     @property
     def sentence(self) -> str:
-        """How far six digits go."""
-        first, last = self.periods[0], self.periods[-1]
-        said = [f"after {_periods(n)} up to {self._far(n)}" for n in sorted({first, last})]
+        """The values up to which six digits are left, in words."""
+        said = []
+        for n in sorted({self.periods[0], self.periods[-1]}):
+            left = [self.cells.get((value, n, ACHIEVED), 0) >= 6 for value in self.values]
+            last = ("none of these", *self.values)[[*left, False].index(False)]
+            said.append(f"after {n} {'period' if n == 1 else 'periods'} up to {last}")
         return f"On {self.rung} six digits are left {' and '.join(said)}."
-
-    def _far(self, count: int) -> str:
-        """The last value up to which there are six digits."""
-        found = "none of these"
-        for value in self.values:
-            if not self.cells.get((value, count, ACHIEVED), 0) >= 6:
-                break
-            found = value
-        return found
 
 
 def digits_of(error: float | None) -> int:
-    """Whole digits; 0 of what is lost, which is stored as null, or no number."""
+    """Return whole digits; 0 of what is lost, which is stored as null, or no number."""
     if error is None or not error < 1:
         return 0
     # An error of zero leaves all digits that a double can tell.
@@ -130,12 +125,8 @@ def digits_of(error: float | None) -> int:
 
 
 def colour_of(digits: int) -> str:
-    """Of the class that so many digits belong to."""
+    """Return the colour of the class that so many digits belong to."""
     return next(colour for least, colour in reversed(CLASSES) if digits >= least)
-
-
-def _periods(count: int) -> str:
-    return "1 period" if count == 1 else f"{count} periods"
 
 
 def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
@@ -154,7 +145,8 @@ def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
             if one is maps[-1]:
                 _name_values(axes, family)
             if column == 0:
-                axes.set_yticks(range(len(one.periods)), [_count(n) for n in one.periods])
+                names = [str(n) if n < 1000 else power_of_ten(n) for n in one.periods]
+                axes.set_yticks(range(len(names)), names)
                 axes.set_ylabel(f"{one.rung}\nperiods", size=SMALL)
                 axes.yaxis.set_label_coords(_NAMES / width, 0.5)
         top -= own + _GAP
@@ -170,8 +162,8 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(True)
-    for x, y, digits in _placed(one, key):
-        corner = (x - 0.5, y - 0.5)
+    for (x, value), (y, count) in product(enumerate(one.values), enumerate(one.periods)):
+        digits, corner = one.cells.get((value, count, key)), (x - 0.5, y - 0.5)
         if digits is None:
             axes.add_patch(Rectangle(corner, 1, 1, gid="not run", **_HATCHED))
             continue
@@ -185,23 +177,13 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
             ha="center",
             va="center_baseline",
             color=text_on(colour) if digits else QUIET,
-            gid=f"{one.rung} {_HEADINGS[key]} {one.values[x]} {one.periods[y]}",
+            gid=f"{one.rung} {_HEADINGS[key]} {value} {count}",
         )
 
 
-def _placed(one: _Map, key: str) -> Iterator[tuple[int, int, int | None]]:
-    for x, value in enumerate(one.values):
-        for y, count in enumerate(one.periods):
-            yield x, y, one.cells.get((value, count, key))
-
-
 def text_on(colour: str) -> str:
-    """Ink or paper, whichever is told better from the colour."""
+    """Return ink or paper, whichever is told better from the colour."""
     return max((INK, PAPER), key=lambda text: contrast(text, colour))
-
-
-def _count(periods: int) -> str:
-    return str(periods) if periods < 1000 else power_of_ten(periods)
 
 
 def _name_values(axes: Axes, family: ReachFamily) -> None:
@@ -213,25 +195,18 @@ def _name_values(axes: Axes, family: ReachFamily) -> None:
 
 
 def _draw_legend(figure: Figure) -> None:
-    """The classes in a line at the foot."""
+    """Draw the classes in a line at the foot."""
     from matplotlib.patches import Rectangle
 
     axes = add_axes(figure, Frame(_LEFT, 0.06, PAGE_WIDTH - _LEFT - _RIGHT, 0.16))
     axes.set(xlim=(0, len(CLASSES) + 2.2), ylim=(0, 1))
     axes.axis("off")
     axes.text(0, 0.5, "digits left", size=SMALL, va="center_baseline", color=INK)
-    ends = [least for least, _ in CLASSES[1:]]
-    for i, (least, colour) in enumerate(CLASSES):
+    words = [f"{least}\N{EN DASH}{beyond - 1}" for (least, _), (beyond, _) in pairwise(CLASSES)]
+    words = ["none", *words[1:], f"{CLASSES[-1][0]} and more"]
+    for i, ((_, colour), name) in enumerate(zip(CLASSES, words, strict=True)):
         left = 1.2 + i
         axes.add_patch(
             Rectangle((left, 0), 0.24, 1, facecolor=colour, edgecolor=QUIET, linewidth=0.5)
         )
-        last = ends[i] - 1 if i < len(ends) else None
-        words = (
-            "none"
-            if last == 0
-            else f"{least} and more"
-            if last is None
-            else f"{least}\N{EN DASH}{last}"
-        )
-        axes.text(left + 0.3, 0.5, words, size=SMALL, va="center_baseline", color=INK)
+        axes.text(left + 0.3, 0.5, name, size=SMALL, va="center_baseline", color=INK)
