@@ -115,7 +115,7 @@ def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
     from dataclasses import asdict
 
     from taylor_verify.studies.tradeoff.cold import cold
-    from taylor_verify.studies.tradeoff.front import sound_points
+    from taylor_verify.studies.tradeoff.trade_off import sound_points
 
     asked = [p.timed.setting for p in sound_points(trade.points)]
     taken = {setting.label: asdict(one) for setting, one in cold(trade.scene, asked).items()}

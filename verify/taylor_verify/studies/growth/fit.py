@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from math import isfinite, nan, sqrt, tan
+from math import isfinite, isnan, nan, sqrt, tan
 from typing import Any, Final
 
 import mpmath
@@ -45,7 +45,7 @@ _LEAST_INSTANTS: Final = _LATE + 2
 
 
 class Law(StrEnum):
-    """What independent roundings make of a quantity: the null hypothesis of its gate.
+    """The law of a quantity under independent roundings: the null hypothesis of its gate.
 
     WALK is a conserved quantity, whose error grows with the half power of time; INTEGRATED a phase, the
     integral of such an error, which grows with the power 3/2 (D. Brouwer, 1937).
@@ -65,13 +65,7 @@ NO_WORD: Final = "no number"
 # grows by one power of time more.
 _WORDS: Final[Mapping[Law, Mapping[float, str]]] = {
     Law.WALK: {0: BOUNDED, 0.5: RANDOM_WALK, 1: BIAS},
-    Law.INTEGRATED: {
-        0: BOUNDED,
-        0.5: "jitter",
-        1: "constant rate",
-        1.5: RANDOM_WALK,
-        2: BIAS,
-    },
+    Law.INTEGRATED: {0: BOUNDED, 0.5: "jitter", 1: "constant rate", 1.5: RANDOM_WALK, 2: BIAS},
 }
 
 
@@ -130,7 +124,8 @@ def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: boo
     errors. Raises ValueError for fewer than two lanes or four instants, and for instants that do
     not increase.
     """
-    times, errors = _checked(times, errors)
+    times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
+    _check(times, errors)
     with np.errstate(all="ignore"):
         rms = np.sqrt(np.mean(errors**2, axis=0))
     half = len(times) // 2
@@ -143,8 +138,7 @@ def growth(times: Floats, errors: Floats, law: Law, roundoff: float, signed: boo
     )
 
 
-def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
-    times, errors = np.asarray(times, dtype=float), np.asarray(errors, dtype=float)
+def _check(times: Floats, errors: Floats) -> None:
     if errors.ndim != 2 or errors.shape[1] != len(times):
         raise ValueError(
             f"expected errors of shape (lanes, {len(times)}), got {errors.shape} @ growth"
@@ -156,46 +150,43 @@ def _checked(times: Floats, errors: Floats) -> tuple[Floats, Floats]:
         )
     if not (times[0] > 0 and np.all(np.diff(times) > 0)):
         raise ValueError("expected instants after the start that increase, got others @ growth")
-    return times, errors
 
 
 # The exponent.
 
 
-def exponent(
-    times: Floats, errors: Floats, law: Law, roundoff: float, level: float = LEVEL
-) -> Exponent:
+def exponent(times: Floats, errors: Floats, law: Law, roundoff: float) -> Exponent:
     """Return Student's interval of the mean of the lanes' slopes, of log |error| over log time.
 
-    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; ``level`` is the
-    probability that the interval holds the mean, ``law`` what chooses the word for it. An error of
-    exactly zero, which has no logarithm, counts as one rounding.
+    ``times`` (n), ``errors`` (lanes, n) and ``roundoff`` are as in `growth`; the interval holds the mean
+    with probability LEVEL, and ``law`` chooses the word for it. An error of exactly zero, which has no
+    logarithm, counts as one rounding.
     """
     whole = errors[np.isfinite(errors).all(axis=1)]
     count = len(whole)
     if count < _LEAST_LANES:
-        return Exponent(nan, nan, nan, NO_WORD, count, level)
+        return Exponent(nan, nan, nan, NO_WORD, count)
     if not whole.any():
-        return Exponent(0.0, 0.0, 0.0, EXACT, count, level)
+        return Exponent(0.0, 0.0, 0.0, EXACT, count)
     x = np.log(times) - np.mean(np.log(times))
     # Of the least-squares line of every lane.
     slopes = np.log(np.where(whole == 0, roundoff, np.abs(whole))) @ x / (x @ x)
     mean = float(np.mean(slopes))
-    reach = student(count - 1, level) * float(np.std(slopes, ddof=1)) / sqrt(count)
+    reach = student(count - 1, LEVEL) * float(np.std(slopes, ddof=1)) / sqrt(count)
     found = word(mean, max(reach, _RESOLUTION), law)
-    return Exponent(mean, mean - reach, mean + reach, found, count, level)
+    return Exponent(mean, mean - reach, mean + reach, found, count)
 
 
 def word(value: float, reach: float, law: Law) -> str:
     """Return the word whose exponent is within reach; else that several are, or between which it is."""
+    if isnan(value):
+        return NO_WORD
     words, low, high = _WORDS[law], value - reach, value + reach
     inside = [name for power, name in words.items() if low <= power <= high]
     if inside:
         return inside[0] if len(inside) == 1 else f"unclear: {' or '.join(inside)}"
     below = [name for power, name in words.items() if power < low]
     above = [name for power, name in words.items() if high < power]
-    if not (below or above):
-        return NO_WORD
     if not below:
         return "shrinking"
     return f"between {below[-1]} and {above[0]}" if above else f"faster than {below[-1]}"
@@ -224,12 +215,12 @@ def gate(
     with np.errstate(all="ignore"):
         statistic = float(m * np.sum(np.log1p(late / early)))
     chance = chi_square_tail(statistic, 2 * lanes)
-    because = (
-        f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
-        f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
-    )
-    if not isfinite(statistic):
-        because = f"expected finite errors of every lane, to be held against {law.value}"
+    because = f"expected finite errors of every lane, to be held against {law.value}"
+    if isfinite(statistic):
+        because = (
+            f"no worse than {law.value}, which fails once in {1 / false_alarm:.0f}: "
+            f"{statistic:.3g} is chi-square with {2 * lanes} degrees of freedom, chance {chance:.2g}"
+        )
     # Written so that a NaN fails.
     verdict = Status.PASS if false_alarm <= chance else Status.FAIL
     return Gate(verdict, law, chance, statistic, 2 * lanes, because, false_alarm)

@@ -16,7 +16,7 @@ from taylor_verify.solvers.taylor.name import TAYLOR
 from taylor_verify.solvers.taylor.numbers import unavailable
 from taylor_verify.studies.growth.document import Ensemble, GrowthStudy
 from taylor_verify.studies.growth.experiment import experiment
-from taylor_verify.studies.growth.question import LEAST_PERIODS, Question
+from taylor_verify.studies.growth.question import Question
 
 
 @dataclass(frozen=True)
@@ -84,8 +84,6 @@ def followed(
     ``checkpoints`` is the folder in which those of ensembles that are under way are kept. Raises
     ValueError for too few periods, and for a checkpoint of something else.
     """
-    if most is not None and not most >= LEAST_PERIODS:
-        raise ValueError(f"expected at least {LEAST_PERIODS:.0f} periods, got {most:g}")
     runs: list[Ensemble] = []
     left_out: list[str] = []
     for entry in entries:

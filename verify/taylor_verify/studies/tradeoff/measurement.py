@@ -24,6 +24,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.tradeoff import SEED
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
     TimingMachine,
@@ -33,7 +34,6 @@ from taylor_verify.studies.tradeoff.document import (
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify.studies.tradeoff.front import request_sentences
 from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, estimate
 from taylor_verify.studies.tradeoff.plain_doubles import plain_doubles
 from taylor_verify.studies.tradeoff.rounds import (
@@ -55,8 +55,8 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.studies.tradeoff.timing import SEED, WHAT_IS_TIMED
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, trade_off
+from taylor_verify.studies.tradeoff.timing import WHAT_IS_TIMED
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, request_sentences, trade_off
 
 SCENES: Final = (
     *("euler/generic", "euler/with-attitude"),

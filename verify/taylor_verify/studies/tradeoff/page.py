@@ -16,8 +16,7 @@ from taylor_verify.publish.sheet import sheet as csv_sheet
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.standing import Standing
 from taylor_verify.studies import figures
-from taylor_verify.studies.tradeoff.document import TradePoint
-from taylor_verify.studies.tradeoff.doubles_table import doubles_table
+from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
 from taylor_verify.studies.tradeoff.pareto import pareto
 from taylor_verify.studies.tradeoff.pictures import time_by_rung
 from taylor_verify.studies.tradeoff.pictures import trade as of_one_scene
@@ -38,6 +37,29 @@ _WHAT: Final = (
     "motion. A time is given as a multiple of that of the *yardstick*, the Taylor integrator of "
     "heyoka in float64 at its own tolerance, in the same minute on the same machine; the error is "
     "the largest of everything that the scene tracks, at all its samples."
+)
+_PLAIN_DOUBLES: Final = (
+    "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
+    "that in float64, written with care. 1 - m is exact here and 0 on the separatrix; the error is "
+    "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
+)
+_WHY_DOUBLES_FAIL: Final = (
+    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a phase "
+    "error of some 1e-16 lam |t|. No step was taken, and still the error grows in proportion to time; "
+    "at t = 1e15 u is known to a tenth, and the answer is a point somewhere on the right orbit.",
+    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative error "
+    "is 1e-16/(1 - m), the period depends on its logarithm, and where an orbit waits at the middle "
+    "axis that shows. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that hold within "
+    "the first quarter of a period only. Beyond it they grow like an exponential, and what comes back "
+    "is larger than the motion by any factor, without a warning.",
+    "**On it** the answer hangs on the last bit of m. It is right where that happens to be 1, and where "
+    "the principal axes are themselves found in doubles it need not be.",
+    "**About the middle axis** the phase is infinite and the answer no number, where the motion is the "
+    "simplest of all.",
+    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it says beforehand that "
+    "it is not made for them.",
+    "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
+    "precision as the answer needs: none of these orbits is difficult for it.",
 )
 
 
@@ -77,7 +99,9 @@ def page(found: Trades, folder: Path) -> str:
         "None of these is on a front, and none has a number above.",
         _failures(found),
         "## The closed form in plain doubles",
-        doubles_table(found.numbers.plain_doubles),
+        _PLAIN_DOUBLES,
+        _doubles(found.numbers.plain_doubles),
+        bullets(_WHY_DOUBLES_FAIL),
         "## What is timed",
         what_is_timed(),
         "## How it was timed, and where",
@@ -267,6 +291,28 @@ def _standing(point: TradePoint) -> str:
 
 def _family(family: str) -> str:
     return prose(family.removesuffix(" f64").replace("scipy ", "SciPy "))
+
+
+# The closed form in plain doubles.
+
+
+def _doubles(rows: Iterable[PlainDouble]) -> str:
+    """Return a line for each case. A false success stands out; an honest outcome has its own words."""
+    lines = []
+    for row in rows:
+        error, outcome = figure(row.error), row.outcome or row.standing.value
+        claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
+        stands_out = row.error is not None and row.standing is not Standing.SOUND
+        lines.append(
+            [
+                *(prose(row.what), figure(row.end), figure(row.m_prime)),
+                bold(error) if stands_out else error,
+                figure(row.error_beside),
+                claims.get(row.standing, prose(outcome)),
+            ]
+        )
+    numbers = ("until t:", "1 - m:", "error:", "taylor f64:")
+    return table(["orbit", *numbers, "what it claims"], lines)
 
 
 # The sheet.

@@ -15,15 +15,14 @@ from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import PROCESS
 from taylor_verify.solvers.solver import Solver
+from taylor_verify.studies.tradeoff import SEED
 from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import left_out, narrowest
 from taylor_verify.studies.tradeoff.document import label
-from taylor_verify.studies.tradeoff.front import sound_points
 from taylor_verify.studies.tradeoff.point import Point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.starts import nearby
-from taylor_verify.studies.tradeoff.timing import SEED
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, trade_off
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 # A start outside the ensemble may fare worse than the worst of a handful within it: a binary digit.
 MARGIN: Final = 2.0
@@ -57,16 +56,12 @@ class Recommendation:
 
     def document(self) -> dict[str, Any]:
         """Return what ``tradeoff --target --json`` prints."""
+        names = ("target", "error", "margin", "starts", "seed", "seconds")
         return {
             "solver": self.solver.name,
             "setting": self.solver.setting,
             "rung": self.rung.name,
-            "target": self.target,
-            "error": self.error,
-            "margin": self.margin,
-            "starts": self.starts,
-            "seed": self.seed,
-            "seconds": self.seconds,
+            **{name: getattr(self, name) for name in names},
             "left_out": list(self.left_out),
             "command": self.command,
             "sentence": self.sentence,

@@ -1,4 +1,4 @@
-"""The trade of one scene: every setting solved, timed and compared with the truth."""
+"""The trade of one scene: every setting solved, timed and compared with the truth; and the front."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.records.json_text import finite
+from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.tradeoff import REPEATS, SEED
 from taylor_verify.studies.tradeoff.accuracy import Truths
 from taylor_verify.studies.tradeoff.attainability import least_error
-from taylor_verify.studies.tradeoff.front import front, front_sentences, request_sentences
-from taylor_verify.studies.tradeoff.point import Point, point
+from taylor_verify.studies.tradeoff.pareto import pareto
+from taylor_verify.studies.tradeoff.point import Point, digits, point
 from taylor_verify.studies.tradeoff.setting import Setting, settings
 from taylor_verify.studies.tradeoff.timing import (
     PATIENCE,
-    REPEATS,
-    SEED,
     WHAT_IS_TIMED,
     Clock,
     Timed,
@@ -118,3 +118,57 @@ def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Proble
             posed.pop(setting, None)
             refused.append(not_started(setting, reason))
     return posed, refused
+
+
+# The front, and what came of each tolerance, in sentences.
+
+
+def front(points: Iterable[Point]) -> list[Point]:
+    """Return the sound points that none beats in both time and error, the fastest first."""
+    return pareto(sound_points(points), lambda p: (p.seconds, p.error))
+
+
+def sound_points(points: Iterable[Point]) -> list[Point]:
+    """Return the points that are compared. A comparison with NaN is false, so none has that error."""
+    return [p for p in points if p.standing is Standing.SOUND and p.error < 1]
+
+
+def front_sentences(points: Sequence[Point]) -> list[str]:
+    """Return the front in words, every ratio to the fastest of this very run."""
+    best, sound = front(points), sound_points(points)
+    if not best:
+        return ["No setting gave an answer that is sound."]
+    said = [_sentence(p, best[0].seconds) for p in best]
+    beaten = len(sound) - len(best)
+    said.append(
+        f"{beaten} of {len(sound)} sound settings are beaten in both time and error by one of these."
+    )
+    if (widest := max(p.timed.spread or 1.0 for p in best)) > 1:
+        said.append(
+            f"A setting's slowest solve took up to {widest:.2g} times its fastest: times nearer to "
+            "each other than that are not told apart."
+        )
+    return said
+
+
+def _sentence(p: Point, fastest: float) -> str:
+    left = digits(p.error)
+    named = "All digits" if left is None else f"{left:.1f} digits"
+    pace = f", {p.seconds / fastest:.2f} times the fastest" if p.seconds > fastest > 0 else ""
+    return f"{named} (error {p.error:.2g}): {p.label} in {p.seconds:.3g} s{pace}."
+
+
+def request_sentences(points: Iterable[Point]) -> list[str]:
+    """Return, for each tolerance, the digits asked for and got. It bounds a step's error and no more."""
+    said = []
+    for p in sound_points(points):
+        asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested
+        if asked is None or got is None or requested is None:
+            continue
+        ratio = p.error / requested
+        compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
+        said.append(
+            f"{p.label}: {asked:.1f} digits asked for, {got:.1f} got; the error is {compared} the "
+            "tolerance."
+        )
+    return said

@@ -1,13 +1,12 @@
-"""A work-precision diagram: a panel for each group of families, and a strip for what is no answer.
+"""The figures of a trade-off: a panel for each group of families, and a strip for what is no answer.
 
-x is the work (seconds, evaluations, steps), y the error, both logarithmic: further down and to the
-left is better. Nothing is joined but neighbouring sound settings of one family.
+In a work-precision diagram x is the work (seconds, evaluations, steps), y the error, both logarithmic:
+further down and to the left is better. Nothing is joined but neighbouring sound settings of one family.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.publish.pictures.log_axes import Limits, number_axes, widened
@@ -23,6 +22,7 @@ from taylor_verify.publish.pictures.sheet import (
     foot_of,
     frames_of,
     free_place,
+    sheet,
 )
 from taylor_verify.publish.pictures.style import SMALL
 from taylor_verify.records.standing import Standing
@@ -35,65 +35,80 @@ if TYPE_CHECKING:
 # Room beside the points for their names, in parts of the panel: left and right, below and above.
 _MARGINS_X: Final = (0.06, 0.16)
 _MARGINS_Y: Final = (0.09, 0.09)
-# Thin and behind everything.
-_FRONT: Final[Mapping[str, Any]] = {
-    "color": QUIET,
-    "linewidth": 0.6,
-    "zorder": 1,
-    "gid": "front",
-}
+_DIAGONAL: Final[Mapping[str, Any]] = {"color": QUIET, "linewidth": 0.8}
 
 
-@dataclass(frozen=True)
-class Diagram:
-    """The names of the axes with their units, and what is drawn beside the points.
+def work_precision(
+    panels: Sequence[Panel],
+    x_name: str,
+    y_name: str,
+    floors: Mapping[str, float],
+    bars: bool,
+    note: str,
+) -> Figure:
+    """Return the whole figure: the panels row by row, the meaning of the marks below.
 
     ``floors`` are the attainable errors by rung, drawn where a panel has the rung; ``bars`` shows by
     how much times spread; ``note`` is said with the marks.
     """
-
-    x_name: str
-    y_name: str
-    floors: Mapping[str, float] = field(default_factory=dict)
-    bars: bool = False
-    note: str = ""
-
-
-def figure_of(diagram: Diagram, panels: Sequence[Panel]) -> Figure:
-    """Return the whole figure: the panels row by row, the meaning of the marks below."""
     from taylor_verify.publish.pictures.labels import write_names
 
     front = front_of(one for panel in panels for one in panel.drawn)
     strips = [[one for one in panel.drawn if one.border] for panel in panels]
-    entries = _legend(diagram, panels)
-    frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, diagram.note))
+    entries = _legend(panels, bars, bool(floors))
+    frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
     figure = blank(height)
     shared = _limits_x(p for p in panels if p.yardstick)
     for panel, strip, frame in zip(panels, strips, frames, strict=True):
         axes = add_axes(figure, frame)
         # The ladder's times are near each other; the others are compared across their panels.
         x_limits = shared if panel.yardstick else _limits_x([panel])
-        axes.set(xscale="log", yscale="log", xlim=x_limits, ylim=_limits_y(panel, diagram))
-        axes.set(xlabel=diagram.x_name, ylabel=diagram.y_name)
+        own = {rung: floors[rung] for rung in panel.ladder if rung in floors}
+        y_limits = widened([*(spot.y for spot in panel.sound), *own.values()], *_MARGINS_Y)
+        axes.set(xscale="log", yscale="log", xlim=x_limits, ylim=y_limits)
+        axes.set(xlabel=x_name, ylabel=y_name)
         number_axes(axes)
         stairs = _stairs(front, axes)
-        axes.plot(*zip(*stairs, strict=True), **_FRONT)
-        for rung, colour in panel.ladder.items():
-            if rung in diagram.floors:
-                floor = diagram.floors[rung]
-                axes.axhline(floor, color=colour, linewidth=0.6, dashes=(1, 2), gid="floor")
+        # Thin and behind everything.
+        axes.plot(*zip(*stairs, strict=True), color=QUIET, linewidth=0.6, zorder=1, gid="front")
+        for rung, floor in own.items():
+            colour = panel.ladder[rung]
+            axes.axhline(floor, color=colour, linewidth=0.6, dashes=(1, 2), gid="floor")
         for series in panel.drawn:
-            draw_series(axes, series, diagram.bars)
+            _draw_series(axes, series, bars)
             _draw_exact(axes, series)
-        bars = [((s.x, s.y), (s.x * s.spread, s.y)) for s in panel.sound] if diagram.bars else []
-        write_names(axes, names_of(panel), [stairs, *bars])
+        spread = [((s.x, s.y), (s.x * s.spread, s.y)) for s in panel.sound] if bars else []
+        write_names(axes, _names_of(panel), [stairs, *spread])
         top = _draw_strip(figure, frame, panel, strip, x_limits) if strip else axes
         top.set_title(panel.heading, pad=4)
-    draw_legend(figure, entries, diagram.note, free_place(frames))
+    draw_legend(figure, entries, note, free_place(frames))
     return figure
 
 
-def draw_series(axes: Axes, series: Series, bars: bool = False) -> None:
+def digits_achieved(panels: Sequence[Panel]) -> Figure:
+    """Return digits asked for against digits achieved: on the diagonal a tolerance means what it says."""
+    from matplotlib.ticker import MaxNLocator
+
+    from taylor_verify.publish.pictures.labels import write_names
+
+    figure, places = sheet(len(panels), [(dict(_DIAGONAL), "achieved as asked; above it, more")])
+    for panel, axes in zip(panels, places, strict=True):
+        most_x, most_y = max(s.x for s in panel.sound), max(s.y for s in panel.sound)
+        axes.set(xlim=(0, most_x * 1.22), ylim=(-0.03 * most_y, max(most_y * 1.12, 4)))
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set(xlabel="digits asked for, \N{MINUS SIGN}log₁₀ tolerance", ylabel="digits achieved")
+        axes.grid(True)
+        axes.set_title(panel.heading, pad=4)
+        most = min(axes.get_xlim()[1], axes.get_ylim()[1])
+        diagonal = [(0.0, 0.0), (most, most)]
+        axes.plot(*zip(*diagonal, strict=True), gid="diagonal", zorder=1, **_DIAGONAL)
+        for series in panel.drawn:
+            _draw_series(axes, series, bars=False)
+        write_names(axes, _names_of(panel), [diagonal])
+    return figure
+
+
+def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
     """Draw the lines of a family, one for each run of sound neighbours, and a bar where times spread."""
     look = series.look
     for piece in series.pieces:
@@ -116,7 +131,7 @@ def _draw_exact(axes: Axes, series: Series) -> None:
             axes.plot([spot.x], [0.0], transform=place, clip_on=False, gid="exact", **look)
 
 
-def names_of(panel: Panel) -> list[Named]:
+def _names_of(panel: Panel) -> list[Named]:
     """Return the lines of a panel with their names."""
     return [
         Named(panel.label(one), one.look.colour, [[(s.x, s.y) for s in p] for p in one.pieces])
@@ -183,40 +198,27 @@ def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Lim
     )
 
 
-def _legend(diagram: Diagram, panels: Sequence[Panel]) -> list[Entry]:
+def _legend(panels: Sequence[Panel], bars: bool, floors: bool) -> list[Entry]:
     """Return the meaning of the marks that occur."""
     spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
     standings = {spot.row["standing"] for spot in spots if spot.is_at_the_border}
-    mark = {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
-    every: list[tuple[bool, Entry]] = [
-        (True, ({"color": QUIET, "linewidth": 0.8}, "Pareto front")),
+    exact = any(spot.is_exact for spot in spots)
+    dotted, mark = (0, (1, 2)), {"linestyle": "none", "markersize": 4.5, "markeredgecolor": INK}
+    every: list[tuple[bool, dict[str, Any], str]] = [
+        (True, {"color": QUIET, "linewidth": 0.8}, "Pareto front"),
+        (bars, {"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
+        (floors, {"color": INK, "linewidth": 0.6, "linestyle": dotted}, "attainable"),
         (
-            diagram.bars,
-            ({"color": QUIET, "linewidth": 0.5, "marker": "|"}, "best to slowest repeat"),
+            *(Standing.FALSE in standings, {**mark, "marker": "o", "markerfacecolor": PAPER}),
+            "false success",
         ),
-        (
-            bool(diagram.floors),
-            ({"color": INK, "linewidth": 0.6, "linestyle": (0, (1, 2))}, "attainable"),
-        ),
-        (
-            Standing.FALSE in standings,
-            ({**mark, "marker": "o", "markerfacecolor": PAPER}, "false success"),
-        ),
-        (Standing.FAILED in standings, ({**mark, "marker": "x"}, "failed")),
-        (
-            any(spot.is_exact for spot in spots),
-            ({**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"),
-        ),
+        (Standing.FAILED in standings, {**mark, "marker": "x"}, "failed"),
+        (exact, {**mark, "marker": "v", "markerfacecolor": INK}, "no error seen"),
     ]
-    return [entry for occurs, entry in every if occurs]
+    return [(look, name) for occurs, look, name in every if occurs]
 
 
 def _limits_x(panels: Iterable[Panel]) -> Limits:
     spots = [spot for panel in panels for one in panel.drawn for spot in one.spots]
     sound = [x for s in spots if s.is_sound for x in (s.x, s.x * s.spread)]
     return widened([*sound, *(s.x for s in spots if s.is_at_the_border)], *_MARGINS_X)
-
-
-def _limits_y(panel: Panel, diagram: Diagram) -> Limits:
-    floors = [floor for rung, floor in diagram.floors.items() if rung in panel.ladder]
-    return widened([*(spot.y for spot in panel.sound), *floors], *_MARGINS_Y)

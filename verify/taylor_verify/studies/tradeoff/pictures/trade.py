@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import isfinite
 from pathlib import Path
+from statistics import median
 from typing import Any, Final
 
 from taylor_verify.publish.pictures.picture import Picture, save
 from taylor_verify.publish.pictures.wording import plain, stem_of
-from taylor_verify.studies.tradeoff.pictures import digits_achieved
-from taylor_verify.studies.tradeoff.pictures.diagram import Diagram, figure_of
+from taylor_verify.records.standing import Standing
+from taylor_verify.studies.tradeoff.pictures.diagram import digits_achieved, work_precision
 from taylor_verify.studies.tradeoff.pictures.series import (
     AT_THE_BORDER,
     Series,
@@ -40,7 +42,7 @@ def pictures(document: Mapping[str, Any]) -> list[Picture]:
     """Return every picture with its alt text; one that would be empty is left out."""
     if not any(row["standing"] == "sound" for row in document["points"]):
         raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
-    found = (*(_work_precision(document, key) for key in WORKS), digits_achieved.picture(document))
+    found = (*(_work_precision(document, key) for key in WORKS), _digits_achieved(document))
     return [one for one in found if one is not None]
 
 
@@ -51,22 +53,50 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     if not front:
         return None
     is_time, work, scene = key == "seconds", WORKS[key], document["scene"]
-    diagram = Diagram(
+    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
+    figure = partial(
+        work_precision,
+        panels_of(series),
         x_name=_work_name(document, key),
-        y_name=_error_name(document),
+        y_name=f"largest error ({unit})",
         floors=floors_of(document),
         bars=is_time,
         note=_NOTE if key == "evaluations" else "",
     )
     alt = (
         f"Largest error against {'time of a solve' if is_time else work} on {scene}, both "
-        f"logarithmic, for {digits_achieved.names(series)}. "
-        f"{_fastest(front) if is_time else _fewest(front, work)}{_fallen(series)}"
+        f"logarithmic, for {_names(series)}. "
+        f"{_ends(front, work)}{_fallen(series)}"
     )
-    title = f"Error against {work}: {scene}"
+    return Picture(stem_of(document, work), f"Error against {work}: {scene}", alt, figure)
+
+
+def _digits_achieved(document: Mapping[str, Any]) -> Picture | None:
+    """Return digits achieved against digits asked for; None where no setting has both."""
+    asking = [row for row in document["points"] if row["asked"] == "tolerance"]
+    every = series_of({**document, "points": asking}, "requested_digits", "achieved_digits")
+    series = [one for one in every if one.sound]
+    if not series:
+        return None
+    gained = [(one.family, median(spot.y - spot.x for spot in one.sound)) for one in series]
+    typical = ", ".join(
+        f"{family} {abs(more):.1f} {'more' if more >= 0 else 'fewer'}" for family, more in gained
+    )
+    alt = (
+        f"Decimal digits achieved against digits asked for on {document['scene']}, with the "
+        f"diagonal on which both agree, for {_names(series)}. Achieved, in the median, compared "
+        f"with what was asked for: {typical}."
+    )
+    title = f"Digits asked for and achieved: {document['scene']}"
     return Picture(
-        stem_of(document, work), title, alt, partial(figure_of, diagram, panels_of(series))
+        stem_of(document, "digits"), title, alt, partial(digits_achieved, panels_of(series))
     )
+
+
+def _names(series: Sequence[Series]) -> str:
+    """Return the names of the families as a sentence lists them."""
+    *others, last = (one.family for one in series)
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _work_name(document: Mapping[str, Any], key: str) -> str:
@@ -77,28 +107,21 @@ def _work_name(document: Mapping[str, Any], key: str) -> str:
     return names.get(key, key)
 
 
-def _error_name(document: Mapping[str, Any]) -> str:
-    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
-    return f"largest error ({unit})"
-
-
 def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
     """Return the attainable error of each rung that has one."""
     floors = document.get("attainable") or {}
     return {rung: float(e) for rung, e in floors.items() if e and isfinite(e) and e > 0}
 
 
-def _fastest(front: Sequence[Spot]) -> str:
+def _ends(front: Sequence[Spot], work: str) -> str:
+    """Return the two ends of the front in words."""
     first, best = front[0], front[-1]
-    return (
-        f"The fastest sound setting is {first.label} with an error of {plain(first.y)}, "
-        f"the most accurate {best.label} with {plain(best.y)} in {best.x / first.x:.2g} times "
-        f"its time; {len(front)} settings are beaten by none."
-    )
-
-
-def _fewest(front: Sequence[Spot], work: str) -> str:
-    first, best = front[0], front[-1]
+    if work == "time":
+        return (
+            f"The fastest sound setting is {first.label} with an error of {plain(first.y)}, "
+            f"the most accurate {best.label} with {plain(best.y)} in {best.x / first.x:.2g} times "
+            f"its time; {len(front)} settings are beaten by none."
+        )
     return (
         f"The fewest {work} of a sound setting are {first.x} ({first.label}, error "
         f"{plain(first.y)}); the smallest error is {plain(best.y)} with {best.x} ({best.label})."
@@ -107,11 +130,11 @@ def _fewest(front: Sequence[Spot], work: str) -> str:
 
 def _fallen(series: Sequence[Series]) -> str:
     """Return the number of settings at the border, after a space; empty where all are sound."""
-    standings = [spot.row["standing"] for one in series for spot in one.spots]
-    counts = [(standings.count(name), name) for name in AT_THE_BORDER]
-    said = [f"{count} {name}{_plural(count, name)}" for count, name in counts if count]
+    standings = Counter(spot.row["standing"] for one in series for spot in one.spots)
+    plural = {Standing.FALSE: "false successes"}
+    said = [
+        f"{standings[name]} {plural.get(name, name) if standings[name] > 1 else name}"
+        for name in AT_THE_BORDER
+        if standings[name]
+    ]
     return f" Marked at the border: {', '.join(said)}." if said else ""
-
-
-def _plural(count: int, name: str) -> str:
-    return "es" if count > 1 and name.endswith("success") else ""
