@@ -211,7 +211,7 @@ def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_every_published_setting_can_be_named_again(name: str) -> None:
     """A worker process gets names alone: each leads to the same solver, once."""
-    asked = published_settings(load(name))
+    asked = tuple(published_settings(load(name)))
     found = [(one.solver.name, one.rung.name) for one in asked]
     assert len(set(found)) == len(found)
     assert YARDSTICK in found
@@ -234,7 +234,7 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
         replace(real_setting(name, _taylor()[1]), withheld=reason)  # type: ignore[arg-type]
         for name, reason in (("taylor", ""), ("taylor?tol=1e-6", ""), ("scipy:DOP853", "too slow"))
     ]
-    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: tuple(few))
+    monkeypatch.setattr(measurement, "published_settings", lambda scene, outside: few)
     monkeypatch.setattr(measurement, "plain_doubles", lambda: iter(()))
     monkeypatch.setattr(measurement, "in_a_new_process", lambda work, *given: work(*given))
     told: list[str] = []

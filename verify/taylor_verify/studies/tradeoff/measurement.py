@@ -19,7 +19,6 @@ from math import inf
 from typing import Final
 
 from taylor_verify.judge.provenance import command, packages, processor, versions
-from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
@@ -42,12 +41,12 @@ from taylor_verify.studies.tradeoff.rounds import (
     TIMES_RESOLUTION,
     YARDSTICK,
     Measured,
-    Name,
     clock_resolution,
     measured,
 )
 from taylor_verify.studies.tradeoff.setting import (
     ELLIPJ,
+    Name,
     Setting,
     geometric,
     library,
@@ -56,7 +55,12 @@ from taylor_verify.studies.tradeoff.setting import (
     taylor,
 )
 from taylor_verify.studies.tradeoff.timing import WHAT_IS_TIMED
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, request_sentences, trade_off
+from taylor_verify.studies.tradeoff.trade_off import (
+    TradeOff,
+    request_sentences,
+    sound_points,
+    trade_off,
+)
 
 SCENES: Final = (
     *("euler/generic", "euler/with-attitude"),
@@ -99,11 +103,13 @@ def measurement(
     """
     trades = []
     for scene in map(load, names):
-        settings = published_settings(scene, with_outside)
+        settings = tuple(published_settings(scene, with_outside))
         # What is published must not hang on how busy the machine was.
         trades.append(trade_off(scene, settings, 0, seed, patience=inf))
         finished(f"errors of {scene.name}")
-    asked = [(trade.scene, _sound(trade)) for trade in trades]
+    asked = [
+        (one.scene, [p.timed.setting.name for p in sound_points(one.points)]) for one in trades
+    ]
     by_process = []
     for number in range(processes):
         by_process.append(in_a_new_process(one_process, asked, seed + number, rounds))
@@ -141,12 +147,8 @@ def _versions() -> dict[str, str]:
     return found
 
 
-def published_settings(scene: Scene, with_outside: bool = False) -> tuple[Setting, ...]:
-    """Return the settings family by family, the coarsest first: taylor on every rung, all else on f64."""
-    return tuple(_published(scene, with_outside))
-
-
-def _published(scene: Scene, with_outside: bool) -> Iterator[Setting]:
+def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Setting]:
+    """Yield the settings family by family, the coarsest first: taylor on every rung, all else on f64."""
     f64 = rung_named("f64")
     yield from taylor(f64)
     for name in _OWN_TOLERANCE:
@@ -163,11 +165,6 @@ def _published(scene: Scene, with_outside: bool) -> Iterator[Setting]:
         yield from outside(["f64"], _COMPILED, _FOR_THE_COLUMNS)
 
 
-def _sound(trade: TradeOff) -> list[Name]:
-    settings = (p.timed.setting for p in trade.points if p.standing is Standing.SOUND)
-    return [(one.solver.name, one.rung.name) for one in settings]
-
-
 def one_process(asked: Sequence[Asked], seed: int, rounds: int) -> dict[str, dict[Name, Measured]]:
     """Return what one process measures, by scene; the scenes too in an order of its own."""
     scenes = list(asked)
@@ -180,21 +177,17 @@ def _timings(
 ) -> Iterator[TradeTiming]:
     """Yield the times of every setting that finished in all the processes."""
     for scene, names in asked:
+        of_scene = [process[scene.name] for process in by_process]
         for name in names:
-            found = [process[scene.name].get(name) for process in by_process]
-            every = [one for one in found if one is not None]
-            if every and len(every) == len(found):
-                yield _timing(scene.name, name, every)
+            if of_scene and all(name in one for one in of_scene):
+                yield _timing(scene.name, name, [one[name] for one in of_scene])
 
 
 def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
-    solver, rung = name
     inner = [one.inner for one in every if one.inner is not None]
     ratio = estimate(one.ratio for one in every)
     return TradeTiming(
-        scene=scene,
-        solver=solver,
-        rung=rung,
+        *(scene, *name),
         seconds=estimate(one.seconds for one in every).median,
         inner_seconds=estimate(inner).median if len(inner) == len(every) else None,
         ratio=ratio.median,

@@ -277,16 +277,15 @@ def _geometric(found: Trades) -> str:
 def _failures(found: Trades) -> str:
     columns = ["scene", "setting", "what it is", "because"]
     rows = [
-        [code(trade.scene), code(p.label), prose(_standing(p)), prose(p.because)]
+        [
+            *(code(trade.scene), code(p.label)),
+            "sound, and not timed" if p.standing is Standing.SOUND else prose(p.standing.value),
+            prose(p.because),
+        ]
         for trade in found.trades
         for p in trade.uncompared
     ]
     return table(columns, rows) if rows else "Nothing."
-
-
-def _standing(point: TradePoint) -> str:
-    is_sound = point.standing is Standing.SOUND
-    return "sound, and not timed" if is_sound else point.standing.value
 
 
 def _family(family: str) -> str:
@@ -300,7 +299,7 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
     """Return a line for each case. A false success stands out; an honest outcome has its own words."""
     lines = []
     for row in rows:
-        error, outcome = figure(row.error), row.outcome or row.standing.value
+        error = figure(row.error)
         claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
         stands_out = row.error is not None and row.standing is not Standing.SOUND
         lines.append(
@@ -308,7 +307,7 @@ def _doubles(rows: Iterable[PlainDouble]) -> str:
                 *(prose(row.what), figure(row.end), figure(row.m_prime)),
                 bold(error) if stands_out else error,
                 figure(row.error_beside),
-                claims.get(row.standing, prose(outcome)),
+                claims.get(row.standing, prose(row.outcome)),
             ]
         )
     numbers = ("until t:", "1 - m:", "error:", "taylor f64:")

@@ -1,4 +1,4 @@
-"""The failures of the closed form in plain doubles: the same solver, from an easy orbit to none.
+"""The failures of the closed form in plain doubles: one solver, from an easy orbit to none.
 
 1 - m of each orbit, on which it hangs, is exact; the error is that of omega, the largest of all samples.
 """
@@ -34,7 +34,7 @@ _SAMPLES: Final = 11
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what it is in words, and whether it is short enough for a solver that takes steps."""
+    """A scene, its words, and whether it is short enough for a solver that takes steps."""
 
     scene: Scene
     what: str
@@ -65,23 +65,22 @@ def plain_doubles() -> Iterator[PlainDouble]:
 
     ``m_prime`` is None where the orbit has none.
     """
-    f64 = rung("f64")
     truths = Truths()
     for case in cases():
-        problem = pose(case.scene, f64)
+        problem = pose(case.scene, rung("f64"))
         found = _achieved(ELLIPJ, problem, truths)
-        beside = _achieved(_BESIDE, problem, truths).error if case.is_short else None
+        m_prime = elements(problem.given).get("m_prime")
         yield PlainDouble(
             what=case.what,
             scene=case.scene.name,
             end=float(case.scene.clock.instants[-1]),
-            m_prime=_m_prime(problem),
+            m_prime=None if m_prime is None else float(m_prime.value),
             error=found.error,
             outcome=found.outcome,
             standing=found.standing,
             because=found.because,
             beside=_BESIDE,
-            error_beside=beside,
+            error_beside=_achieved(_BESIDE, problem, truths).error if case.is_short else None,
         )
 
 
@@ -90,8 +89,3 @@ def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
     trajectory = solver_named(name).solve(problem)
     run = Timed(setting(name, problem.rung), trajectory, 0.0, (trajectory.seconds,))
     return point(run, truths.accuracy(problem, trajectory)).on(problem.scene.name)
-
-
-def _m_prime(problem: Problem) -> float | None:
-    found = elements(problem.given).get("m_prime")
-    return None if found is None else float(found.value)

@@ -19,8 +19,9 @@ from typing import Final, NamedTuple
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.studies.tradeoff.setting import Setting, setting
+from taylor_verify.studies.tradeoff.setting import Name, setting
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
@@ -33,9 +34,6 @@ _YARDSTICK_SECONDS: Final = 1e-2
 # What is waited for longer, a program's start included, is solved once a process.
 _DEAR: Final = 0.2
 _MOST_SOLVES: Final = 1000
-
-# A solver and a rung, by their names: what passes from process to process.
-Name = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,10 @@ def measured(
     The yardstick is measured with them, asked for or not.
     """
     least = max(LEAST_SECONDS, TIMES_RESOLUTION * (resolution or clock_resolution()))
-    work = {name: _work(scene, name) for name in dict.fromkeys([YARDSTICK, *names])}
+    work: dict[Name, tuple[Solver, Problem]] = {}
+    for solver, rung in (YARDSTICK, *names):
+        on = rung_named(rung)
+        work[solver, rung] = setting(solver, on).solver, pose(scene, on)
     solved = {name: _solved(*work[name], 1) for name in work}
     first = {name: taken for name, taken in solved.items() if taken is not None}
     if YARDSTICK not in first:
@@ -93,11 +94,6 @@ def measured(
     return {name: _summed(name, first[name], kept) for name in names if name in first}
 
 
-def _work(scene: Scene, name: Name) -> tuple[Setting, Problem]:
-    solver, rung = name
-    return setting(solver, rung_named(rung)), pose(scene, rung_named(rung))
-
-
 def _summed(name: Name, first: _Taken, kept: Iterable[Mapping[Name, _Taken]]) -> Measured:
     """Return the medians over the rounds; of a dear setting its only solve over the yardstick's median."""
     with_unit = [one for one in kept if YARDSTICK in one]
@@ -113,13 +109,13 @@ def _summed(name: Name, first: _Taken, kept: Iterable[Mapping[Name, _Taken]]) ->
     )
 
 
-def _solved(asked: Setting, problem: Problem, count: int) -> _Taken | None:
+def _solved(solver: Solver, problem: Problem, count: int) -> _Taken | None:
     """Solve so many times, as the solver times itself; None if a solve did not finish."""
     seconds, compiling = 0.0, 0.0
     inner: list[float | None] = []
     began = perf_counter()
     for _ in range(count):
-        trajectory = asked.solver.solve(problem)
+        trajectory = solver.solve(problem)
         if trajectory.outcome is not Outcome.FINISHED:
             return None
         seconds += trajectory.seconds

@@ -35,6 +35,9 @@ _ODEFUN: Final = ("mpmath:odefun?tol=1e-6", "mpmath:odefun")
 _LONGEST_FOR_ODEFUN: Final = 400
 ELLIPJ: Final = "closed-form:ellipj"
 
+# A solver and a rung, by their names: what passes from process to process.
+Name = tuple[str, str]
+
 TOLERANCE, STEP, NOTHING = "tolerance", "step", ""
 # By which key of its name a solver is told how accurate to be, and what that number is.
 _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
@@ -60,6 +63,10 @@ class Setting:
     def label(self) -> str:
         """Solver, setting and rung in one line, as they are printed."""
         return label(self.solver.name, self.solver.setting, self.rung.name)
+
+    @property
+    def name(self) -> Name:
+        return self.solver.name, self.rung.name
 
     @property
     def is_integrator(self) -> bool:

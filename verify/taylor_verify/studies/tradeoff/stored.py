@@ -101,12 +101,14 @@ class Trades:
     @property
     def trades(self) -> tuple[Trade, ...]:
         """Every scene with its points and their times."""
-        return tuple(map(self._trade, self.numbers.scenes))
-
-    def _trade(self, about: TradeScene) -> Trade:
-        points = tuple(p for p in self.numbers.points if p.scene == about.scene)
-        own = [timing for timing in self.times.timings if timing.scene == about.scene]
-        return Trade(about, points, {(timing.solver, timing.rung): timing for timing in own})
+        timings: dict[str, dict[tuple[str, str], TradeTiming]] = {}
+        for one in self.times.timings:
+            timings.setdefault(one.scene, {})[one.solver, one.rung] = one
+        points = self.numbers.points
+        return tuple(
+            Trade(one, tuple(p for p in points if p.scene == one.scene), timings.get(one.scene, {}))
+            for one in self.numbers.scenes
+        )
 
 
 def write(folder: Path, numbers: TradeNumbers, times: TradeTimings) -> list[Path]:

@@ -44,6 +44,9 @@ class TradeOff:
 
     def document(self) -> dict[str, Any]:
         """Return what JSON holds: ``sentences`` tell the front in words, ``integrators`` theirs alone."""
+        integrators = [p for p in self.points if p.timed.setting.is_integrator]
+        # What needs no steps leads the front: behind it integrators have a front of their own.
+        is_led = not all(p.timed.setting.is_integrator for p in self.front)
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
@@ -51,7 +54,7 @@ class TradeOff:
             "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
-            "integrators": self._front_of_integrators(),
+            "integrators": front_sentences(integrators) if is_led else [],
             "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,
@@ -68,12 +71,6 @@ class TradeOff:
         """The least error that rounding leaves on each rung; None where it is not known or no number."""
         rungs = dict.fromkeys(p.timed.setting.rung for p in self.points)
         return {rung.name: finite(least_error(self.scene, rung)) for rung in rungs}
-
-    def _front_of_integrators(self) -> list[str]:
-        """Return the front in words without what needs no steps; empty where that is not on the front."""
-        if all(p.timed.setting.is_integrator for p in self.front):
-            return []
-        return front_sentences([p for p in self.points if p.timed.setting.is_integrator])
 
 
 def trade_off(

@@ -53,11 +53,14 @@ def _work_precision(document: Mapping[str, Any], key: str) -> Picture | None:
     if not front:
         return None
     is_time, work, scene = key == "seconds", WORKS[key], document["scene"]
+    # A published time is a median of many, and the page beside the picture tells of it.
+    best = f", best of {document['timing']['repeats']}" if "timing" in document else ""
+    axes = {"seconds": f"time of a solve{best} (s)", "evaluations": "evaluations of the equations"}
     unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
     figure = partial(
         work_precision,
         panels_of(series),
-        x_name=_work_name(document, key),
+        x_name=axes.get(key, key),
         y_name=f"largest error ({unit})",
         floors=floors_of(document),
         bars=is_time,
@@ -97,14 +100,6 @@ def _names(series: Sequence[Series]) -> str:
     """Return the names of the families as a sentence lists them."""
     *others, last = (one.family for one in series)
     return f"{', '.join(others)} and {last}" if others else last
-
-
-def _work_name(document: Mapping[str, Any], key: str) -> str:
-    """Return the name of the axis. A published time is a median of many, and the page tells of it."""
-    timing = document.get("timing")
-    best = f", best of {timing['repeats']}" if timing else ""
-    names = {"seconds": f"time of a solve{best} (s)", "evaluations": "evaluations of the equations"}
-    return names.get(key, key)
 
 
 def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
