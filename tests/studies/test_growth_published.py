@@ -191,14 +191,19 @@ def test_a_run_that_was_stopped_goes_on(
         (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
         (["--periods", "1e4"], "expected --periods with `publish growth`, got it with no study"),
         (["prices", "--long"], "expected --long with `publish growth`, got it with prices"),
+        (["growth", "--period", "3"], "expected an option, got --period; did you mean --periods?"),
+        (["growth", "--period=3"], "expected an option, got --period; did you mean --periods?"),
+        (["--lon", "growth"], "expected an option, got --lon; did you mean --long?"),
     ],
 )
 def test_a_wrong_call_is_refused(
     options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Too few periods, no number, and options without what they belong to: exit status 2, one line."""
+    """Too few periods, no number, options misspelt or without their study: exit status 2, one line."""
     assert main(["publish", *options, "--from", str(tmp_path)]) == 2
-    assert said in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert said in error
+    assert "expected a study" not in error
 
 
 @pytest.mark.usefixtures("one_short_entry")
