@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 
 # None stands for a number that is not finite.
 Number = float | None
+
+# The word of a quantity without any error.
+EXACT: Final = "exact"
 
 
 @dataclass(frozen=True)

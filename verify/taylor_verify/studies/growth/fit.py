@@ -25,6 +25,7 @@ import mpmath
 import numpy as np
 
 from taylor_verify.records.status import Status
+from taylor_verify.studies.growth.document import EXACT
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -55,7 +56,6 @@ class Law(StrEnum):
     INTEGRATED = "the integral of a random walk"
 
 
-EXACT: Final = "exact"
 BOUNDED: Final = "bounded"
 RANDOM_WALK: Final = "random walk"
 BIAS: Final = "bias"

@@ -48,10 +48,17 @@ def picture(runs: Sequence[Ensemble]) -> Picture:
     }
     if not any(points for by_run in lines.values() for points in by_run.values()):
         raise ValueError("expected a run with errors above zero, got none @ runs")
-    said = "; ".join(_said(label, run) for label, run in by_label.items())
+    said = []
+    for label in by_label:
+        ends = []
+        for quantity, by_run in lines.items():
+            if points := by_run[label]:
+                (n0, e0), (n1, e1) = points[0], points[-1]
+                ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
+        said.append(f"{label}: {', '.join(ends) or 'nothing above zero'}")
     alt = (
         f"Errors against periods on {_TITLE}, both logarithmic, energy on the left and "
-        f"phase on the right. {said}."
+        f"phase on the right. {'; '.join(said)}."
     )
     title = f"Growth of errors: {_TITLE}"
     return Picture(stem_of({"scene": _TITLE}, "growth"), title, alt, partial(_figure, lines))
@@ -61,16 +68,6 @@ def _points(run: Ensemble, quantity: str) -> Points:
     """Return the root mean squares that a logarithmic axis can show."""
     rms = next((one.rms for one in run.quantities if one.quantity == quantity), ())
     return [(n, e) for n, e in zip(run.counts, rms, strict=False) if e is not None and e > 0]
-
-
-def _said(label: str, run: Ensemble) -> str:
-    ends = []
-    for quantity, _, _ in PANELS:
-        points = _points(run, quantity)
-        if points:
-            (n0, e0), (n1, e1) = points[0], points[-1]
-            ends.append(f"{quantity} {plain(e0)} at {n0:g} and {plain(e1)} at {n1:g} periods")
-    return f"{label}: {', '.join(ends) or 'nothing above zero'}"
 
 
 def _figure(lines: Mapping[str, Mapping[str, Points]]) -> Figure:

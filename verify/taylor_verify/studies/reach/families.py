@@ -27,6 +27,7 @@ from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.studies.reach.document import ReachFamily
 
 # Rationals, or their texts with spaces between.
 Numbers = tuple[Fraction | int, ...] | str
@@ -70,6 +71,11 @@ class Family:
 
     def label(self, value: str) -> str:
         return f"{self.name} {self.symbol} = {value}" if self.symbol else self.name
+
+    def described(self) -> ReachFamily:
+        """Return the family as it is stored."""
+        about = (self.name, self.title, self.symbol, self.extreme, self.values)
+        return ReachFamily(*about, dict(self.far))
 
     def periods(self, rung: str) -> tuple[int, ...]:
         return tuple(count for count in PERIODS if count <= self.far[rung])

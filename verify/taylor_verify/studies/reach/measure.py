@@ -33,7 +33,7 @@ from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.studies.reach.document import ReachFamily, ReachRow, ReachStudy
+from taylor_verify.studies.reach.document import ReachRow, ReachStudy
 from taylor_verify.studies.reach.families import (
     FAMILIES,
     QUARTERS,
@@ -60,7 +60,7 @@ def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
         _measured, members(), expense=_expense, ended=lambda member, _: finished(_label(member))
     )
     return ReachStudy(
-        families=tuple(map(_described, FAMILIES)),
+        families=tuple(one.described() for one in FAMILIES),
         rows=tuple(stored(row) for rows in measured for row in rows),
         lost=_LOST,
         provenance=SceneProvenance(versions(), processor(), command()),
@@ -89,12 +89,11 @@ def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
 
 def stored(row: ReachRow) -> ReachRow:
     """Return the row as it is stored: four digits, and None for an error that is not finite."""
-    errors, floors = (tuple(map(_rounded, each)) for each in (row.errors, row.floors))
+    errors, floors = (
+        tuple(None if e is None or not isfinite(e) else float(f"{e:.4g}") for e in each)
+        for each in (row.errors, row.floors)
+    )
     return replace(row, errors=errors, floors=floors)
-
-
-def _rounded(value: float | None) -> float | None:
-    return float(f"{value:.4g}") if value is not None and isfinite(value) else None
 
 
 class _Another(Exception):  # noqa: N818 (it names what the rounded orbit is)
@@ -193,7 +192,3 @@ def _expense(member: Member) -> float:
     """Return the rank of a member: first the wide rungs, whose periods are long where it is extreme."""
     far = family(member[0]).far
     return -(1000.0 * far.get("mp237", 0) + 100.0 * far.get("f128", 0) + far.get("f64", 0) / 10)
-
-
-def _described(one: Family) -> ReachFamily:
-    return ReachFamily(one.name, one.title, one.symbol, one.extreme, one.values, dict(one.far))
