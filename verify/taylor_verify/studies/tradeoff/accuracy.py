@@ -88,9 +88,9 @@ class Truths:
     def __init__(self) -> None:
         self._known: dict[tuple[Scene, Rung], Truth | None] = {}
 
-    def accuracy(self, problem: Problem | None, trajectory: Trajectory) -> Accuracy | None:
+    def accuracy(self, problem: Problem, trajectory: Trajectory) -> Accuracy | None:
         """Return the accuracy; None for a run that did not finish, and where the truth cannot be had."""
-        if problem is None or trajectory.outcome is not Outcome.FINISHED:
+        if trajectory.outcome is not Outcome.FINISHED:
             return None
         key = problem.scene, problem.rung
         if key not in self._known:

@@ -8,20 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import inf
 from typing import Final
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.problem import pose
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import solver_named
-from taylor_verify.studies.tradeoff.accuracy import Truths
-from taylor_verify.studies.tradeoff.document import PlainDouble, TradePoint
-from taylor_verify.studies.tradeoff.point import point
+from taylor_verify.studies.tradeoff.document import PlainDouble
 from taylor_verify.studies.tradeoff.setting import ELLIPJ, setting
-from taylor_verify.studies.tradeoff.timing import Timed
+from taylor_verify.studies.tradeoff.trade_off import trade_off
 
 # Where a step by step solver gets in a moment, it is shown beside.
 _BESIDE: Final = "taylor"
@@ -65,11 +63,12 @@ def plain_doubles() -> Iterator[PlainDouble]:
 
     ``m_prime`` is None where the orbit has none.
     """
-    truths = Truths()
+    f64 = rung("f64")
     for case in cases():
-        problem = pose(case.scene, rung("f64"))
-        found = _achieved(ELLIPJ, problem, truths)
-        m_prime = elements(problem.given).get("m_prime")
+        solvers = (ELLIPJ, _BESIDE) if case.is_short else (ELLIPJ,)
+        trade = trade_off(case.scene, [setting(name, f64) for name in solvers], 0, patience=inf)
+        found, *beside = (p.on(case.scene.name) for p in trade.points)
+        m_prime = elements(pose(case.scene, f64).given).get("m_prime")
         yield PlainDouble(
             what=case.what,
             scene=case.scene.name,
@@ -80,12 +79,5 @@ def plain_doubles() -> Iterator[PlainDouble]:
             standing=found.standing,
             because=found.because,
             beside=_BESIDE,
-            error_beside=_achieved(_BESIDE, problem, truths).error if case.is_short else None,
+            error_beside=beside[0].error if beside else None,
         )
-
-
-def _achieved(name: str, problem: Problem, truths: Truths) -> TradePoint:
-    """Return one solve as a point of a trade."""
-    trajectory = solver_named(name).solve(problem)
-    run = Timed(setting(name, problem.rung), trajectory, 0.0, (trajectory.seconds,))
-    return point(run, truths.accuracy(problem, trajectory)).on(problem.scene.name)

@@ -64,13 +64,8 @@ class Timed:
         return max(self.seconds) / self.best if self.best else None
 
 
-def not_started(setting: Setting, because: str) -> Timed:
-    """Return the answer of a setting that was not asked to run."""
-    return Timed(setting, Trajectory(Outcome.NOT_STARTED, detail=because), 0.0)
-
-
 def timed(
-    problems: Mapping[Setting, Problem],
+    problems: Mapping[Setting, Problem | str],
     repeats: int,
     seed: int,
     clock: Clock = perf_counter,
@@ -78,21 +73,22 @@ def timed(
 ) -> list[Timed]:
     """Solve every setting once, those that finished ``repeats`` times more; return them in their order.
 
-    Without repeats the first time is all there is, as for whoever is after the errors alone.
-    A setting is left out where a coarser one of its family took more than ``patience`` seconds; the
-    outcome says so.
+    A text in place of a problem is the reason why a setting cannot run. Without repeats the first time is
+    all there is, as for whoever is after the errors alone. A setting is left out where a coarser one
+    of its family took more than ``patience`` seconds; the outcome says so.
     """
     firsts = _first_solves(problems, clock, patience)
     finished = [one for one in firsts if one.trajectory.outcome is Outcome.FINISHED]
     # Of each solve the seconds, and those in a compiled integrator: whole answers would fill the memory.
     again: dict[Setting, list[tuple[float, float | None]]] = {one.setting: [] for one in finished}
     spent = {one.setting: one.trajectory.seconds for one in finished}
+    posed = {setting: one for setting, one in problems.items() if not isinstance(one, str)}
     order = random.Random(seed)
     for _ in range(repeats):
         settings = [s for s, made in again.items() if not made or spent[s] <= patience]
         order.shuffle(settings)
         for setting in settings:
-            solved = setting.solver.solve(problems[setting])
+            solved = setting.solver.solve(posed[setting])
             again[setting].append((solved.seconds, solved.inner_seconds))
             spent[setting] += solved.seconds
     return [_with_times(one, again[one.setting]) if one.setting in again else one for one in firsts]
@@ -105,13 +101,16 @@ def _with_times(one: Timed, again: Sequence[tuple[float, float | None]]) -> Time
 
 
 def _first_solves(
-    problems: Mapping[Setting, Problem], clock: Clock, patience: float
+    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
 ) -> list[Timed]:
     found: list[Timed] = []
     dear: set[str] = set()
     for setting, problem in problems.items():
-        if setting.family in dear:
-            found.append(not_started(setting, f"a coarser setting took more than {patience:g} s"))
+        if isinstance(problem, str) or setting.family in dear:
+            coarser = f"a coarser setting took more than {patience:g} s"
+            because = problem if isinstance(problem, str) else coarser
+            nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
+            found.append(Timed(setting, nothing, 0.0))
             continue
         began = clock()
         trajectory = setting.solver.solve(problem)

@@ -22,8 +22,6 @@ from taylor_verify.studies.tradeoff.timing import (
     PATIENCE,
     WHAT_IS_TIMED,
     Clock,
-    Timed,
-    not_started,
     timed,
 )
 
@@ -88,33 +86,24 @@ def trade_off(
     that says why, not an error.
     """
     asked = settings(scene) if asked is None else asked
-    posed, refused = _posed(scene, asked)
-    solved = timed(posed, repeats, seed, clock, patience)
-    measured = {one.setting: one for one in [*solved, *refused]}
-    truths = Truths()
-    found = [
-        point(measured[setting], truths.accuracy(posed.get(setting), measured[setting].trajectory))
-        for setting in asked
-    ]
-    return TradeOff(scene, tuple(found), repeats, seed)
+    posed = {setting: _posed(scene, setting) for setting in asked}
+    truths, points = Truths(), []
+    for one in timed(posed, repeats, seed, clock, patience):
+        problem = posed[one.setting]
+        known = None if isinstance(problem, str) else truths.accuracy(problem, one.trajectory)
+        points.append(point(one, known))
+    return TradeOff(scene, tuple(points), repeats, seed)
 
 
-def _posed(scene: Scene, asked: Iterable[Setting]) -> tuple[dict[Setting, Problem], list[Timed]]:
-    """Return the problem of every setting that can be begun, and the others with the reason."""
-    posed: dict[Setting, Problem] = {}
-    refused: list[Timed] = []
-    for setting in asked:
-        reason = setting.withheld or setting.solver.unavailable(setting.rung)
-        if not reason:
-            try:
-                posed[setting] = pose(scene, setting.rung)
-                reason = setting.solver.unsuited(posed[setting])
-            except NotRepresentable as fault:
-                reason = str(fault)
-        if reason:
-            posed.pop(setting, None)
-            refused.append(not_started(setting, reason))
-    return posed, refused
+def _posed(scene: Scene, setting: Setting) -> Problem | str:
+    """Return the problem of a setting; the reason for one that cannot be begun."""
+    if reason := setting.withheld or setting.solver.unavailable(setting.rung):
+        return reason
+    try:
+        problem = pose(scene, setting.rung)
+    except NotRepresentable as fault:
+        return str(fault)
+    return setting.solver.unsuited(problem) or problem
 
 
 # The front, and what came of each tolerance, in sentences.
