@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from math import inf, log10, nan
 
+import numpy as np
 import pytest
 from mpmath import mp
 
@@ -196,7 +197,7 @@ def test_a_coarse_solver_reaches_less(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_nan_is_lost_for_ever() -> None:
     """The largest of numbers with a NaN among them is NaN, from there on; JSON has null for it."""
-    errors = reach._up_to([1e-9] * 4 + [1e-9, nan, 1e-9, 1e-9] + [1e-9] * 4)
+    errors = reach._up_to(np.array([1e-9] * 5 + [nan] + [1e-9] * 6))
     assert errors[0] == 1e-9
     assert all(error != error for error in errors[1:])
     row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))

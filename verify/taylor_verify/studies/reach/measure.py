@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import inf, isfinite
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
@@ -21,7 +21,7 @@ from taylor_verify.batch.runs import run_all
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.errors.state import largest, state_errors
+from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.judge.provenance import command, processor, versions
@@ -50,15 +50,19 @@ _LOST: Final = 1.0
 # Rounded data whose period is off by more are another orbit: the rung cannot hold the number asked for.
 _SAME_PERIOD: Final = Fraction(1, 10)
 
+Floats = np.ndarray[Any, np.dtype[np.float64]]
 # A family by its name, and a value.
 Member = tuple[str, str]
 
 
 def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
     """Return every row of what is published; ``finished`` is called with each member as it ends."""
-    measured = run_all(
-        _measured, members(), expense=_expense, ended=lambda member, _: finished(_label(member))
-    )
+
+    def ended(member: Member, _: object) -> None:
+        name, value = member
+        finished(family(name).label(value))
+
+    measured = run_all(_measured, members(), expense=_expense, ended=ended)
     return ReachStudy(
         families=tuple(one.described() for one in FAMILIES),
         rows=tuple(stored(row) for rows in measured for row in rows),
@@ -70,11 +74,6 @@ def study(finished: Callable[[str], None] = lambda label: None) -> ReachStudy:
 def members() -> list[Member]:
     """Return every value of every family, by name: small enough to be sent to a process."""
     return [(one.name, value) for one in FAMILIES for value in one.values]
-
-
-def _label(member: Member) -> str:
-    name, value = member
-    return family(name).label(value)
 
 
 def reaches(one: Family, value: str, rungs: Iterable[Rung]) -> list[ReachRow]:
@@ -135,17 +134,18 @@ def _check_orbit(scene: Scene, problem: Problem) -> None:
         raise _Another(f"rounded to {problem.rung.name}, its period is {ratio:.3g} times as long")
 
 
-def _errors(problem: Problem, trajectory: Trajectory) -> list[float]:
+def _errors(problem: Problem, trajectory: Trajectory) -> Floats:
     """Return the largest of all tracked quantities at every instant; NaN for an answer that is none."""
     given, bits = problem.given, working_bits(problem.rung.bits)
     instants = given.clock.elapsed
     if trajectory.outcome is not Outcome.FINISHED:
-        return [inf] * len(instants)
+        return np.full(len(instants), inf)
     truth = solution(given).motion(instants, truth_digits(problem.rung.bits))
     with mp.workprec(bits):
         states = state_errors(given, truth, trajectory.motion(bits))
-        bounds = [one.values + one.truth_radius for one in states]
-        return [float(largest(row)) for row in zip(*bounds, strict=True)]
+        bounds = [(one.values + one.truth_radius).astype(float) for one in states]
+    worst: Floats = np.max(bounds, axis=0)
+    return worst
 
 
 def _with_floors(found: Sequence[ReachRow], scene: Scene) -> list[ReachRow]:
@@ -170,17 +170,16 @@ def _with_floor(one: ReachRow, asked: Scene, truth: Motion) -> ReachRow:
     # Only the parts and their scales are asked for: the truth is compared with itself.
     states = state_errors(asked, truth, truth)
     worst = np.max([base.of_state(errors) for errors in states], axis=0)
-    floors = _up_to([float(value) for value in worst])[: len(one.periods)]
+    floors = _up_to(worst.astype(float))[: len(one.periods)]
     lost = () if floors[-1] < _LOST else (inf,) * (len(one.periods) - len(floors))
     beyond = (inf,) * (len(one.periods) - count)
     return replace(one, errors=one.errors + beyond, floors=floors + lost)
 
 
-def _up_to(values: Sequence[float]) -> tuple[float, ...]:
-    """Return the largest up to the end of each group of quarters."""
-    return tuple(
-        float(largest(values[: end + QUARTERS])) for end in range(0, len(values), QUARTERS)
-    )
+def _up_to(values: Floats) -> tuple[float, ...]:
+    """Return the largest up to the end of each group of quarters; NaN is the largest of all."""
+    groups = np.max(np.reshape(values, (-1, QUARTERS)), axis=1)
+    return tuple(np.maximum.accumulate(groups).tolist())
 
 
 def _measured(member: Member) -> list[ReachRow]:

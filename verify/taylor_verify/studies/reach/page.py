@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import takewhile, zip_longest
+from itertools import product, takewhile, zip_longest
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,9 +49,11 @@ _LEGEND: Final = (
 
 def pictures(study: ReachStudy) -> list[Picture]:
     """Return a map of digits for every family that leads to a separatrix."""
-    return [
-        digits_map.picture(one, _rows_of(study, one)) for one in study.families if one.symbol == "d"
-    ]
+    return [picture for one in study.families for picture in _maps(one, _rows_of(study, one))]
+
+
+def _maps(one: ReachFamily, rows: Sequence[ReachRow]) -> list[Picture]:
+    return [digits_map.picture(one, rows)] if one.symbol == "d" else []
 
 
 def page(study: ReachStudy, folder: Path) -> str:
@@ -74,12 +76,8 @@ def _section(study: ReachStudy, one: ReachFamily, folder: Path) -> list[str]:
     towards = f"; {one.symbol} leads to {one.extreme}" if one.symbol else ""
     blocks = [f"## {one.name}", prose(f"{one.title[0].upper()}{one.title[1:]}{towards}.")]
     if len(one.values) > 1:
-        maps = [p for p in pictures(study) if p.stem == digits_map.stem_of(one)]
-        blocks += [
-            figures.shown(folder, maps),
-            _by_value(one, rows),
-            "Periods at which so many digits are left:",
-        ]
+        blocks += [figures.shown(folder, _maps(one, rows)), _by_value(one, rows)]
+        blocks.append("Periods at which so many digits are left:")
     return [*blocks, _by_periods(one, rows)]
 
 
@@ -113,10 +111,6 @@ def _keeps(row: ReachRow, after: int, digits: int, key: str) -> bool:
     return error is not None and error <= 10.0**-digits
 
 
-# A block of three columns each: what was achieved, and what is attainable.
-_BLOCKS: Final = [(key, n) for key in (ACHIEVED, ATTAINABLE) for n in DIGITS]
-
-
 def _headings(what: str) -> list[str]:
     achieved = [f"{what}{n} digits:" for n in DIGITS]
     return [*achieved, *(f"attainable, {n}:" for n in DIGITS)]
@@ -128,7 +122,8 @@ def _by_value(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
         own = [row for row in rows if row.rung == rung]
         for after in _AFTER:
             if any(after in row.periods for row in own):
-                values = (last_value(own, after, n, key) for key, n in _BLOCKS)
+                blocks = product((ACHIEVED, ATTAINABLE), DIGITS)
+                values = (last_value(own, after, n, key) for key, n in blocks)
                 lines.append([rung, str(after), *(_cell(v, one.values[-1]) for v in values)])
     return table(["rung", "periods:", *_headings(f"{one.symbol}, ")], lines)
 
@@ -143,26 +138,24 @@ def _cell(value: str | int | None, last: str | int) -> str:
 def _by_periods(one: ReachFamily, rows: Sequence[ReachRow]) -> str:
     """Return a line for each value with three numbers for every rung; a single value is turned round."""
     by_place = {(row.value, row.rung): row for row in rows}
+    lines = []
     if len(one.values) == 1:
-        (value,) = one.values
-        found = [(rung, by_place[value, rung]) for rung in one.rungs]
-        cells = [[rung, *(_periods(row, n, key) for key, n in _BLOCKS)] for rung, row in found]
-        return table(["rung", *_headings("")], cells)
-    columns = [f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)]
-    return table(
-        columns,
-        [[value, *(_three(by_place[value, rung]) for rung in one.rungs)] for value in one.values],
-    )
+        for rung in one.rungs:
+            row = by_place[one.values[0], rung]
+            lines.append([rung, *_periods(row, ACHIEVED), *_periods(row, ATTAINABLE)])
+        return table(["rung", *_headings("")], lines)
+    for value in one.values:
+        own = [by_place[value, rung] for rung in one.rungs]
+        cells = [_periods(row, ACHIEVED) if row.errors else [_nothing(row)] for row in own]
+        lines.append([value, *map(", ".join, cells)])
+    return table([f"{one.symbol}:", *(f"{r}: 3, 6, 12:" for r in one.rungs)], lines)
 
 
-def _three(row: ReachRow) -> str:
-    return ", ".join(_periods(row, n, ACHIEVED) for n in DIGITS) if row.errors else _nothing(row)
-
-
-def _periods(row: ReachRow, digits: int, key: str) -> str:
+def _periods(row: ReachRow, key: str) -> list[str]:
+    """Return the most periods for each number of digits."""
     if not numbers_of(row, key):
-        return _nothing(row)
-    return _cell(most_periods(row, digits, key), row.periods[-1])
+        return [_nothing(row)] * len(DIGITS)
+    return [_cell(most_periods(row, n, key), row.periods[-1]) for n in DIGITS]
 
 
 def _nothing(row: ReachRow) -> str:

@@ -56,11 +56,6 @@ _HATCHED: Final[Mapping[str, Any]] = {
 }
 
 
-def stem_of(family: ReachFamily) -> str:
-    """Return the file's name without its ending."""
-    return f"reach-{family.name}"
-
-
 def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
     """Return the errors that were achieved, or those that were attainable."""
     return row.errors if key == ACHIEVED else row.floors
@@ -78,7 +73,7 @@ def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
         f"by taylor, and attainable beside it. {' '.join(one.sentence for one in maps)}"
     )
     title = f"Digits left: {family.name}"
-    return Picture(stem_of(family), title, alt, partial(_figure, family, maps))
+    return Picture(f"reach-{family.name}", title, alt, partial(_figure, family, maps))
 
 
 @dataclass(frozen=True)
