@@ -112,13 +112,11 @@ def _make_environments() -> None:
 
 def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
     """Put into each point that is sound what its first solve takes in a process of its own."""
-    from dataclasses import asdict
-
     from taylor_verify.studies.tradeoff.cold import cold
     from taylor_verify.studies.tradeoff.trade_off import sound_points
 
     asked = [p.timed.setting for p in sound_points(trade.points)]
-    taken = {setting.label: asdict(one) for setting, one in cold(trade.scene, asked).items()}
+    taken = {setting.label: parts for setting, parts in cold(trade.scene, asked).items()}
     for row, p in zip(document["points"], trade.points, strict=True):
         row["cold"] = taken.get(p.label)
 

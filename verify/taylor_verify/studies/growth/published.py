@@ -94,9 +94,3 @@ def followed(
         found = experiment(entry.question(most), file, partial(finished, entry.label))
         runs.append(found.ensemble(entry.why))
     return GrowthStudy(tuple(runs), tuple(left_out), Provenance(versions(), processor(), command()))
-
-
-def forget(entries: Sequence[Entry], checkpoints: Path) -> None:
-    """Remove the checkpoints of ensembles that have been stored."""
-    for entry in entries:
-        (checkpoints / entry.file).unlink(missing_ok=True)

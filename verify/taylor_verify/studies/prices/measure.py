@@ -8,7 +8,7 @@ again and again, unsampled. Compiling is not in it.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -26,7 +26,6 @@ from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.name import named_at
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.studies.prices.document import (
-    Interval,
     PriceAtEqualError,
     PriceMethod,
     PriceRow,
@@ -141,16 +140,11 @@ def _row(
         **problem.form.operations(),
         order=bench.pace.order,
         steps_per_time=bench.steps / bench.unit,
-        step_ratio=_interval(a / bench.steps / (b / base.steps) for a, b in rounds),
-        time_ratio=_interval(a / bench.unit / (b / base.unit) for a, b in rounds),
+        step_ratio=estimate(a / bench.steps / (b / base.steps) for a, b in rounds),
+        time_ratio=estimate(a / bench.unit / (b / base.unit) for a, b in rounds),
         microseconds=1e6 * median(a for a, _ in rounds) / bench.steps,
         error=finite(_error(variant, rung, Taylor())),
     )
-
-
-def _interval(ratios: Iterable[float]) -> Interval:
-    found = estimate(ratios)
-    return found.median, found.low, found.high
 
 
 def _error(variant: Variant, rung: Rung, solver: Taylor) -> float:

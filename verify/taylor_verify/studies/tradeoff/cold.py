@@ -12,7 +12,6 @@ import pickle
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING, TypeVar
 
@@ -25,27 +24,14 @@ if TYPE_CHECKING:
 Answer = TypeVar("Answer")
 
 
-@dataclass(frozen=True)
-class Cold:
-    """Seconds of a first solve, part by part.
+def cold(
+    scene: Scene, asked: Sequence[Setting], finished: Callable[[str], None] = lambda label: None
+) -> dict[Setting, dict[str, float]]:
+    """Return the seconds of the first solves of these settings, one after the other, part by part.
 
     ``process`` until the new process runs, ``importing`` the libraries, the solver's own among them, and
     posing the problem, ``compiling`` what the solver says went before its propagation, ``solving`` the
     propagation, ``rest`` the answer made exact, ``whole`` all of it as the caller waits for it.
-    """
-
-    process: float
-    importing: float
-    compiling: float
-    solving: float
-    rest: float
-    whole: float
-
-
-def cold(
-    scene: Scene, asked: Sequence[Setting], finished: Callable[[str], None] = lambda label: None
-) -> dict[Setting, Cold]:
-    """Return the first solves of these settings, one after the other.
 
     A setting whose process is lost, or whose solver cannot be sent to another process, has none.
     ``finished`` is called with the label of each as it ends.
@@ -61,7 +47,8 @@ def cold(
             began = perf_counter()
             parts = in_a_new_process(first_solve, data)
             whole = perf_counter() - began
-            found[setting] = Cold(max(0.0, whole - sum(parts.values())), **parts, whole=whole)
+            process = max(0.0, whole - sum(parts.values()))
+            found[setting] = {"process": process, **parts, "whole": whole}
         finished(setting.label)
     return found
 

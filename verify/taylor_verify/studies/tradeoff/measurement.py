@@ -33,7 +33,13 @@ from taylor_verify.studies.tradeoff.document import (
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, estimate
+from taylor_verify.studies.tradeoff.order_statistics import (
+    CONFIDENCE,
+    FORMULA,
+    coverage,
+    estimate,
+    place,
+)
 from taylor_verify.studies.tradeoff.plain_doubles import plain_doubles
 from taylor_verify.studies.tradeoff.rounds import (
     LEAST_SECONDS,
@@ -131,7 +137,8 @@ def measurement(
         times_resolution=TIMES_RESOLUTION,
         clock_resolution=clock_resolution(),
         confidence=CONFIDENCE,
-        coverage=estimate([1.0] * processes).coverage,
+        # Too few processes have that of their two extremes.
+        coverage=coverage(processes, max(place(processes, CONFIDENCE), 1)),
         formula=FORMULA,
         of=WHAT_IS_TIMED,
     )
@@ -193,7 +200,7 @@ def _timing(scene: str, name: Name, every: Sequence[Measured]) -> TradeTiming:
         ratio=ratio.median,
         low=ratio.low,
         high=ratio.high,
-        processes=ratio.count,
+        processes=len(every),
     )
 
 

@@ -12,36 +12,31 @@ or more, whatever the distribution (H. A. David and H. N. Nagaraja, Order Statis
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import comb
 from statistics import median
-from typing import Final
+from typing import Final, NamedTuple
 
 CONFIDENCE: Final = 0.95
 FORMULA: Final = "1 - 2 sum_{i<k} C(n, i)/2^n"
 
 
-@dataclass(frozen=True)
-class Estimate:
-    """The median of ``count`` values; ``low`` and ``high`` hold that of their distribution.
+class Estimate(NamedTuple):
+    """The median of some values; ``low`` and ``high`` hold that of their distribution.
 
-    ``coverage`` is the probability that they do. ``low`` and ``high`` are None where ``count`` is too
-    small for the confidence asked for, and ``coverage`` then is that of the two extremes.
+    Both are None where the values are too few for the confidence asked for.
     """
 
     median: float
     low: float | None
     high: float | None
-    count: int
-    coverage: float
 
 
-def estimate(values: Iterable[float], confidence: float = CONFIDENCE) -> Estimate:
-    """Return the median of at least one value, with its interval."""
+def estimate(values: Iterable[float]) -> Estimate:
+    """Return the median of at least one value, with its interval of CONFIDENCE."""
     ranked = sorted(values)
-    rank = place(len(ranked), confidence)
+    rank = place(len(ranked), CONFIDENCE)
     low, high = (ranked[rank - 1], ranked[-rank]) if rank else (None, None)
-    return Estimate(median(ranked), low, high, len(ranked), coverage(len(ranked), max(rank, 1)))
+    return Estimate(median(ranked), low, high)
 
 
 def coverage(count: int, rank: int) -> float:

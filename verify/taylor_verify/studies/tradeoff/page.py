@@ -275,16 +275,16 @@ def _geometric(found: Trades) -> str:
 
 
 def _failures(found: Trades) -> str:
+    """Return the points that are not sound, or were not timed in every process."""
+    rows = []
+    for trade in found.trades:
+        compared = [row.point for row in trade.sound]
+        for p in trade.points:
+            if p not in compared:
+                is_sound = p.standing is Standing.SOUND
+                standing = "sound, and not timed" if is_sound else prose(p.standing.value)
+                rows.append([code(trade.scene), code(p.label), standing, prose(p.because)])
     columns = ["scene", "setting", "what it is", "because"]
-    rows = [
-        [
-            *(code(trade.scene), code(p.label)),
-            "sound, and not timed" if p.standing is Standing.SOUND else prose(p.standing.value),
-            prose(p.because),
-        ]
-        for trade in found.trades
-        for p in trade.uncompared
-    ]
     return table(columns, rows) if rows else "Nothing."
 
 

@@ -81,7 +81,7 @@ class Point:
             "spread": self.timed.spread,
             "repeats": len(self.timed.seconds),
             "first_seconds": self.timed.first,
-            "compile_seconds": self.timed.compiling,
+            "compile_seconds": self.timed.trajectory.compile_seconds,
         }
 
 

@@ -65,12 +65,6 @@ class Trade:
         return tuple(TimedPoint(p, timing) for p, timing in timed if timing is not None)
 
     @property
-    def uncompared(self) -> list[TradePoint]:
-        """The points that are not sound, or were not timed in every process."""
-        compared = [row.point for row in self.sound]
-        return [p for p in self.points if p not in compared]
-
-    @property
     def rows(self) -> list[dict[str, Any]]:
         """A row of `tradeoff --json` for every setting, with the ratio to the yardstick besides."""
         return [

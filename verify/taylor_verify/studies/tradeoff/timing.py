@@ -39,9 +39,9 @@ Clock = Callable[[], float]
 class Timed:
     """The first answer of a setting and the times of all others, in seconds.
 
-    ``first`` is the whole of the first solve as the caller waits for it, ``compiling`` the part of
-    it that the solver says went before the propagation. ``seconds`` is empty for a run that failed.
-    ``inner`` is what the best of them spent in somebody else's compiled integrator, where known.
+    ``first`` is the whole of the first solve as the caller waits for it. ``seconds`` is empty for a run
+    that failed. ``inner`` is what the best of them spent in somebody else's compiled integrator, where
+    known.
     """
 
     setting: Setting
@@ -49,10 +49,6 @@ class Timed:
     first: float
     seconds: tuple[float, ...] = ()
     inner: float | None = None
-
-    @property
-    def compiling(self) -> float:
-        return self.trajectory.compile_seconds
 
     @property
     def best(self) -> float | None:
