@@ -28,7 +28,7 @@ class GrowthGate:
 
 @dataclass(frozen=True)
 class GrowthOfQuantity:
-    """One quantity of an ensemble.
+    """A quantity of an ensemble and its growth.
 
     ``rms`` are root mean squares over the starts at each of the ensemble's instants, ``in_walks`` the last
     over that of a walk whose every step is one roundoff. ``exponent`` lies between ``low`` and ``high`` at
@@ -51,7 +51,7 @@ class GrowthOfQuantity:
 
 @dataclass(frozen=True)
 class Ensemble:
-    """One scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
+    """A scene followed from ``lanes`` starts; ``counts`` are its instants in periods."""
 
     scene: str
     digest: str

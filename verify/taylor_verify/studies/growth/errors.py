@@ -48,7 +48,7 @@ _AT_REST: Final = 1e-3
 
 @dataclass(frozen=True)
 class Measured:
-    """One quantity's errors at the instants, NaN where there are none, and the law they are held to.
+    """The errors of a quantity at the instants, NaN where there are none, and the law they are held to.
 
     Drifts are relative to the quantity's scale, the phase is in radians, the state is relative to its
     largest size. ``signed`` tells the first two from the last, which is a norm.

@@ -28,7 +28,7 @@ Finished = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Found:
-    """One quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
+    """A quantity of an ensemble: its signed errors (lanes, instants), and how they grow."""
 
     quantity: str
     errors: Floats

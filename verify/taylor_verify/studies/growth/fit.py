@@ -103,7 +103,7 @@ class Gate:
 
 @dataclass(frozen=True)
 class Growth:
-    """One quantity of one ensemble: its root mean square over the lanes at every instant, and more.
+    """The growth of a quantity of an ensemble: root mean squares over the lanes at every instant, and more.
 
     ``late`` is the exponent of the second half of the decades alone; ``gate`` is None for an error
     without a sign, of which no law gives the distribution.

@@ -21,7 +21,7 @@ from taylor_verify.studies.growth.question import Question
 
 @dataclass(frozen=True)
 class Entry:
-    """One ensemble by names; ``why`` says what it is there for."""
+    """An ensemble by names; ``why`` says what it is there for."""
 
     scene: str
     rung: str

@@ -54,7 +54,7 @@ _TOLERANCES: Final = ("1e-7", "1e-9", "1e-11", "1e-13")
 
 @dataclass(frozen=True)
 class _Bench:
-    """One variant on one rung, ready to run; ``count`` runs of ``steps`` each make one measurement.
+    """A variant on a rung, ready to run; ``count`` runs of ``steps`` each make one measurement.
 
     ``unit`` is the stretch in the scene's units of time.
     """

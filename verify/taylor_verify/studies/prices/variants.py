@@ -23,7 +23,7 @@ _LOAD: Final = (Fraction(1, 64), Fraction(-1, 128), Fraction(1, 256))
 
 @dataclass(frozen=True)
 class Variant:
-    """One form of one scene. ``against`` names the variant that its price is a multiple of."""
+    """A form of a scene. ``against`` names the variant that its price is a multiple of."""
 
     name: str
     against: str

@@ -114,7 +114,10 @@ def _followed(nothing: ReachRow, scene: Scene, rung: Rung) -> ReachRow:
 
 
 def _solved(nothing: ReachRow, periods: Sequence[int], scene: Scene, rung: Rung) -> ReachRow:
-    """Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit."""
+    """Return the row with the errors after so many periods.
+
+    Raises NotRepresentable, Unsettled, and _Another where the rung has no such orbit.
+    """
     problem = pose(at_quarters(scene, periods), rung)
     _check_orbit(scene, problem)
     trajectory = Taylor().solve(problem)

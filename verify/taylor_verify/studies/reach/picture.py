@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise, product
 from math import floor, log10
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.publish.pictures.palette import FAINT, INK, PAPER, QUIET, contrast
 from taylor_verify.publish.pictures.picture import Picture
@@ -48,12 +48,6 @@ _BELOW: Final = 0.42
 _LEGEND: Final = 0.34
 _NUMBER: Final = 5.5
 _MOST_NAMES: Final = 7
-_HATCHED: Final[Mapping[str, Any]] = {
-    "facecolor": PAPER,
-    "edgecolor": FAINT,
-    "hatch": "////",
-    "linewidth": 0.0,
-}
 
 
 def numbers_of(row: ReachRow, key: str) -> tuple[float | None, ...]:
@@ -78,7 +72,7 @@ def picture(family: ReachFamily, rows: Sequence[ReachRow]) -> Picture:
 
 @dataclass(frozen=True)
 class _Map:
-    """One rung: of each value and number of periods the digits achieved and attainable.
+    """The map of a rung: digits achieved and attainable, of each value and number of periods.
 
     A cell that is missing was not run.
     """
@@ -119,11 +113,6 @@ def digits_of(error: float | None) -> int:
     return floor(-log10(error)) if error > 0 else 307
 
 
-def colour_of(digits: int) -> str:
-    """Return the colour of the class that so many digits belong to."""
-    return next(colour for least, colour in reversed(CLASSES) if digits >= least)
-
-
 def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
     heights = [_CELL * len(one.periods) for one in maps]
     height = _TOP + sum(heights) + _GAP * (len(maps) - 1) + _BELOW + _LEGEND
@@ -138,7 +127,11 @@ def _figure(family: ReachFamily, maps: Sequence[_Map]) -> Figure:
             if one is maps[0]:
                 axes.set_title(_HEADINGS[key], pad=5)
             if one is maps[-1]:
-                _name_values(axes, family)
+                # Where the values are many, some are named.
+                values = family.values
+                shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
+                axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
+                axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
             if column == 0:
                 names = [str(n) if n < 1000 else power_of_ten(n) for n in one.periods]
                 axes.set_yticks(range(len(names)), names)
@@ -158,14 +151,14 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
     for spine in axes.spines.values():
         spine.set_visible(True)
     for (x, value), (y, count) in product(enumerate(one.values), enumerate(one.periods)):
-        digits, corner = one.cells.get((value, count, key)), (x - 0.5, y - 0.5)
+        digits = one.cells.get((value, count, key))
+        cell = Rectangle((x - 0.5, y - 0.5), 1, 1, edgecolor=FAINT)
+        axes.add_patch(cell)
         if digits is None:
-            axes.add_patch(Rectangle(corner, 1, 1, gid="not run", **_HATCHED))
+            cell.set(facecolor=PAPER, hatch="////", linewidth=0.0, gid="not run")
             continue
-        colour = colour_of(digits)
-        axes.add_patch(
-            Rectangle(corner, 1, 1, facecolor=colour, edgecolor=FAINT, linewidth=0.4, gid="cell")
-        )
+        colour = next(colour for least, colour in reversed(CLASSES) if digits >= least)
+        cell.set(facecolor=colour, linewidth=0.4, gid="cell")
         axes.text(
             *(x, y, str(digits)),
             size=_NUMBER,
@@ -179,14 +172,6 @@ def _draw_cells(axes: Axes, one: _Map, key: str) -> None:
 def text_on(colour: str) -> str:
     """Return ink or paper, whichever is told better from the colour."""
     return max((INK, PAPER), key=lambda text: contrast(text, colour))
-
-
-def _name_values(axes: Axes, family: ReachFamily) -> None:
-    """Name some of the values where they are many."""
-    values = family.values
-    shown = range(0, len(values), -(-len(values) // _MOST_NAMES))
-    axes.set_xticks(list(shown), [power_of_ten(float(values[i])) for i in shown])
-    axes.set_xlabel(f"{family.symbol}: towards {family.extreme}", size=SMALL)
 
 
 def _draw_legend(figure: Figure) -> None:

@@ -20,7 +20,7 @@ def label(solver: str, setting: str, rung: str) -> str:
 
 @dataclass(frozen=True)
 class TradePoint:
-    """One setting on one scene: what was asked and achieved.
+    """A setting on a scene: the tolerance or step asked for, and the errors achieved.
 
     ``error`` is the largest of all tracked quantities and samples, ``drift`` the largest of the conserved
     quantities, of which ``drifting`` is the name. ``max`` and ``final`` are errors by quantity.

@@ -16,7 +16,7 @@ from taylor_verify.studies.tradeoff.timing import Timed
 
 @dataclass(frozen=True)
 class Point:
-    """One setting's accuracy and time; ``because`` says why it is not sound, where it is not."""
+    """The accuracy and the time of a setting; ``because`` says why it is not sound, where it is not."""
 
     timed: Timed
     accuracy: Accuracy

@@ -50,7 +50,7 @@ class Measured:
 
 
 class _Taken(NamedTuple):
-    """One measurement: seconds a solve, those of them in a compiled integrator, the wait for it.
+    """A measurement: seconds a solve, those of them in a compiled integrator, the wait for it.
 
     What compiled before the propagation is not waited for again.
     """

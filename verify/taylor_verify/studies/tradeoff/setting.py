@@ -45,7 +45,7 @@ _ASKED: Final = {"tol": TOLERANCE, "rtol": TOLERANCE, "step": STEP}
 
 @dataclass(frozen=True)
 class Setting:
-    """One way to solve a scene, ready to run.
+    """A way to solve a scene, ready to run.
 
     ``requested`` is the tolerance or the step that was asked for, the latter in the scene's unit of
     time, and ``asked`` says which; None and empty for a solver that takes neither. Settings of one

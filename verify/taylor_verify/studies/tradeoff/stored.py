@@ -44,7 +44,7 @@ class TimedPoint:
 
 @dataclass(frozen=True)
 class Trade:
-    """One scene: a point for every setting, the coarsest of a family first, and the times of some.
+    """A scene with a point for every setting, the coarsest of a family first, and the times of some.
 
     ``timings`` are by solver and rung.
     """
@@ -94,7 +94,7 @@ class Trades:
 
     @property
     def trades(self) -> tuple[Trade, ...]:
-        """Every scene with its points and their times."""
+        """The scenes, each with its points and their times."""
         timings: dict[str, dict[tuple[str, str], TradeTiming]] = {}
         for one in self.times.timings:
             timings.setdefault(one.scene, {})[one.solver, one.rung] = one

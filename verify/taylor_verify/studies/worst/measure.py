@@ -55,7 +55,7 @@ class Family:
 
 @dataclass(frozen=True)
 class Catch:
-    """One scene of a family and the verdict on it that came nearest to failing."""
+    """A scene of a family with the verdict on it that came nearest to failing."""
 
     place: tuple[float, ...]
     verdict: Verdict

@@ -25,7 +25,7 @@ _MOST: Final = 7
 
 @dataclass(frozen=True)
 class Spot:
-    """One setting in one picture: its numbers along both axes, zero where a number is missing.
+    """A setting in a picture: its numbers along both axes, zero where a number is missing.
 
     ``spread`` is the slowest time over the fastest.
     """
@@ -58,7 +58,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Series:
-    """One family on one rung, its settings from the coarsest to the finest."""
+    """A family on a rung: its settings from the coarsest to the finest."""
 
     family: str
     rung: str
