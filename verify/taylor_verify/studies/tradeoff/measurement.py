@@ -27,29 +27,14 @@ from taylor_verify.studies.tradeoff import SEED
 from taylor_verify.studies.tradeoff.cold import in_a_new_process
 from taylor_verify.studies.tradeoff.document import (
     TimingMachine,
-    TimingMethod,
     TradeNumbers,
     TradeScene,
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify.studies.tradeoff.order_statistics import (
-    CONFIDENCE,
-    FORMULA,
-    coverage,
-    estimate,
-    place,
-)
+from taylor_verify.studies.tradeoff.order_statistics import estimate
 from taylor_verify.studies.tradeoff.plain_doubles import plain_doubles
-from taylor_verify.studies.tradeoff.rounds import (
-    LEAST_SECONDS,
-    ROUNDS,
-    TIMES_RESOLUTION,
-    YARDSTICK,
-    Measured,
-    clock_resolution,
-    measured,
-)
+from taylor_verify.studies.tradeoff.rounds import ROUNDS, YARDSTICK, Measured, measured, method
 from taylor_verify.studies.tradeoff.setting import (
     ELLIPJ,
     Name,
@@ -60,7 +45,6 @@ from taylor_verify.studies.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.studies.tradeoff.timing import WHAT_IS_TIMED
 from taylor_verify.studies.tradeoff.trade_off import (
     TradeOff,
     request_sentences,
@@ -129,21 +113,10 @@ def measurement(
         plain_doubles=doubles,
         points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
     )
-    method = TimingMethod(
-        processes=processes,
-        rounds=rounds,
-        seed=seed,
-        least_seconds=LEAST_SECONDS,
-        times_resolution=TIMES_RESOLUTION,
-        clock_resolution=clock_resolution(),
-        confidence=CONFIDENCE,
-        # Too few processes have that of their two extremes.
-        coverage=coverage(processes, max(place(processes, CONFIDENCE), 1)),
-        formula=FORMULA,
-        of=WHAT_IS_TIMED,
-    )
     machine = TimingMachine(processor(), versions()["python"], command())
-    return numbers, TradeTimings(machine, method, tuple(_timings(asked, by_process)))
+    return numbers, TradeTimings(
+        machine, method(processes, rounds, seed), tuple(_timings(asked, by_process))
+    )
 
 
 def _versions() -> dict[str, str]:
@@ -160,8 +133,8 @@ def published_settings(scene: Scene, with_outside: bool = False) -> Iterator[Set
     yield from taylor(f64)
     for name in _OWN_TOLERANCE:
         yield setting(YARDSTICK[0], rung_named(name))
-    for method, tolerances in _SCIPY.items():
-        yield from library([method], tolerances, f64)
+    for solver, tolerances in _SCIPY.items():
+        yield from library([solver], tolerances, f64)
     if isinstance(scene.body, RigidBody):
         yield from geometric(scene, f64)
         yield setting(ELLIPJ, f64)

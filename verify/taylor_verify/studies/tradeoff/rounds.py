@@ -21,14 +21,17 @@ from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.studies.tradeoff.document import TimingMethod
+from taylor_verify.studies.tradeoff.order_statistics import CONFIDENCE, FORMULA, coverage, place
 from taylor_verify.studies.tradeoff.setting import Name, setting
+from taylor_verify.studies.tradeoff.timing import WHAT_IS_TIMED
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
 # A measurement lasts at least so many times the clock's resolution: that is then below 1 %.
-TIMES_RESOLUTION: Final = 100
+_TIMES_RESOLUTION: Final = 100
 # And so many seconds, so that an interrupt of some microseconds does not show either.
-LEAST_SECONDS: Final = 2e-3
+_LEAST_SECONDS: Final = 2e-3
 # The yardstick enters every ratio of its round.
 _YARDSTICK_SECONDS: Final = 1e-2
 # What is waited for longer, a program's start included, is solved once a process.
@@ -71,7 +74,7 @@ def measured(
 
     The yardstick is measured with them, asked for or not.
     """
-    least = max(LEAST_SECONDS, TIMES_RESOLUTION * (resolution or clock_resolution()))
+    least = max(_LEAST_SECONDS, _TIMES_RESOLUTION * (resolution or clock_resolution()))
     work: dict[Name, tuple[Solver, Problem]] = {}
     for solver, rung in (YARDSTICK, *names):
         on = rung_named(rung)
@@ -143,6 +146,23 @@ def clock_resolution(clock: Callable[[], float] = perf_counter) -> float:
         return now - began
 
     return min(step() for _ in range(100))
+
+
+def method(processes: int, rounds: int, seed: int) -> TimingMethod:
+    """Return the method of so many processes and rounds as it is stored."""
+    return TimingMethod(
+        processes=processes,
+        rounds=rounds,
+        seed=seed,
+        least_seconds=_LEAST_SECONDS,
+        times_resolution=_TIMES_RESOLUTION,
+        clock_resolution=clock_resolution(),
+        confidence=CONFIDENCE,
+        # Too few processes have that of their two extremes.
+        coverage=coverage(processes, max(place(processes, CONFIDENCE), 1)),
+        formula=FORMULA,
+        of=WHAT_IS_TIMED,
+    )
 
 
 @contextmanager
