@@ -25,7 +25,7 @@ from taylor_verify.solvers.engines.engine import engines, prepare
 from taylor_verify.solvers.engines.environment import NotMade
 from taylor_verify.studies.tradeoff.cold import cold
 from taylor_verify.studies.tradeoff.front import sound_points
-from taylor_verify.studies.tradeoff.pictures.wording import label_of
+from taylor_verify.studies.tradeoff.document import label
 from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended
 from taylor_verify.studies.tradeoff.setting import RUNGS, Setting, chosen, outside, settings
 from taylor_verify.studies.tradeoff.timing import cold_caches
@@ -109,7 +109,7 @@ def _make_environments() -> None:
 def _add_cold(document: dict[str, Any], trade: TradeOff) -> None:
     """Put into each sound point the cost of its first solve in a process of its own."""
     asked = [p.timed.setting for p in sound_points(trade.points)]
-    taken = {setting.label: one.row() for setting, one in cold(trade.scene, asked).items()}
+    taken = {setting.label: parts for setting, parts in cold(trade.scene, asked).items()}
     for row, p in zip(document["points"], trade.points, strict=True):
         row["cold"] = taken.get(p.label)
 
@@ -144,7 +144,7 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
         page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            told = f"  {label_of(row)}: {row['because']}"
+            told = f"  {_label(row)}: {row['because']}"
             page.line(bold(row["standing"], "red"), told)
     page.line(
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
@@ -173,6 +173,10 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     page.line()
 
 
+def _label(row: Mapping[str, Any]) -> str:
+    return label(row["solver"], row["setting"], row["rung"])
+
+
 def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
     """Return a table with columns of words to the left and of numbers to the right."""
     table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
@@ -190,7 +194,7 @@ def _points_table(trade: Mapping[str, Any]) -> Table:
     numbers = ("drift", "steps", "evals", "seconds", "spread", "first", "compile")
     table = _table(("", "setting", "rung"), (*errors, *numbers))
     for row in rows:
-        mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
+        mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
         table.add_row(
             *(mark, Text(f"{row['solver']} {row['setting']}".rstrip()), row["rung"]),
@@ -209,7 +213,7 @@ def _cold_table(points: Sequence[Mapping[str, Any]]) -> Table:
     for row in points:
         if row.get("cold"):
             cells = [*(row["cold"][part] for part in parts), row["seconds"]]
-            table.add_row(Text(label_of(row)), *(_short(value) for value in cells))
+            table.add_row(Text(_label(row)), *(_short(value) for value in cells))
     return table
 
 
