@@ -13,7 +13,7 @@ from taylor_verify.studies.study import Measured, NotMeasured, Progress, Study
 if TYPE_CHECKING:
     from taylor_verify.studies.gallery.page import Shown
 
-# The pictures are built with NumPy, which nothing else asks for that makes pages: it is imported late.
+# The pictures are built with NumPy, which nothing else that makes pages asks for: it is imported late.
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:

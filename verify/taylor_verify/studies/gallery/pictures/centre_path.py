@@ -152,7 +152,7 @@ def _draw_walls(stage: Stage, box: _Box) -> None:
         wall = np.array([box.walls] * 5)
         wall[:, j] = np.array([box.low[j], box.high[j], box.high[j], box.low[j], box.low[j]])
         wall[:, k] = np.array([box.low[k], box.low[k], box.high[k], box.high[k], box.low[k]])
-        look = {"facecolor": "#FAFAFA", "edgecolor": FAINT, "linewidth": 0.6}
+        look: Look = {"facecolor": "#FAFAFA", "edgecolor": FAINT, "linewidth": 0.6}
         stage.axes.fill(*stage.view.seen(wall).T, **look, zorder=0)
     for i in range(3):
         low, high = float(box.low[i]), float(box.high[i])
@@ -179,7 +179,7 @@ def _draw_ticks(stage: Stage, box: _Box, i: int, ticks: list[float]) -> None:
         stage.axes.annotate(
             words,
             stage.view.seen(edge)[0],
-            outward * away,
+            (float(outward[0]) * away, float(outward[1]) * away),
             textcoords="offset points",
             size=SMALL,
             color=INK,

@@ -103,11 +103,9 @@ class Stage:
         """Draw a line, on the surface where there is one."""
         for is_seen, piece in pieces(self.view.seen(points), self.faces(points)):
             # Round ends of what is faint would lie on each other and show as dots.
-            side = (
-                {"solid_capstyle": "round", "zorder": zorder}
-                if is_seen
-                else {"solid_capstyle": "butt", "zorder": 0.5, "alpha": _FAINT}
-            )
+            side: Look = {"solid_capstyle": "round", "zorder": zorder}
+            if not is_seen:
+                side = {"solid_capstyle": "butt", "zorder": 0.5, "alpha": _FAINT}
             self.axes.plot(*piece.T, **look, **side)
 
     def course(self, points: Numbers, width: float, zorder: float) -> None:
@@ -137,9 +135,11 @@ class Stage:
                 zorder=3 if self.faces(direction)[0] else 0.2,
             )
             right, up = head - tail
+            x, y = map(float, self.view.seen(direction * (1 + _NAME))[0])
             side = "left" if right > 0 else "right"
             self.axes.text(
-                *map(float, self.view.seen(direction * (1 + _NAME))[0]),
+                x,
+                y,
                 name,
                 size=SMALL,
                 color=INK,
