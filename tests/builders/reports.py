@@ -37,8 +37,8 @@ from taylor_verify.studies.extremes.page import EXTREMES
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth.page import GROWTH
 from taylor_verify.studies.growth.published import Entry, followed
-from taylor_verify.studies.portraits import stored as portraits
 from taylor_verify.studies.portraits.measure import portrait
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.reach.page import REACH
 from taylor_verify.studies.reference import page as reference_files
 from taylor_verify.studies.reference.measure import reference
@@ -97,7 +97,7 @@ def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[s
 def write_portraits(place: Path, scenes: Iterable[str]) -> None:
     """Write portraits and exact trajectories."""
     loaded = [load(scene) for scene in scenes]
-    portraits.write(place, [portrait(scene) for scene in loaded])
+    PORTRAITS.write(place, [portrait(scene) for scene in loaded])
     reference_files.write(place, [reference(scene) for scene in loaded])
 
 
@@ -112,7 +112,7 @@ def write_controls(place: Path) -> None:
 def every_portrait() -> Path:
     """Return a report with the portrait of every scene of the standard set."""
     place = folder()
-    portraits.write(place, [portrait(load(scene)) for scene in names()])
+    PORTRAITS.write(place, [portrait(load(scene)) for scene in names()])
     return place
 
 

@@ -29,7 +29,7 @@ from taylor_verify.studies.gallery.pictures import (
     polhode,
     potential,
 )
-from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.reference import page as reference_files
 
 _SOLVER: Final = "taylor"
@@ -70,7 +70,7 @@ class Shown:
 
 def _named(source: str) -> str:
     """Return a link to a file of data, or its name where the repository does not hold it."""
-    is_made = source.startswith((portraits.FOLDER, f"{store.FOLDER}/{store.RECORDS}"))
+    is_made = source.startswith((PORTRAITS.folder, f"{store.FOLDER}/{store.RECORDS}"))
     return code(source) if is_made else f"[{Path(source).name}](../{source})"
 
 
@@ -104,7 +104,7 @@ class Stored:
 
     @staticmethod
     def portrait_name(scene: str) -> str:
-        return f"{portraits.FOLDER}/{of_scene(scene)}.json"
+        return PORTRAITS.name(scene)
 
     @staticmethod
     def record_name(scene: str, rung: str) -> str:

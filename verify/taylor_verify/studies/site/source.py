@@ -18,7 +18,7 @@ from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.studies.controls.document import Sight
 from taylor_verify.studies.controls.stored import CONTROLS
-from taylor_verify.studies.portraits import stored as portraits
+from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.stored import Trade
 
@@ -68,7 +68,7 @@ class Report:
 
     def portrait(self, scene: str) -> Document | None:
         """Return the portrait of a scene."""
-        return portraits.load(self.folder, scene)
+        return PORTRAITS.find(self.folder, scene)
 
     def records(self, scene: str) -> dict[str, Document]:
         """Return the records of a scene by rung, as far as there are some."""
