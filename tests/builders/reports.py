@@ -32,7 +32,7 @@ from taylor_verify.studies import report
 from taylor_verify.studies.claims.page import CLAIMS
 from taylor_verify.studies.controls import measure as sight
 from taylor_verify.studies.controls import study as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.extremes.page import EXTREMES
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.growth.page import GROWTH

@@ -27,7 +27,7 @@ from taylor_verify.publish.pictures.picture import Picture, plotting, save
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import picture as shifts
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.gallery import page as gallery
 from taylor_verify.studies.gallery.page import Stored
 from taylor_verify.studies.gallery.pictures import (

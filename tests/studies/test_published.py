@@ -49,7 +49,7 @@ from taylor_verify.studies.accuracy.attainable import attainable
 from taylor_verify.studies.bulk import patterns
 from taylor_verify.studies.claims import page as claims_page
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.enclosure.measure import SCENES, widths
 from taylor_verify.studies.enclosure.study import ENCLOSURE
 from taylor_verify.studies.extremes import page as extremes

@@ -15,7 +15,7 @@ from taylor_verify.publish.markdown import code, table
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.studies.controls import page as controls
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 
 BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of accuracy -->"

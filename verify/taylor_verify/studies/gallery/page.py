@@ -21,7 +21,7 @@ from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.studies.controls import picture as shifts
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS
 from taylor_verify.studies.gallery.pictures import (
     axis_path,
     centre_path,

@@ -16,8 +16,7 @@ from typing import Any, Final
 from taylor_verify.records import store
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
-from taylor_verify.studies.controls.document import Sight
-from taylor_verify.studies.controls.stored import CONTROLS
+from taylor_verify.studies.controls.document import CONTROLS, Sight
 from taylor_verify.studies.portraits.study import PORTRAITS
 from taylor_verify.studies.tradeoff import stored as trades
 from taylor_verify.studies.tradeoff.stored import Trade
