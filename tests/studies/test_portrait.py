@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.reports import every_portrait
+from builders.reports import every_portrait, portrait_without_run
 from latex2mathml.converter import convert
 
 from taylor_verify.cli import main
@@ -32,7 +32,6 @@ from taylor_verify.studies.portraits.measure import (
     INTERVALS,
     PERIODS,
     TIMES,
-    portrait,
     roots,
 )
 from taylor_verify.studies.portraits.study import PORTRAITS
@@ -50,17 +49,6 @@ def stored(scene: str) -> dict[str, Any]:
     found = PORTRAITS.find(every_portrait(), scene)
     assert found is not None
     return found
-
-
-@cache
-def made(scene: str) -> dict[str, Any]:
-    """A portrait whose run is left out: the rest does not depend on it, and it is most of the time."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            "taylor_verify.studies.portraits.measure.explanation",
-            lambda scene, rung: {"cost": {"seconds": 1.0}},
-        )
-        return portrait(load(scene))
 
 
 def with_quartic() -> list[str]:
@@ -91,7 +79,7 @@ def test_a_portrait_is_small() -> None:
 @pytest.mark.parametrize("scene", FRESH)
 def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
     """Without the run on f64, whose roundings are those of a machine, the stored one is made again."""
-    again = json.loads(json.dumps(made(scene)))
+    again = json.loads(json.dumps(portrait_without_run(scene)))
     kept = dict(stored(scene))
     assert kept.pop("made_by").endswith("do not edit")
     assert again.pop("explain") == {"cost": {"seconds": None}}
@@ -120,7 +108,7 @@ def test_the_comment_and_the_text_are_those_of_the_file() -> None:
 @pytest.mark.parametrize("scene", FRESH)
 def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
     """Every number is within half a unit of its ninth digit of what the Taylor route finds."""
-    asked, course = load(scene), made(scene)["course"]
+    asked, course = load(scene), portrait_without_run(scene)["course"]
     rows = range(0, INTERVALS + 1, 45)
     elapsed = [Fraction(repr(course["t"][k])) - asked.clock.start for k in rows]
     motion = solution(asked, "taylor").motion(elapsed, 15)
@@ -166,7 +154,7 @@ def test_the_course_has_what_the_scene_tracks() -> None:
 def test_the_values_are_those_of_the_other_route() -> None:
     """Balls and mpmath print the same thirty digits, but for the last, at ten times over the span."""
     scene = load(FRESH[0])
-    values = made(scene.name)["values"]
+    values = portrait_without_run(scene.name)["values"]
     times = [(row["t"], Fraction(row["t"])) for row in values["rows"]]
     assert len(times) == TIMES
     assert times[-1][1] == scene.clock.instants[-1]
@@ -299,7 +287,7 @@ def test_the_equations_become_mathml() -> None:
 
 def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
     """A second set takes the place of the first; a file that names no maker of ours stays."""
-    document = made(FRESH[0])
+    document = portrait_without_run(FRESH[0])
     gone = {**document, "scene": "euler/gone"}
     mine = tmp_path / PORTRAITS.folder / "mine.json"
     first = PORTRAITS.write(tmp_path, [document, gone])
