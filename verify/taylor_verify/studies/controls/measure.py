@@ -62,9 +62,9 @@ def study(seen: Iterable[Sight]) -> ControlsStudy:
 
 
 def _row(defect: Defect) -> DefectRow:
-    own = ("name", "setting", "scene", "gate", "what", "why", "told")
-    twin = {"twin": defect.twin.name, "twin_setting": defect.twin.setting}
-    return DefectRow(**{name: getattr(defect, name) for name in own}, **twin)
+    names = ("name", "setting", "scene", "gate", "what", "why", "told")
+    own = {name: getattr(defect, name) for name in names}
+    return DefectRow(**own, twin=defect.twin.name, twin_setting=defect.twin.setting)
 
 
 def _verdicts(scene: str, solver: Solver) -> Verdicts:
