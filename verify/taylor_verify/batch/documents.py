@@ -19,7 +19,6 @@ Document = dict[str, Any]
 def documents(
     make: Callable[[Scene], Document],
     names: Sequence[str],
-    expense: Callable[[str], Any],
     finished: Callable[[str], None],
     executor: Executor | None = None,
 ) -> list[Document]:
@@ -28,12 +27,11 @@ def documents(
     ``finished`` is called with the name of each scene as it ends. Raises Failed for one that came to
     nothing.
     """
-    work = partial(document, make)
     return run_all(
-        work,
+        partial(document, make),
         names,
         executor,
-        expense=expense,
+        expense=_expense,
         ended=lambda name, _: finished(name),
         raises=Failed,
     )
@@ -50,3 +48,11 @@ def document(make: Callable[[Scene], Document], name: str) -> Document:
         # Only text is sure to pass from process to process.
         reason = str(error) if isinstance(error, Unsettled) else fault(error)
         raise Failed(f"{name}: {reason}") from error
+
+
+def _expense(name: str) -> tuple[int, int]:
+    """Return a key to sort scenes by, the longest first: bodies in a fluid, and what is tracked."""
+    from taylor_verify.scenes.reading.reader import load
+
+    scene = load(name)
+    return -len(scene.initial.moving), -len(scene.track)
