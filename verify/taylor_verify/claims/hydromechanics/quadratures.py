@@ -7,14 +7,14 @@ Between the two times x3 only rises, and the integrands stay finite.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import astuple
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Any, Final
 
 from mpmath import mp, mpf
 
-from taylor_verify.claims.claim import Residual
-from taylor_verify.claims.hydromechanics.clebsch import quartic
+from taylor_verify.claims.check import Residual
+from taylor_verify.claims.hydromechanics.clebsch import COEFFICIENTS, QUARTIC
 from taylor_verify.claims.trajectory import trajectory
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse
@@ -42,23 +42,21 @@ class _Stretch:
     def __init__(self) -> None:
         motion = trajectory(_BODY.body(), _START, _TIMES, _DIGITS, frozenset({"attitude"}))
         x, y = ([mp.convert(v) for v in vector] for vector in (_START.linear, _START.angular))
-        six = _BODY.p, _BODY.p_prime, _BODY.q, _BODY.q_prime, _BODY.r, _BODY.r_prime
-        self.six = tuple(mp.convert(c) for c in six)
-        p, pp, q, qq, self.r, _ = self.six
-        self.q = q
+        six = {name: mp.convert(c) for name, c in zip(COEFFICIENTS, astuple(_BODY), strict=True)}
+        self.q, self.r = six["q"], six["r"]
         self.F, self.y3 = mp.sqrt(mp.fdot(x, x)), y[2]
         self.G = mp.fdot(x, y) / self.F
         # (6) at the start, in which nothing cancels.
-        self.m1 = (
-            self.r * (y[0] ** 2 + y[1] ** 2) - (p - pp) * x[2] ** 2 - 2 * (q - qq) * x[2] * y[2]
-        )
+        p, pp, q, qq, r, _ = six.values()
+        self.m1 = r * (y[0] ** 2 + y[1] ** 2) - (p - pp) * x[2] ** 2 - 2 * (q - qq) * x[2] * y[2]
+        self.quartic = eval(QUARTIC, six)
         self.z = [row[2] for row in motion["linear_impulse"]]
         nodes = [R[0, 2] + 1j * R[1, 2] for R in motion["attitude"]]
         self.turned = mp.arg(nodes[1] / nodes[0])
         self.elapsed = mp.convert(_TIMES[1] - _TIMES[0])
 
     def X3(self, z: mpf) -> Any:
-        return quartic(SimpleNamespace(six=self.six), z, self.F, self.G, self.y3, self.m1)
+        return self.quartic(z, self.F, self.G, self.y3, self.m1)
 
     def integral(self, integrand: Callable[[mpf], Any]) -> Any:
         """The integral over x3 of the integrand over sqrt(X3), which is positive while x3 rises."""
