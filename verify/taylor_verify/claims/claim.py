@@ -1,4 +1,4 @@
-"""A claim: what a text says, how that is checked, and the verdict that the check must reach."""
+"""A claim: the statement of a text, its check, and the verdict that the check must reach."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Change = Check | tuple[str, str]
 
 @dataclass(frozen=True)
 class Claim:
-    """One numbered equation, or one sentence that claims something.
+    """A numbered equation, or a sentence that claims something.
 
     ``statement`` (LaTeX) is the text restored, and for a false one the text as transcribed;
     ``domain`` says what the symbols are and where it is meant. ``check`` holds the statement to the
@@ -61,8 +61,8 @@ class Claim:
         """Return the check of the statement with one thing changed."""
         if not isinstance(change, tuple):
             return change
-        if not isinstance(self.check, Worded):
-            raise TypeError(f"expected a check in words, got {self.check!r} @ {self.id}")
+        if not (isinstance(self.check, Worded) and self.check.says(change[0])):
+            raise ValueError(f"expected words of the check, got {change[0]!r} @ {self.id}")
         return self.check.but(*change)
 
 
@@ -106,7 +106,7 @@ class Finding:
 
 
 def examine(claim: Claim) -> Finding:
-    """Run the checks of a claim and say what they make of it, whatever is recorded.
+    """Return the verdict of a claim by its checks, whatever is recorded.
 
     A claim that fails its own check, or whose false form is not clearly missed, is undecided: nothing
     is called true or false for want of a check.

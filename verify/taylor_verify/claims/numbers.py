@@ -1,4 +1,4 @@
-"""All that there is to check in the two texts, in their order: written from the texts, not the entries.
+"""The equations and sentences of the two texts, in their order: written from the texts, not the entries.
 
 ``NUMBERED`` are the equations that carry a number, ``SENTENCES`` the claims that are made in words or
 without a number, by short names. ``CITED`` are numbers that a text refers to but does not show.

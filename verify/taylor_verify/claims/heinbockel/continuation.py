@@ -1,4 +1,4 @@
-"""Euler's equations with constant moments in complex time: poles, and what a loop round one leaves.
+"""Euler's equations with constant moments in complex time: poles, and the change after a loop round one.
 
 J   principal moments      w   angular velocity, J_i w_i' = (J_j - J_k) w_j w_k + M_i
 t*  a singularity, s = t - t*;  w = c/s + d s log s + (powers of s), with -J_i c_i = (J_j - J_k) c_j c_k
@@ -26,10 +26,10 @@ Vector = list[Any]
 
 
 class Loop(NamedTuple):
-    """What a loop round a singularity leaves: relative to |w| there, and to 2 pi i d s.
+    """The change of w after a loop round a singularity.
 
-    ``relative`` is |change of w| / |w|; ``predicted`` its distance from 2 pi i d s relative to that, NaN
-    without moment; ``distance`` is |s|.
+    ``relative`` is the size of the change over |w|; ``predicted`` its distance from 2 pi i d s, relative to
+    that and NaN without moment; ``distance`` is |s|.
     """
 
     relative: float

@@ -40,7 +40,7 @@ _leading: Final = poles("J*c2 = -g*P", "P**2 = c2[0]*c2[1]*c2[2]", "J @ c2 = 0",
 
 
 def one_real() -> Residual:
-    """For J1 > J2 > J3 c_2 is real, c_1 and c_3 are imaginary.
+    """Count the c_i that are not real (c_2) and imaginary (c_1, c_3) for J1 > J2 > J3.
 
     Counted at a point: the signs of the squares cannot change while the J stay apart.
     """

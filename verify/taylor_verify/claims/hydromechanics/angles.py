@@ -8,13 +8,12 @@ dtheta ...        their rates, free symbols: the angular velocity follows from R
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import partial
 from typing import Final
 
 from taylor_verify.claims.check import All
 from taylor_verify.claims.claim import Claim
 from taylor_verify.claims.hydromechanics.clebsch import STATE_TEXT, clebsch
-from taylor_verify.claims.hydromechanics.quadratures import angle_advance
+from taylor_verify.claims.hydromechanics.paths import angle_advance
 from taylor_verify.claims.setting import Exact
 
 # A body whose impulse x has the direction of the third axis of space.
@@ -101,7 +100,10 @@ CLAIMS: Final = (
         mutants={
             "FG + x3 y3": ("FG - x3*y3", "FG + x3*y3"),
             "r^2": ("* F / root", "* F * r**2 / root"),
-            "r in the integral along the trajectory": partial(angle_advance, power=1),
+            "r in the integral along the trajectory": (
+                "(F**2 - z**2) * F",
+                "(F**2 - z**2) * F * r",
+            ),
         },
         remark="With r it is right if sqrt(X3) is read as dx3/dt, against (8) and (9).",
     ),

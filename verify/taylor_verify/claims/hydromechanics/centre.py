@@ -80,8 +80,8 @@ CLAIMS: Final = (
         mutants={
             "plus the whole sum": led("F*c2 = Ry[0]"),
             "the minus before y1 alone, along the trajectory": (
-                "- (attitude[0, 1]",
-                "+ (attitude[0, 1]",
+                "- (R[0, 1]",
+                "+ (R[0, 1]",
             ),
         },
     ),
