@@ -43,14 +43,14 @@ Step = Callable[["Body", Vector, float], Vector]
 class Body:
     """The principal values of I^-1, in the problem's units; a state is H1 H2 H3 q0 q1 q2 q3."""
 
-    k: tuple[float, float, float]
+    k: Vector
 
     def omega(self, H: Vector) -> Vector:
         return self.k * H
 
     def momentum_rate(self, H: Vector) -> Vector:
         """H x omega."""
-        (k1, k2, k3), (H1, H2, H3) = self.k, H.tolist()
+        (k1, k2, k3), (H1, H2, H3) = self.k.tolist(), H.tolist()
         return np.array([(k3 - k2) * H2 * H3, (k1 - k3) * H3 * H1, (k2 - k1) * H1 * H2])
 
     def rate(self, state: Vector) -> Vector:
@@ -74,7 +74,7 @@ class FixedStep(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         given = problem.parameter
-        body = Body((float(given["K11"]), float(given["K22"]), float(given["K33"])))
+        body = Body(np.array([float(given[name]) for name in ("K11", "K22", "K33")]))
         state = np.array([float(value) for value in problem.initial_momenta])
         rows = [state]
         for before, after in pairwise(float(t) for t in problem.times):
