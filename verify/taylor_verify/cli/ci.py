@@ -151,7 +151,8 @@ def _write_github(
 ) -> list[str]:
     if not asked.github:
         return []
-    from taylor_verify.batch.report import remarks, shown_verdicts
+    from taylor_verify.batch.comparison import shown_verdicts
+    from taylor_verify.batch.report import remarks
     from taylor_verify.publish.ci.annotations import annotation_lines
     from taylor_verify.publish.ci.step_summary import step_summary
 
