@@ -28,7 +28,7 @@ from taylor_verify.claims.hydromechanics.fourth import (
 )
 from taylor_verify.claims.hydromechanics.poles import leading_coefficients
 from taylor_verify.claims.hydromechanics.solid import loaded
-from taylor_verify.claims.setting import Exact
+from taylor_verify.claims.setting import Exact, Numeric
 from taylor_verify.claims.trajectory import scene_of, trajectory
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.euler import heinbockel_moment
@@ -170,9 +170,20 @@ def test_the_quaternion_makes_a_rotation() -> None:
 
 def test_equations_without_differences_satisfy_nothing() -> None:
     """A form that compares nothing is a NaN, which is neither true nor false."""
-    found = CIRCLE("x")()
+    found = CIRCLE()()
     assert not found.is_satisfied
     assert not found.is_refuted
+    with pytest.raises(ValueError, match="expected members with ' = ' between them, got 'x'"):
+        CIRCLE("x")()
+
+
+def test_a_nan_along_a_trajectory_satisfies_nothing() -> None:
+    """One time without a number is enough, wherever it stands."""
+    rows = [{"a": mp.mpf(0)}, {"a": mp.nan}, {"a": mp.mpf(1)}]
+    for turned in (rows, rows[::-1]):
+        found = Numeric(lambda turned=turned: turned, 15, 10.0, "")("a = 0")()
+        assert math.isnan(found.size)
+        assert not found.is_satisfied
 
 
 # The equations of the ledger against those of the solvers, across the wall.

@@ -167,7 +167,7 @@ class Field:
         place = self._places[name]
         return self._each(lambda p: Element(self, p.derivative(place), self._one), value)
 
-    def gradient(self, value: Any, letter: str) -> Any:
+    def grad(self, value: Any, letter: str) -> Any:
         """The partial derivatives by the three components of a vector, along a last axis."""
         return np.stack([self.partial(value, f"{letter}{k}") for k in (1, 2, 3)], axis=-1)
 

@@ -62,6 +62,8 @@ def differences(equations: Iterable[str], symbols: dict[str, Any]) -> list[Any]:
     found: list[Any] = []
     for equation in equations:
         first, *others = (np.asarray(eval(text, symbols)) for text in equation.split(" = "))
+        if not others:
+            raise ValueError(f"expected members with ' = ' between them, got {equation!r}")
         for other in others:
             found += [*np.ravel(first - other)]
     return found
@@ -89,14 +91,8 @@ class Exact(Setting):
     def symbols(self) -> dict[str, Any]:
         """The names by which equations are evaluated, made when they are first asked for."""
         field = self.field
-        derivatives = {
-            "d": field.rate,
-            "turn": field.turn,
-            "partial": field.partial,
-            "grad": field.gradient,
-            "at": field.at,
-        }
-        symbols = _FUNCTIONS | derivatives | field.symbols
+        functions = {name: getattr(field, name) for name in ("turn", "partial", "grad", "at")}
+        symbols = _FUNCTIONS | functions | {"d": field.rate} | field.symbols
         exec(dedent(self._definitions), symbols)
         return symbols
 
@@ -128,7 +124,9 @@ class Numeric(Setting):
     def residual(self, equations: Iterable[str]) -> Residual:
         texts = list(equations)
         with mp.workdps(self._digits):
-            size = max(abs(d) for row in self._rows() for d in differences(texts, row))
+            sizes = (abs(d) for row in self._rows() for d in differences(texts, row))
+            # A NaN is larger than any number.
+            size = max(sizes, key=lambda size: (size != size, size))
             return Residual(float(size), self._bound, self._because)
 
 
