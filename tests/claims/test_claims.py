@@ -114,6 +114,12 @@ def test_partial_derivatives_divide_out_denominators() -> None:
         assert (field.partial(quotient, "u") + v / u**2).is_zero
 
 
+def test_a_float_is_no_exact_number() -> None:
+    """A third in binary would make an identity fail, or hold, by its rounding."""
+    with pytest.raises(TypeError, match="expected an exact number, got 0.333"):
+        triangle()["u"] * (1 / 3)
+
+
 def test_division_by_zero_is_refused() -> None:
     """A divisor that is zero by the relation of a root is seen."""
     field = triangle()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from taylor_verify.claims.check import Check, Residual, Worded, measured
 from taylor_verify.claims.document import ClaimResiduals, ClaimRow
@@ -36,12 +37,12 @@ class Claim:
     mutants: Mapping[str, Change]
     transcribed: Change | None = None
     correction: str | None = None
-    counterexample: str = ""
-    lost: str = ""
-    condition: str = ""
-    gap: str = ""
-    void: str = ""
-    remark: str = ""
+    counterexample: str | None = None
+    lost: str | None = None
+    condition: str | None = None
+    gap: str | None = None
+    void: str | None = None
+    remark: str | None = None
 
     @property
     def verdict(self) -> Verdict:
@@ -83,26 +84,22 @@ class Finding:
         """Return the entry of the ledger."""
         claim, transcribed = self.claim, self.transcribed
         return ClaimRow(
-            id=claim.id,
-            statement=claim.statement,
-            domain=claim.domain,
+            **{name: getattr(claim, name) for name in _WORDS},
+            open=claim.gap,
             verdict=self.verdict,
             recorded=claim.verdict,
-            correction=claim.correction,
-            condition=claim.condition or None,
-            lost=claim.lost or None,
-            open=claim.gap or None,
-            void=claim.void or None,
-            counterexample=claim.counterexample or None,
-            method=claim.method,
             mutations=tuple(claim.mutants),
-            residual=ClaimResiduals(
-                self.statement.size, None if transcribed is None else transcribed.size
-            ),
+            residual=ClaimResiduals(self.statement.size, transcribed.size if transcribed else None),
             bound=self.statement.bound,
             because=self.statement.because,
-            remark=claim.remark or None,
         )
+
+
+# What an entry of the ledger has word for word.
+_WORDS: Final = (
+    *("id", "statement", "domain", "method", "correction"),
+    *("condition", "lost", "void", "counterexample", "remark"),
+)
 
 
 def examine(claim: Claim) -> Finding:

@@ -120,6 +120,8 @@ class Field:
     def element(self, value: Any) -> Element:
         if isinstance(value, Element):
             return value
+        if isinstance(value, float):
+            raise TypeError(f"expected an exact number, got {value!r}")
         exact = Fraction(value)
         number = self._context.constant(fmpq(exact.numerator, exact.denominator))
         return Element(self, number, self._one)

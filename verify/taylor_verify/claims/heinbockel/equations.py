@@ -16,7 +16,6 @@ form of Euler's equations used elsewhere in this suite.
 
 from __future__ import annotations
 
-from textwrap import dedent
 from typing import Final
 
 from taylor_verify.claims.claim import Claim
@@ -24,18 +23,18 @@ from taylor_verify.claims.field import values
 from taylor_verify.claims.setting import QUATERNION, UNIT, Exact
 
 _MOTION: Final = """
-    dual = lambda v: einsum("rmn,r->mn", epsilon, v)
-    rank4 = lambda I: einsum("jmn,ist,ij->mnst", epsilon, epsilon, I) / 2
-    l = rotation(e0, e1, e2, e3)
-    turn(**quaternion_rates(e0, e1, e2, e3, w), w=dw, s=cross(l @ w, s))
-    H = I @ w
-    law = d(l @ H) - l @ M
-    euler = I @ dw + cross(w, H) - M
-    left_of_70 = einsum("im,i->m", I, dw) - einsum("tmj,ij,i,t->m", epsilon, I, w, w)
-    # The two products of (2.2.69), by the indices p q alpha beta u v.
-    first = einsum("au,pv,bq->pqabuv", delta, delta, delta)
-    second = einsum("pa,bu,qv->pqabuv", delta, delta, delta)
-    particle = lambda s: (s @ s) * delta - outer(s, s)
+dual = lambda v: einsum("rmn,r->mn", epsilon, v)
+rank4 = lambda I: einsum("jmn,ist,ij->mnst", epsilon, epsilon, I) / 2
+l = rotation(e0, e1, e2, e3)
+turn(**quaternion_rates(e0, e1, e2, e3, w), w=dw, s=cross(l @ w, s))
+H = I @ w
+law = d(l @ H) - l @ M
+euler = I @ dw + cross(w, H) - M
+left_of_70 = einsum("im,i->m", I, dw) - einsum("tmj,ij,i,t->m", epsilon, I, w, w)
+# The two products of (2.2.69), by the indices p q alpha beta u v.
+first = einsum("au,pv,bq->pqabuv", delta, delta, delta)
+second = einsum("pa,bu,qv->pqabuv", delta, delta, delta)
+particle = lambda s: (s @ s) * delta - outer(s, s)
 """
 _VECTORS: Final = tuple(f"{letter}{k}" for letter in ("w", "dw", "M", "s") for k in "123")
 _SIX: Final = tuple(f"I{jk}" for jk in ("11", "12", "13", "22", "23", "33"))
@@ -46,7 +45,7 @@ rigid: Final = Exact({**QUATERNION, **values((*_VECTORS, *_SIX))}, _MOTION, UNIT
 unsymmetric: Final = Exact({**QUATERNION, **values((*_VECTORS, *_NINE))}, _MOTION, UNIT)
 principal: Final = Exact(
     {**QUATERNION, **values((*_VECTORS, "I11", "I22", "I33"))},
-    f"I = diag([I11, I22, I33])\n{dedent(_MOTION)}",
+    "I = diag([I11, I22, I33])" + _MOTION,
     UNIT,
 )
 

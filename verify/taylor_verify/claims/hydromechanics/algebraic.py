@@ -53,7 +53,7 @@ _algebraic: Final = Exact(
 )
 # (27), differentiated logarithmically along the motion.
 _angle: Final = _algebraic(
-    "3/2 * (dx/x + i*psi_rate) = d((x + 1)*w1 + i*(x - 1)*w2) / ((x + 1)*w1 + i*(x - 1)*w2)"
+    "3*(dx/x + i*psi_rate) / 2 = d((x + 1)*w1 + i*(x - 1)*w2) / ((x + 1)*w1 + i*(x - 1)*w2)"
 )
 # (8) is X1 X2/(1 + x^2)^4 for these constants, and x' is that of (8).
 _X3: Final = "((F**2 - z**2) * (r*(G**2 + y3**2)/F**2 * z**2 - 2*r*G**2) / r - (F*G - z*y3)**2)"
@@ -79,7 +79,7 @@ CLAIMS: Final = (
         transcribed=_transcribed,
         mutants={
             "- i (x - 1)": ("+ i*(x - 1)", "- i*(x - 1)"),
-            "the power 1/2": ("3/2 *", "1/2 *"),
+            "the power 1/2": ("3*(dx", "(dx"),
             "X1 for X2, along the trajectory": algebraic_path("X2", "X1"),
         },
     ),

@@ -86,7 +86,7 @@ return_time: Final = _beside(
     "are known to 10^-12: a thousand of these are granted",
 )("longer / (4 * ln10) = 1")
 
-# That it does not come back; the excursion is of the size of 1.
+# The opposite of the return: a tilt that stays of the size of the excursion, which is that of 1.
 stays_away: Final = _beside(
     float(_TILT / 10),
     "tilt of the start over the tilt after twice the time of the turning point; what has fallen "
