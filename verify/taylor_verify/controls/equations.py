@@ -18,7 +18,7 @@ from typing import Any, Final
 from taylor_verify.controls.defect import BRICK, SCREW, Defect
 from taylor_verify.models.algebra import add, apply, cross, minus
 from taylor_verify.models.euler import angular_velocity, euler_equations
-from taylor_verify.models.form import Named
+from taylor_verify.models.form import Named, labelled
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.kirchhoff import impulse_rates, kirchhoff_equations, velocities
 from taylor_verify.models.problem import Problem
@@ -45,12 +45,12 @@ def _gyroscopic_sign(n: Named) -> Mapping[str, Any]:
     """H' = K H x H + M."""
     H = n.vector("H")
     rate = add(cross(angular_velocity(H, n.symmetric("K")), H), n.vector("M"))
-    return euler_equations(n) | _rates("H", rate)
+    return euler_equations(n) | labelled("H", rate)
 
 
 def _no_gyroscopic_term(n: Named) -> Mapping[str, Any]:
     """H' = M."""
-    return euler_equations(n) | _rates("H", n.vector("M"))
+    return euler_equations(n) | labelled("H", n.vector("M"))
 
 
 def _diagonal_tensor(n: Named) -> Mapping[str, Any]:
@@ -101,7 +101,7 @@ def _munk_moment_sign(n: Named) -> Mapping[str, Any]:
     U, Omega = _velocities(n)
     turned, couple = cross(n.vector("y"), Omega), cross(n.vector("x"), U)
     rate = add([minus(a, b) for a, b in zip(turned, couple, strict=True)], n.vector("L"))
-    return kirchhoff_equations(n) | _rates("y", rate)
+    return kirchhoff_equations(n) | labelled("y", rate)
 
 
 def _uneven(n: Named) -> Mapping[str, Any]:
@@ -112,7 +112,7 @@ def _uneven(n: Named) -> Mapping[str, Any]:
 def _unturned_path(n: Named) -> Mapping[str, Any]:
     """c' = U in place of R U."""
     U, _ = _velocities(n)
-    return kirchhoff_equations(n) | _rates("c", U)
+    return kirchhoff_equations(n) | labelled("c", U)
 
 
 def _without_added_acceleration(problem: Problem) -> Problem:
@@ -131,13 +131,9 @@ def _without_added_acceleration(problem: Problem) -> Problem:
         U, Omega = _velocities(n)
         x_rate, y_rate = impulse_rates(x, y, U, Omega, n.vector("X"), n.vector("L"))
         rates = apply(weights, [*x_rate, *y_rate])
-        return kirchhoff_equations(n) | _rates("x", rates[:3]) | _rates("y", rates[3:])
+        return kirchhoff_equations(n) | labelled("x", rates[:3]) | labelled("y", rates[3:])
 
     return problem.with_equations(equations)
-
-
-def _rates(letter: str, vector: list[Any]) -> dict[str, Any]:
-    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
 
 
 EQUATIONS: Final = (
