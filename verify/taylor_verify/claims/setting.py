@@ -24,6 +24,7 @@ from mpmath import mp
 
 from taylor_verify.claims.check import Residual, Worded
 from taylor_verify.claims.field import Field, Point
+from taylor_verify.exact.rotation import rotation_matrix
 
 _BECAUSE: Final = "expanded in exact rationals: an identity leaves zero"
 
@@ -145,15 +146,9 @@ UNIT: Final = {"e0": "1 - e1**2 - e2**2 - e3**2"}
 """The root that makes its norm 1."""
 
 
-def rotation(e0: Any, e1: Any, e2: Any, e3: Any) -> Any:
-    """R of a quaternion of norm 1, scalar first: v_space = R v_body."""
-    return np.array(
-        [
-            [1 - 2 * (e2**2 + e3**2), 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)],
-            [2 * (e1 * e2 + e0 * e3), 1 - 2 * (e1**2 + e3**2), 2 * (e2 * e3 - e0 * e1)],
-            [2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), 1 - 2 * (e1**2 + e2**2)],
-        ]
-    )
+def rotation(*quaternion: Any) -> Any:
+    """R of a quaternion, scalar first: v_space = R v_body."""
+    return np.array(rotation_matrix(quaternion))
 
 
 def quaternion_rates(e0: Any, e1: Any, e2: Any, e3: Any, omega: Any) -> dict[str, Any]:
