@@ -1,4 +1,4 @@
-"""One document for each of many shipped scenes, made on all cores."""
+"""Documents of many shipped scenes, made on all cores."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from taylor_verify.batch.failure import Failed, fault
+from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.runs import run_all
 
 if TYPE_CHECKING:
@@ -42,12 +42,8 @@ def document(make: Callable[[Scene], Document], name: str) -> Document:
     from taylor_verify.exact.solution import Unsettled
     from taylor_verify.scenes.reading.reader import load
 
-    try:
+    with failing(name, Unsettled):
         return make(load(name))
-    except Exception as error:
-        # Only text is sure to pass from process to process.
-        reason = str(error) if isinstance(error, Unsettled) else fault(error)
-        raise Failed(f"{name}: {reason}") from error
 
 
 def _expense(name: str) -> tuple[int, int]:

@@ -10,9 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline
+from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
-from taylor_verify.batch.report import remarks, shown_verdicts, write_junit
+from taylor_verify.batch.report import remarks, write_junit
 from taylor_verify.cli.answer import WRONG_CALL, WrongCall, graver, wrong_calls
 from taylor_verify.cli.folders import writable_file
 from taylor_verify.cli.streams import tell_runner
