@@ -25,11 +25,10 @@ from taylor_verify.solvers.engines.engine import engines, prepare
 from taylor_verify.solvers.engines.environment import NotMade
 from taylor_verify.studies.tradeoff.cold import cold
 from taylor_verify.studies.tradeoff.document import label
-from taylor_verify.studies.tradeoff.front import sound_points
 from taylor_verify.studies.tradeoff.recommendation import OutOfReach, check_target, recommended
 from taylor_verify.studies.tradeoff.setting import RUNGS, Setting, chosen, outside, settings
 from taylor_verify.studies.tradeoff.timing import cold_caches
-from taylor_verify.studies.tradeoff.trade_off import TradeOff, trade_off
+from taylor_verify.studies.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 _NOT_RUN = "not run"
 _HEADINGS = {

@@ -13,10 +13,9 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, solver_named
+from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, TAYLOR, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.name import TAYLOR
 from taylor_verify.studies.tradeoff.document import label
 
 RUNGS: Final = tuple(FORMATS)
